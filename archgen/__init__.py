@@ -1,0 +1,24 @@
+"""archgen: design a robot's software architecture together, in git.
+
+The public Python API is `archgen.load(path)`; everything else hangs on the `Project` that it returns.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from archgen.api import Project, load
+
+__all__ = ["Project", "__version__", "load"]
+__version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> object:
+    """Import the API only when it is asked for, so that `archgen --help` stays immediate."""
+    if name in {"Project", "load"}:
+        from archgen import api
+
+        return getattr(api, name)
+    msg = f"module 'archgen' has no attribute {name!r}"
+    raise AttributeError(msg)

@@ -1,0 +1,1 @@
+"""Analyses: pure functions that compute, and right below each the rule that judges."""

@@ -1,0 +1,1 @@
+"""Findings: diagnostics as text, JSON and more; the rules' pages."""

@@ -1,0 +1,1 @@
+"""Link: slices are merged, elements declared, references resolved; the architecture comes out."""

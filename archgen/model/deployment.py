@@ -1,0 +1,44 @@
+"""Where nodes run: hosts, containers (one process each) and the links between hosts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from archgen.model.quantity import Quantity
+from archgen.source import NOWHERE, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """A computer. `cores` None is unknown."""
+
+    id: str
+    title: str
+    cores: int | None = None
+    description: str | None = None
+    tags: tuple[str, ...] = ()
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Container:
+    """One process that loads several nodes; one thread is one single-threaded executor."""
+
+    id: str
+    title: str
+    host: str | None = None
+    threads: int | None = None
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A network between hosts. Bandwidth in bit/s, latencies in ns."""
+
+    id: str
+    title: str
+    connects: tuple[str, ...] = ()
+    bandwidth: Quantity | None = None
+    best: Quantity | None = None
+    worst: Quantity | None = None
+    at: Span = field(default=NOWHERE, compare=False, repr=False)

@@ -1,0 +1,48 @@
+"""Quantities: text with a unit, read exactly."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+_NUMBER = re.compile(r"([0-9]{1,18}(?:\.[0-9]{1,18})?) ?([A-Za-z/]+)\Z", re.ASCII)
+_BYTES = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
+UNITS: dict[str, dict[str, int]] = {
+    "duration": {
+        "ns": 1,
+        "us": 10**3,
+        "ms": 10**6,
+        "s": 10**9,
+        "min": 60 * 10**9,
+        "h": 3600 * 10**9,
+    },
+    "frequency": {"Hz": 1, "kHz": 1000},
+    "size": _BYTES,
+    "bandwidth": {
+        **{f"{prefix}bit/s": factor for prefix, factor in (("", 1), ("k", 10**3), ("M", 10**6), ("G", 10**9))},
+        **{f"{unit}/s": 8 * factor for unit, factor in _BYTES.items()},
+    },
+}
+"""The units of each dimension, as multiples of its base: ns, Hz, B, bit/s. Case counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """An exact value in its dimension's base unit (ns, Hz, B or bit/s), and the text to show for it (`200 ms`)."""
+
+    value: Fraction
+    text: str = field(compare=False)
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def parse(text: str, dimension: str) -> Quantity | None:
+    """Read `200 ms`, `0.5 kHz`, `12 kB`, `1 Gbit/s`; None where it is not a quantity of this dimension."""
+    match = _NUMBER.match(text)
+    if match is None:
+        return None
+    number, unit = match.groups()
+    factor = UNITS[dimension].get(unit)
+    return None if factor is None else Quantity(Fraction(number) * factor, f"{number} {unit}")

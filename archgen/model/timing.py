@@ -1,0 +1,60 @@
+"""Timing as it was written. What follows from it is the analyses' business."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal
+
+from archgen.model.quantity import Quantity
+from archgen.source import NOWHERE, Span
+
+Behaviour = Literal["periodic", "event", "on_demand", "once"]
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """What fires an element: any of the inputs, or all of them; `inputs` None means every input.
+
+    Inputs are complete ids of input ports (`group.component.input`).
+    """
+
+    mode: Literal["any", "all"]
+    inputs: tuple[str, ...] | None = None
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class OutputTiming:
+    """When an output is published, if not at each activation."""
+
+    conditional: bool = False
+    max_gap: Quantity | None = None
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """A `timing` mapping. Durations are in ns, rates in Hz, both exact; None is not written, hence unknown.
+
+    `outputs` is keyed by the output's complete id, `calls` by the input's, in calls for each activation.
+    """
+
+    behaviour: Behaviour | None = None
+    period: Quantity | None = None
+    rate: Quantity | None = None
+    jitter: Quantity | None = None
+    wcet: Quantity | None = None
+    bcet: Quantity | None = None
+    trigger: Trigger | None = None
+    every: int | None = None
+    throttle: Quantity | None = None
+    outputs: Mapping[str, OutputTiming] = field(default_factory=dict)
+    calls: Mapping[str, Fraction] = field(default_factory=dict)
+    priority: int | None = None
+    core: int | None = None
+    response: Quantity | None = None
+    places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each key's value was written, by the key's name."""
+    at: Span = field(default=NOWHERE, compare=False, repr=False)

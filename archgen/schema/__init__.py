@@ -1,0 +1,1 @@
+"""Schema: what may stand where, in our own words; short forms are taken out here."""

@@ -1,0 +1,1 @@
+"""Syntax: files become trees with positions. YAML, and the interface definitions of ROS."""

@@ -1,0 +1,1 @@
+"""Transform: architecture in, architecture out."""

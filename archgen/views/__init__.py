@@ -1,0 +1,1 @@
+"""Views: the model and its analyses, as the four plain shapes that emitters draw."""
