@@ -11,10 +11,27 @@ from archgen.model.component import Connection
 from archgen.model.mapping import Type
 from archgen.model.node import Topic
 from archgen.views import words
+from archgen.views.functional import first_sentence
 from archgen.views.index import Index
 from archgen.views.shapes import Column, Inlines, Table, Text
 
 Rows = tuple[tuple[Inlines, ...], ...]
+
+
+def groups(view: Index) -> Table | None:
+    """List the groups with their owners and sizes."""
+    found = view.architecture
+    rows = tuple(
+        (
+            words.text(words.group_link(found, name)),
+            words.partner_link(found, found.groups[name].owner),
+            words.text(str(len(found.groups[name].components))),
+            words.maybe(first_sentence(found.groups[name].description)),
+        )
+        for name in view.groups()
+    )
+    columns = (Column("Group", 1.1), Column("Owner"), Column("Components", 0.6, "right"), Column("Purpose", 2.5))
+    return Table("table:groups", "Groups of components", columns, rows) if rows else None
 
 
 def connections(view: Index, shown: Iterable[Connection], anchor: str = "table:connections") -> Table | None:
