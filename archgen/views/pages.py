@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
@@ -24,7 +24,18 @@ def pages(view: Index, edition: Edition) -> tuple[Page, ...]:
     functional = [made.start(), *made.groups(), *made.chapters(), *made.spanning()]
     rest = list(pages_rest.pages(view, made.drawn))
     low = [*made.nodes(), *pages_rest.topics(view)] if edition.level == "implementation" else []
-    return tuple(functional + low + rest)
+    return _distinct(functional + low + rest)
+
+
+def _distinct(found: list[Page]) -> tuple[Page, ...]:
+    """Number the pages whose names differ only in what file systems do not tell apart."""
+    taken: dict[str, int] = {}
+    result = []
+    for page in found:
+        taken[page.path] = number = taken.get(page.path, 0) + 1
+        stem = page.path.removesuffix(".html")
+        result.append(page if number == 1 else replace(page, path=f"{stem}-{number}.html"))
+    return tuple(result)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +123,7 @@ class _Pages:
         for name, chapter in self.edition.texts.items():
             title, text = split_title(chapter)
             section = Section(f"chapter:{name}", title, (Markdown(text, chapter.folder, 0),))
-            path = f"chapters/{name.rpartition('.')[0]}.html"
+            path = f"chapters/{pages_rest.slug(name.rpartition('.')[0])}.html"
             yield Page(path, section.anchor, title, "chapters", section, (HOME,), "Chapter")
 
     def spanning(self) -> Iterator[Page]:

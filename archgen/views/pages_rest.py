@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 
 from archgen.model.architecture import Partner, Requirement
@@ -35,12 +36,15 @@ def pages(view: Index, drawn: Drawn) -> Iterator[Page]:
         yield _partner(view, partner, drawn)
 
 
-def _page(
-    folder: str, name: str, kind: str, title: str, crumb: tuple[str, str] | None, lead: str, *blocks: Block
-) -> Page:
-    section = Section(f"{kind}:{name}", title, blocks)
+def _page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
     crumbs = (_HOME, crumb) if crumb else (_HOME,)
-    return Page(f"{folder}/{name}.html", section.anchor, title, folder, section, crumbs, lead)
+    path = f"{folder}/{slug(section.anchor.partition(':')[2])}.html"
+    return Page(path, section.anchor, section.title, folder, section, crumbs, lead)
+
+
+def slug(name: str) -> str:
+    """Make a name that every file system takes: lower case, words joined by hyphens."""
+    return re.sub(r"[^a-z0-9._-]+", "-", name.lower()).strip("-.") or "-"
 
 
 def topics(view: Index) -> Iterator[Page]:
@@ -76,7 +80,7 @@ def _topic(view: Index, topic: Topic) -> Page:
     writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
     blocks += _ends(view, topic, topic.writers, writer) + _ends(view, topic, topic.readers, reader)
     crumb = ("Topics, services and actions", "page:topics")
-    return _page(f"{topic.flow}s", topic.name, "topic", topic.name, crumb, _FLOWS[topic.flow], *blocks)
+    return _page(Section(f"topic:{topic.name}", topic.name, tuple(blocks)), f"{topic.flow}s", crumb, _FLOWS[topic.flow])
 
 
 def _ends(view: Index, topic: Topic, ends: tuple[Endpoint, ...], what: str) -> list[Block]:
@@ -147,7 +151,8 @@ def _type(view: Index, mapped: Type) -> Page:
             Paragraph(words.text(Text("Read by", strong=True))),
             Bullets(tuple(words.port_link(found, found.inputs[name]) for name in readers)),
         ]
-    return _page("types", mapped.name, "type", mapped.name, ("Types", "page:types"), "Conceptual type", *blocks)
+    section = Section(f"type:{mapped.name}", mapped.name, tuple(blocks))
+    return _page(section, "types", ("Types", "page:types"), "Conceptual type")
 
 
 def _requirement(view: Index, requirement: Requirement) -> Page:
@@ -165,7 +170,8 @@ def _requirement(view: Index, requirement: Requirement) -> Page:
     else:
         blocks.append(Paragraph(words.text("No component serves this requirement yet."), "warning"))
     crumb = ("Requirements", "page:requirements")
-    return _page("requirements", requirement.id, "requirement", requirement.id, crumb, "Requirement", *blocks)
+    section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
+    return _page(section, "requirements", crumb, "Requirement")
 
 
 def _use_case(view: Index, name: str) -> Page:
@@ -176,7 +182,7 @@ def _use_case(view: Index, name: str) -> Page:
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []
     crumb = ("Requirements", "page:requirements")
-    return _page("use_cases", name, "use_case", name, crumb, "Use case", *blocks)
+    return _page(Section(f"use_case:{name}", name, tuple(blocks)), "use_cases", crumb, "Use case")
 
 
 def _host(view: Index, host: Host) -> Page:
@@ -204,7 +210,7 @@ def _host(view: Index, host: Host) -> Page:
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     blocks += [Markdown(host.description)] if host.description else []
     blocks += node_table(view, [node for node in view.nodes() if node.host == host.id])
-    return _page("hosts", host.id, "host", host.title, ("Hosts", "page:hosts"), "Host", *blocks)
+    return _page(Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts", "page:hosts"), "Host")
 
 
 def _container(view: Index, name: str) -> Page:
@@ -215,7 +221,8 @@ def _container(view: Index, name: str) -> Page:
     ]
     nodes = node_table(view, [node for node in view.nodes() if node.container == name])
     crumb = ("Hosts", "page:hosts")
-    return _page("containers", name, "container", container.title, crumb, "Container", Facts(tuple(facts)), *nodes)
+    section = Section(f"container:{name}", container.title, (Facts(tuple(facts)), *nodes))
+    return _page(section, "containers", crumb, "Container")
 
 
 def _partner(view: Index, partner: Partner, drawn: Drawn) -> Page:
@@ -231,4 +238,4 @@ def _partner(view: Index, partner: Partner, drawn: Drawn) -> Page:
     blocks += node_table(view, [node for node in view.nodes() if node.id in ids])
     if not blocks:
         blocks.append(Paragraph(words.text(Text("This partner owns nothing yet.", muted=True))))
-    return _page("partners", partner.id, "partner", partner.title, None, "Partner", *drawn(blocks))
+    return _page(Section(f"partner:{partner.id}", partner.title, drawn(blocks)), "partners", None, "Partner")

@@ -234,12 +234,14 @@ def links(view: Index) -> Table | None:
         for link in view.architecture.links.values()
     )
     columns = (Column("Link"), Column("Connects", 1.5), Column("Bandwidth"), Column("Latency"))
-    return Table("table:links", "Links between hosts", columns, rows) if rows else None
+    anchors = tuple(f"link:{name}" for name in view.architecture.links)
+    return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
 
 
 def chains(view: Index, shown: Iterable[Chain]) -> Table | None:
     """List the chains of effect with their deadlines."""
     found = view.architecture
+    listed = list(shown)
     rows = tuple(
         (
             words.text(Text(chain.title, ref=f"chain:{chain.id}")),
@@ -247,10 +249,11 @@ def chains(view: Index, shown: Iterable[Chain]) -> Table | None:
             words.maybe(str(chain.deadline) if chain.deadline else None),
             words.joined(words.requirement_link(found, name)[:1] for name in chain.requirements),
         )
-        for chain in shown
+        for chain in listed
     )
     columns = (Column("Chain"), Column("Through", 3), Column("Deadline", 0.7, "right"), Column("Requirements", 0.8))
-    return Table("table:chains", "Chains of effect and their deadlines", columns, rows) if rows else None
+    anchors = tuple(f"chain:{chain.id}" for chain in listed)
+    return Table("table:chains", "Chains of effect and their deadlines", columns, rows, anchors) if rows else None
 
 
 def waypoint(view: Index, kind: str, name: str) -> Inlines:
