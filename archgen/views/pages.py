@@ -28,7 +28,7 @@ def pages(view: Index, edition: Edition) -> tuple[Page, ...]:
 
 
 def _distinct(found: list[Page]) -> tuple[Page, ...]:
-    """Number the pages whose names differ only in what file systems do not tell apart."""
+    """Give numbers to pages whose names differ only in what file systems do not tell apart."""
     taken: dict[str, int] = {}
     result = []
     for page in found:
