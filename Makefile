@@ -1,0 +1,65 @@
+# What people type: demo, test, check, bench. Everything is set up in .venv; system packages come from apt-get where
+# the user may install them, and are named where not.
+PYTHON ?= python3
+BIN := .venv/bin
+TESTS ?= tests
+
+.PHONY: demo test check lint format bench golden pages clean judges
+.DEFAULT_GOAL := help
+
+.PHONY: help
+help:
+	@echo "make demo    set up, and make report, site, diagrams and packed file of example_ramcip"
+	@echo "make test    set up, and run all tests"
+	@echo "make check   ruff, mypy, lint-imports and all tests"
+	@echo "make bench   measure speed and scale"
+	@echo "make golden  renew the expected outputs of example_ramcip"
+	@echo "make pages   renew what is generated from the code: rule pages, interface data"
+
+demo: .make/run
+	$(BIN)/archgen build example_ramcip -o archgen-out/example_ramcip
+	@echo
+	@echo "Open archgen-out/example_ramcip/site/index.html and archgen-out/example_ramcip/report.docx"
+
+test: .make/test
+	$(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
+
+check: lint test
+
+lint: .make/test
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: .make/test
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: .make/test
+	$(BIN)/python benchmarks/run.py
+
+golden: .make/test
+	$(BIN)/python -m pytest tests/test_golden.py --update-golden
+
+pages: .make/test
+	$(BIN)/python tools/make_rule_pages.py
+	$(BIN)/python tools/make_ros_interfaces.py
+
+clean:
+	rm -rf .venv .make archgen-out dist tests/judges/node_modules
+
+# What archgen needs to run: a virtual environment, and the system libraries that draw pictures.
+.make/run: pyproject.toml tools/system_packages.sh
+	sh tools/system_packages.sh run
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	mkdir -p .make && touch $@
+
+# What the tests need beside: the judges (a browser, an office, the validators) and the tools of the check.
+.make/test: .make/run tests/judges/package-lock.json
+	sh tools/system_packages.sh test
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group check
+	npm ci --prefix tests/judges --no-audit --no-fund --loglevel=error
+	touch $@

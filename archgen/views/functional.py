@@ -1,0 +1,210 @@
+"""The high level in documents: what a group and a component are for, what goes in and what comes out."""
+
+from __future__ import annotations
+
+from archgen.model.component import Component, Group, Input, Output
+from archgen.views import words
+from archgen.views.index import Index
+from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+
+
+def group_blocks(view: Index, group: Group) -> tuple[Block, ...]:
+    """Say what a group is for, who owns it, and what it consists of."""
+    shown = view.components(group.id)
+    blocks: list[Block] = [Facts(tuple(_group_facts(view, group)))]
+    if group.description:
+        blocks.append(Markdown(group.description))
+    blocks.append(
+        Figure(
+            f"figure:groups/{group.id}",
+            f"groups/{group.id}",
+            f"{group.title}: components and neighbours",
+            f"The components of {group.title} with the flows between them and to neighbouring components.",
+        )
+    )
+    if shown:
+        blocks.append(component_table(view, f"table:components/{group.id}", f"Components of {group.title}", shown))
+    else:
+        blocks.append(Paragraph(words.text(Text("This group has no components yet.", muted=True))))
+    return tuple(blocks)
+
+
+def _group_facts(view: Index, group: Group) -> list[tuple[str, Inlines]]:
+    rows = [("Owner", words.partner_link(view.architecture, group.owner))]
+    rows.append(("Components", words.text(str(len(group.components)))))
+    if group.tags:
+        rows.append(("Tags", words.text(", ".join(group.tags))))
+    if group.urls:
+        rows.append(("Links", words.urls(group.urls.items())))
+    return rows
+
+
+def component_table(view: Index, anchor: str, caption: str, components: list[Component]) -> Table:
+    """List components with what they are for and what implements them."""
+    rows = tuple(
+        (
+            words.text(words.component_link(component)),
+            words.maybe(first_sentence(component.functionality)),
+            words.maybe(component.role),
+            words.joined((words.node_link(node),) for node in view.nodes_of.get(component.id, ())) or words.UNKNOWN,
+        )
+        for component in components
+    )
+    columns = (Column("Component", 1.1), Column("Purpose", 2.4), Column("Role", 0.6), Column("Nodes", 1.1))
+    return Table(anchor, caption, columns, rows)
+
+
+def first_sentence(markdown: str | None) -> str | None:
+    """Give the first sentence of a text, its marks taken out."""
+    if not markdown:
+        return None
+    line = " ".join(markdown.split("\n\n")[0].split())
+    end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
+    return line[: end + 1].replace("**", "").replace("`", "")
+
+
+def component_blocks(view: Index, component: Component) -> tuple[Block, ...]:
+    """Say what a component does, must do and does it how well, and what it takes and gives."""
+    blocks: list[Block] = [
+        Facts(tuple(_component_facts(view, component))),
+        Markdown(component.functionality)
+        if component.functionality
+        else Paragraph(words.text(Text("What it does is not described yet.", muted=True))),
+    ]
+    if component.description:
+        blocks.append(Markdown(component.description))
+    blocks.append(
+        Figure(
+            f"figure:components/{component.id}",
+            f"components/{component.id}",
+            f"{component.title}: inputs and outputs",
+            f"{component.title} with its inputs at the left and its outputs at the right.",
+        )
+    )
+    blocks += _requirements(view, component)
+    blocks += _performance(component)
+    blocks += _inputs(view, component)
+    blocks += _outputs(view, component)
+    return tuple(blocks)
+
+
+def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlines]]:
+    architecture = view.architecture
+    rows = [
+        ("Group", words.text(words.group_link(architecture, component.group))),
+        ("Owner", words.partner_link(architecture, component.owner)),
+        ("Role", words.maybe(component.role)),
+        *words.timing_rows(component.timing),
+    ]
+    nodes = view.nodes_of.get(component.id, ())
+    rows.append(("Implemented by", words.joined((words.node_link(node),) for node in nodes) or words.UNKNOWN))
+    if component.tags:
+        rows.append(("Tags", words.text(", ".join(component.tags))))
+    if component.urls:
+        rows.append(("Links", words.urls(component.urls.items())))
+    return rows
+
+
+def _requirements(view: Index, component: Component) -> list[Block]:
+    if not component.requirements:
+        said = "It serves no requirement." if component.requirements_known else "Its requirements are not known yet."
+        return [Paragraph(words.text(Text("Requirements. ", strong=True), Text(said, muted=True)))]
+    items = tuple(
+        words.requirement_link(view.architecture, use.text) if use.is_id else words.text(use.text)
+        for use in component.requirements
+    )
+    return [Paragraph(words.text(Text("Requirements", strong=True))), Bullets(items)]
+
+
+def _performance(component: Component) -> list[Block]:
+    if not component.performance:
+        return [Paragraph(words.text(Text("Performance. ", strong=True), Text("Not known yet.", muted=True)))]
+    rows = tuple(
+        (
+            words.text(indicator.title),
+            words.maybe(indicator.accuracy),
+            words.maybe(str(indicator.execution_time) if indicator.execution_time else None),
+        )
+        for indicator in component.performance
+    )
+    columns = (Column("Indicator"), Column("Accuracy", 1.5), Column("Execution time"))
+    return [Table(f"table:performance/{component.id}", f"{component.title}: performance", columns, rows)]
+
+
+def _inputs(view: Index, component: Component) -> list[Block]:
+    if not component.inputs:
+        said = "It has no inputs." if component.inputs_known else "Its inputs are not known yet."
+        return [Paragraph(words.text(Text("Inputs. ", strong=True), Text(said, muted=True)))]
+    rows = tuple(
+        (_name(port), _from(view, port), _input_types(view, port), _medium(port), _remarks(port))
+        for port in component.inputs.values()
+    )
+    columns = (Column("Input"), Column("From", 1.9), Column("Type", 1.2), Column("Medium", 0.8), Column("Remarks", 1.3))
+    return [Table(f"table:inputs/{component.id}", f"{component.title}: inputs", columns, rows)]
+
+
+def _outputs(view: Index, component: Component) -> list[Block]:
+    if not component.outputs:
+        said = "It has no outputs." if component.outputs_known else "Its outputs are not known yet."
+        return [Paragraph(words.text(Text("Outputs. ", strong=True), Text(said, muted=True)))]
+    rows = tuple(
+        (_name(port), words.type_link(port.type), _read_by(view, port), _medium(port), _remarks(port))
+        for port in component.outputs.values()
+    )
+    columns = (Column("Output"), Column("Type", 1.2), Column("To", 1.9), Column("Medium", 0.8), Column("Remarks", 1.3))
+    return [Table(f"table:outputs/{component.id}", f"{component.title}: outputs", columns, rows)]
+
+
+def _name(port: Input | Output) -> Inlines:
+    return words.text(Text(port.name, code=True))
+
+
+def _from(view: Index, port: Input) -> Inlines:
+    sources = [
+        (*words.source_words(view.architecture, connection), *_other_owner(view, port.component, connection.outputs))
+        for connection in port.connections
+    ]
+    if port.external:
+        sources.append(words.text(Text("outside: ", muted=True), port.external))
+    return words.lines(sources) or words.UNKNOWN
+
+
+def _other_owner(view: Index, component: str, outputs: tuple[str, ...]) -> Inlines:
+    """Name the partners on the other side, where they are others."""
+    found = view.architecture
+    mine = found.components[component].owner
+    owners = dict.fromkeys(found.components[found.outputs[o].component].owner for o in outputs)
+    others = [owner for owner in owners if owner and owner != mine]
+    return (Text(" ("), *words.joined(words.partner_link(found, o) for o in others), Text(")")) if others else ()
+
+
+def _input_types(view: Index, port: Input) -> Inlines:
+    outputs = (view.architecture.outputs[o] for connection in port.connections for o in connection.outputs)
+    types = dict.fromkeys([port.type, *(output.type for output in outputs)] if port.type else (o.type for o in outputs))
+    return words.joined(words.type_link(name) for name in types if name) or words.UNKNOWN
+
+
+def _read_by(view: Index, port: Output) -> Inlines:
+    found = view.architecture
+    readers = [found.inputs[connection.input] for connection in view.readers.get(port.id, ())]
+    cells = [(*words.port_link(found, reader), *_reader_owner(view, port, reader)) for reader in readers]
+    if port.external:
+        cells.append(words.text(Text("outside: ", muted=True), port.external))
+    return words.lines(cells) or words.text(Text("nobody yet", muted=True))
+
+
+def _reader_owner(view: Index, port: Output, reader: Input) -> Inlines:
+    found = view.architecture
+    owner = found.components[reader.component].owner
+    if owner is None or owner == found.components[port.component].owner:
+        return ()
+    return (Text(" ("), *words.partner_link(found, owner), Text(")"))
+
+
+def _medium(port: Input | Output) -> Inlines:
+    return words.text("physical" if port.physical else "digital")
+
+
+def _remarks(port: Input | Output) -> Inlines:
+    remarks = ["optional"] if isinstance(port, Input) and port.optional else []
+    return words.text("; ".join([*remarks, port.description] if port.description else remarks))

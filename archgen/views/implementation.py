@@ -1,0 +1,117 @@
+"""The low level in documents: a node, what it exposes, how it is configured and where it runs."""
+
+from __future__ import annotations
+
+from archgen.model.node import Endpoint, Node
+from archgen.views import words
+from archgen.views.index import Index
+from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+
+_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
+_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
+
+
+def implementation_blocks(view: Index, component: str) -> tuple[Block, ...]:
+    """Draw a component's nodes with their neighbours."""
+    title = view.architecture.components[component].title
+    return (
+        Figure(
+            f"figure:implementation/{component}",
+            f"implementation/{component}",
+            f"{title}: implementation",
+            f"The nodes that implement {title} with their topics, services and actions.",
+        ),
+    )
+
+
+def node_blocks(view: Index, node: Node) -> tuple[Block, ...]:
+    """Say what a node is, what it exposes, its parameters and its timing."""
+    blocks: list[Block] = []
+    if not node.written:
+        blocks.append(
+            Paragraph(words.text("Nobody has decided yet which node implements this: a planned one stands in."), "note")
+        )
+    blocks.append(Facts(tuple(_facts(view, node))))
+    if node.description:
+        blocks.append(Markdown(node.description))
+    endpoints = view.endpoints_of.get(node.id, ())
+    if endpoints:
+        blocks.append(_endpoint_table(node, endpoints))
+    else:
+        blocks.append(Paragraph(words.text(Text("It uses no topic, service or action.", muted=True))))
+    if node.parameters:
+        blocks.append(_parameter_table(node))
+    return tuple(blocks)
+
+
+def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
+    found = view.architecture
+    rows = [
+        ("Implements", words.joined((words.component_link(found.components[c]),) for c in node.implements)),
+        ("ROS name", words.text(Text(node.full_name, code=True))),
+        ("Kind", words.text(", ".join(words.KINDS[kind] for kind in node.kinds))),
+        ("Status", words.maybe(node.status)),
+        ("Package", words.maybe(node.package)),
+        ("Executable", words.text(Text(node.executable, code=True)) if node.executable else ()),
+        ("Plugin", words.text(Text(node.plugin, code=True)) if node.plugin else ()),
+        ("Owner", words.partner_link(found, node.owner) if node.owner else ()),
+        ("Container", _linked(node.container, "container")),
+        ("Host", _linked(node.host, "host") or words.UNKNOWN),
+        ("Parameter files", words.joined((Text(name, code=True),) for name in node.parameter_files)),
+        ("Tags", words.text(", ".join(node.tags)) if node.tags else ()),
+        ("Links", words.urls(node.urls.items())),
+    ]
+    for component, timing in node.timing.items():
+        name = f" ({component.rsplit('.', 1)[-1]})" if len(node.timing) > 1 and component else ""
+        rows += [(f"{label}{name}", value) for label, value in words.timing_rows(timing)]
+    return [(name, value) for name, value in rows if value]
+
+
+def _linked(name: str | None, kind: str) -> Inlines:
+    return words.text(Text(name, ref=f"{kind}:{name}")) if name else ()
+
+
+def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
+    rows = tuple(
+        (
+            words.text(_LABELS[endpoint.use]),
+            words.text(words.topic_link(endpoint.name), *_internal(endpoint)),
+            words.text(Text(endpoint.message, code=True)) if endpoint.message else words.UNKNOWN,
+            words.text(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            words.qos_cell(endpoint.qos) if endpoint.flow == "topic" else (),
+        )
+        for endpoint in sorted(endpoints, key=lambda e: _ORDER[e.use])
+    )
+    columns = (Column("Use", 0.7), Column("Name", 1.9), Column("Message", 2.0), Column("Port", 0.8), Column("QoS", 1.3))
+    return Table(f"table:endpoints/{node.id}", f"{node.id}: topics, services and actions", columns, rows)
+
+
+def _internal(endpoint: Endpoint) -> Inlines:
+    return (Text(" internal", muted=True),) if endpoint.internal else ()
+
+
+def _parameter_table(node: Node) -> Table:
+    rows = tuple((words.text(Text(name, code=True)), words.text(Text(value, code=True))) for name, value in _flat(node))
+    columns = (Column("Parameter"), Column("Value"))
+    return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows)
+
+
+def _flat(node: Node) -> list[tuple[str, str]]:
+    """Write nested parameters with dotted names, as ROS 2 shows them."""
+    rows: list[tuple[str, str]] = []
+    rest: list[tuple[str, object]] = list(node.parameters.items())[::-1]
+    while rest:
+        name, value = rest.pop()
+        if isinstance(value, dict) and value:
+            rest += [(f"{name}.{key}", item) for key, item in reversed(list(value.items()))]
+        else:
+            rows.append((name, _value(value)))
+    return rows
+
+
+def _value(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    return "" if value is None else str(value)

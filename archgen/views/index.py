@@ -1,0 +1,101 @@
+"""Who belongs to whom: the look-ups that every view needs, made once for an architecture and its findings."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from archgen.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Output
+from archgen.model.node import Endpoint, Node
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What a document shows: complete ids of components and nodes, or None for everything."""
+
+    components: frozenset[str] | None = None
+    nodes: frozenset[str] | None = None
+    words: str = ""
+    """The selector as the user wrote it."""
+
+    def component(self, component: str) -> bool:
+        """Say whether a component is shown."""
+        return self.components is None or component in self.components
+
+    def node(self, node: str) -> bool:
+        """Say whether a node is shown."""
+        return self.nodes is None or node in self.nodes
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """An architecture with its look-ups. All keys are complete ids."""
+
+    architecture: Architecture
+    findings: tuple[Diagnostic, ...] = ()
+    scope: Scope = field(default_factory=Scope)
+    readers: Mapping[str, tuple[Connection, ...]] = field(default_factory=dict)
+    """Connections that take an output, by the output's id."""
+    nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
+    """Nodes that implement a component."""
+    endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
+    """Endpoints of a node."""
+    findings_of: Mapping[str, tuple[Diagnostic, ...]] = field(default_factory=dict)
+    """Findings by the element that they concern, ports counted at their component."""
+    components_for: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
+    """Components that serve a requirement, by the requirement's id."""
+    outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
+    hues: Mapping[str, int] = field(default_factory=dict)
+    """Each group's place among the groups: its colour."""
+
+    def groups(self) -> list[str]:
+        """Name the groups of which something is shown, in order."""
+        groups = self.architecture.groups.values()
+        if self.scope.components is None:
+            return [group.id for group in groups]
+        return [g.id for g in groups if any(c.id in self.scope.components for c in g.components.values())]
+
+    def components(self, group: str) -> list[Component]:
+        """Give the components of a group that are shown, in order."""
+        found = self.architecture.groups[group].components.values()
+        return [component for component in found if self.scope.component(component.id)]
+
+    def nodes(self) -> list[Node]:
+        """Give the nodes that are shown, in order."""
+        return [node for node in self.architecture.nodes.values() if self.scope.node(node.id)]
+
+
+def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope: Scope | None = None) -> Index:
+    """Make the look-ups, each in one pass."""
+    found = tuple(findings)
+    components, nodes = architecture.components.values(), architecture.nodes.values()
+    return Index(
+        architecture,
+        found,
+        scope or Scope(),
+        readers=_grouped((o, connection) for connection in architecture.connections for o in connection.outputs),
+        nodes_of=_grouped((component, node) for node in nodes for component in node.implements),
+        endpoints_of=_grouped((endpoint.node, endpoint) for endpoint in architecture.endpoints),
+        findings_of=_grouped((_owner(architecture, f.element), f) for f in found if f.element),
+        components_for=_grouped((use.text, c) for c in components for use in c.requirements if use.is_id),
+        outputs_of_type=_grouped((o.type, o) for o in architecture.outputs.values() if o.type),
+        hues={group: place for place, group in enumerate(architecture.groups)},
+    )
+
+
+def _owner(architecture: Architecture, element: str) -> str:
+    port = architecture.inputs.get(element) or architecture.outputs.get(element)
+    return port.component if port else element
+
+
+def _grouped(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
+    lists: defaultdict[str, list[T]] = defaultdict(list)
+    for key, item in pairs:
+        lists[key].append(item)
+    return {key: tuple(items) for key, items in lists.items()}

@@ -1,0 +1,154 @@
+"""The site's pages: one for each element, and those that span the architecture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group
+from archgen.model.node import Node
+from archgen.views import pages_rest, tables, words
+from archgen.views.functional import component_blocks, group_blocks
+from archgen.views.implementation import implementation_blocks, node_blocks
+from archgen.views.index import Index
+from archgen.views.report import Edition, split_title, title_facts
+from archgen.views.shapes import Block, Facts, Figure, Markdown, Page, Paragraph, Section, Text
+
+HOME = ("Overview", "page:index")
+
+
+def pages(view: Index, edition: Edition) -> tuple[Page, ...]:
+    """Make every page of the site."""
+    made = _Pages(view, edition)
+    functional = [made.start(), *made.groups(), *made.chapters(), *made.spanning()]
+    rest = list(pages_rest.pages(view, made.drawn))
+    low = [*made.nodes(), *pages_rest.topics(view)] if edition.level == "implementation" else []
+    return _distinct(functional + low + rest)
+
+
+def _distinct(found: list[Page]) -> tuple[Page, ...]:
+    """Give numbers to pages whose names differ only in what file systems do not tell apart."""
+    taken: dict[str, int] = {}
+    result = []
+    for page in found:
+        taken[page.path] = number = taken.get(page.path, 0) + 1
+        stem = page.path.removesuffix(".html")
+        result.append(page if number == 1 else replace(page, path=f"{stem}-{number}.html"))
+    return tuple(result)
+
+
+@dataclass(frozen=True, slots=True)
+class _Pages:
+    view: Index
+    edition: Edition
+
+    @property
+    def found(self) -> Architecture:
+        """Give the architecture."""
+        return self.view.architecture
+
+    def drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
+        """Leave out figures that are not among the graphs of this site."""
+        return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.graphs)
+
+    def figures(self, *names: str) -> Iterator[Figure]:
+        """Give the figures that were drawn and show something."""
+        for name in names:
+            graph = self.edition.graphs.get(name)
+            if graph and graph.boxes:
+                yield Figure(f"figure:{name}", name, graph.title, graph.alt)
+
+    def start(self) -> Page:
+        """Make the start page: what this is, the clickable overview, the groups."""
+        project = self.found.project
+        blocks: list[Block] = [Markdown(project.description)] if project.description else []
+        blocks.append(Facts(tuple(title_facts(self.view, self.edition))))
+        blocks += self.figures("overview", "components")
+        blocks += [table] if (table := tables.groups(self.view)) else []
+        section = Section("page:index", project.title, tuple(blocks))
+        return Page("index.html", "page:index", project.title, "overview", section, lead="Software architecture")
+
+    def groups(self) -> Iterator[Page]:
+        """Make a page for each group and each of its components."""
+        for name in self.view.groups():
+            group = self.found.groups[name]
+            yield self._group(group)
+            for component in self.view.components(name):
+                yield self._component(group, component)
+
+    def _group(self, group: Group) -> Page:
+        section = Section(f"group:{group.id}", group.title, self.drawn(group_blocks(self.view, group)))
+        lead = self._owned(f"Group of {words.plural(len(group.components), 'component')}", group.owner)
+        return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME,), lead)
+
+    def _owned(self, words_: str, owner: str | None) -> str:
+        partner = self.found.partners.get(owner) if owner else None
+        return f"{words_} · {partner.title}" if partner else words_
+
+    def _component(self, group: Group, component: Component) -> Page:
+        sections = []
+        if self.edition.level == "implementation":
+            blocks = self.drawn(implementation_blocks(self.view, component.id))
+            nodes = list(self.view.nodes_of.get(component.id, ()))
+            table = pages_rest.node_table(self.view, nodes, component)
+            sections = [Section(f"implementation:{component.id}", "Implementation", (*blocks, *table))]
+        sections += self._findings(component.id)
+        blocks = self.drawn(component_blocks(self.view, component))
+        section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
+        crumbs = (HOME, (group.title, f"group:{group.id}"))
+        lead = self._owned(f"Component{f' · {component.role}' if component.role else ''}", component.owner)
+        path = f"components/{component.id}.html"
+        return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
+
+    def _findings(self, element: str) -> list[Section]:
+        found = self.view.findings_of.get(element, ())
+        table = tables.open_points(found, f"table:findings/{element}")
+        return [Section(f"findings:{element}", "Open points", (table,))] if table else []
+
+    def nodes(self) -> Iterator[Page]:
+        """Make a page for each node."""
+        for node in self.view.nodes():
+            yield self._node(node)
+
+    def _node(self, node: Node) -> Page:
+        section = Section(f"node:{node.id}", node.id, node_blocks(self.view, node), tuple(self._findings(node.id)))
+        kinds = ", ".join(words.KINDS[kind] for kind in node.kinds)
+        lead = self._owned(f"{kinds[0].upper()}{kinds[1:]}{f' · {node.status}' if node.status else ''}", node.owner)
+        crumbs = (HOME, ("Nodes", "page:nodes"))
+        return Page(f"nodes/{node.id}.html", section.anchor, node.id, "nodes", section, crumbs, lead)
+
+    def chapters(self) -> Iterator[Page]:
+        """Make a page for each chapter that the project wrote."""
+        for name, chapter in self.edition.texts.items():
+            title, text = split_title(chapter)
+            section = Section(f"chapter:{name}", title, (Markdown(text, chapter.folder, 0),))
+            path = f"chapters/{pages_rest.slug(name.rpartition('.')[0])}.html"
+            yield Page(path, section.anchor, title, "chapters", section, (HOME,), "Chapter")
+
+    def spanning(self) -> Iterator[Page]:
+        """Make the pages that span the architecture."""
+        shown = tables.shown_connections(self.view)
+        yield self._spanning("connections", "Connections", tables.connections(self.view, shown))
+        yield self._spanning("types", "Types", tables.types(self.view))
+        trace = tables.requirements(self.view, tables.shown_requirements(self.view))
+        yield self._spanning("requirements", "Requirements", trace, tables.free_requirements(self.view))
+        said = Paragraph(words.text(f"archgen finds {tables.severities(self.view.findings)} in this architecture."))
+        yield self._spanning("findings", "Open points", said, tables.open_points(self.view.findings))
+        yield self._spanning("progress", "Progress", *self.edition.statistics)
+        yield self._spanning("chains", "Chains of effect", tables.chains(self.view, self.found.chains.values()))
+        views = [f"views/{name}" for name in self.found.views]
+        yield self._spanning("views", "Views", *self.figures(*views))
+        if self.edition.level == "implementation":
+            yield self._spanning(
+                "nodes", "Nodes", *self.figures("ros"), *pages_rest.node_table(self.view, self.view.nodes())
+            )
+            yield self._spanning("topics", "Topics, services and actions", *pages_rest.topic_tables(self.view))
+            hosts = (tables.hosts(self.view), tables.links(self.view))
+            yield self._spanning("hosts", "Hosts", *self.figures("hosts"), *hosts)
+
+    def _spanning(self, name: str, title: str, *blocks: Block | None) -> Page:
+        present = tuple(block for block in blocks if block is not None)
+        nothing = Paragraph(words.text(Text("There is nothing here yet.", muted=True)))
+        section = Section(f"page:{name}", title, present or (nothing,))
+        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME,))

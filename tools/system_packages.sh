@@ -1,0 +1,41 @@
+#!/bin/sh
+# Install what archgen (run) or its tests (test) need of the system. Does nothing where it is there already; where it
+# may not install, it says what to install and, for the tests, stops.
+set -eu
+what=${1:-run}
+missing=""
+need_library() { ldconfig -p 2>/dev/null | grep -q "$1" || missing="$missing $2"; }
+need_command() { command -v "$1" >/dev/null 2>&1 || missing="$missing $2"; }
+
+if command -v ldconfig >/dev/null 2>&1; then
+    need_library libgobject-2.0.so.0 libglib2.0-0
+    need_library libX11.so.6 libx11-6
+    need_library libXext.so.6 libxext6
+    need_library libXrender.so.1 libxrender1
+    need_library libexpat.so.1 libexpat1
+fi
+${PYTHON:-python3} -c "import ensurepip, venv" 2>/dev/null || missing="$missing python3-venv"
+need_command git git
+if [ "$what" = test ]; then
+    need_command chromium chromium
+    need_command soffice libreoffice-writer-nogui
+    need_command pdftoppm poppler-utils
+    need_command java default-jre-headless
+    need_command npm npm
+    /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"
+fi
+[ -n "$missing" ] || exit 0
+if command -v apt-get >/dev/null 2>&1 && [ "$(id -u)" = 0 ]; then
+    sudo=""
+elif command -v apt-get >/dev/null 2>&1 && command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+    sudo=sudo
+else
+    echo "archgen: please install these packages (Debian's names):$missing" >&2
+    # Without the drawing libraries archgen still makes everything but the pictures; the tests need them all.
+    [ "$what" = run ] && exit 0
+    exit 1
+fi
+echo "installing$missing"
+$sudo apt-get update -qq
+# shellcheck disable=SC2086 # a list of packages
+DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends $missing >/dev/null
