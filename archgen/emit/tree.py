@@ -1,0 +1,215 @@
+"""The set of files that an output consists of, and how it gets onto the disk: whole, or not at all.
+
+A folder that archgen writes holds the manifest `.archgen-files` (digest and name of each file). What is named there
+and still has its digest is archgen's own: it may be replaced, and is removed when it is no longer written. Anything
+else belongs to somebody: archgen says so and stops.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from types import MappingProxyType
+
+from archgen.emit.names import is_safe
+
+MANIFEST = ".archgen-files"
+_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
+_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
+"""What file managers leave behind; nobody's work."""
+
+
+class OutputError(Exception):
+    """An output cannot be written. `message` says why, `help` what to do; neither needs a traceback."""
+
+    def __init__(self, message: str, help: str | None = None) -> None:  # noqa: A002 - as in a diagnostic
+        super().__init__(message)
+        self.message = message
+        self.help = help
+
+
+@dataclass(frozen=True, slots=True)
+class FileTree:
+    """Files to write, by their path relative to the output folder (`/` between parts)."""
+
+    files: Mapping[str, bytes]
+
+    def below(self, folder: str) -> FileTree:
+        """Give the same files in a folder of their own."""
+        return tree((f"{folder}/{path}", data) for path, data in self.files.items())
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a write changed: files by their path."""
+
+    written: tuple[str, ...]
+    unchanged: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+def tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
+    """Make a tree; paths are checked (names.safe_paths makes good ones), and come out sorted."""
+    found: dict[str, bytes] = {}
+    folded: set[str] = set()
+    for path, data in files:
+        if not is_safe(path) or path == MANIFEST:
+            msg = f"{path!r} is no safe name for an output file"
+            raise ValueError(msg)
+        if path.casefold() in folded:
+            msg = f"two output files are called {path!r}"
+            raise ValueError(msg)
+        folded.add(path.casefold())
+        found[path] = data
+    return FileTree(MappingProxyType(dict(sorted(found.items()))))
+
+
+def write(files: FileTree, folder: Path) -> Written:
+    """Write a tree into its folder. Files that are as they should be are not touched.
+
+    Raises OutputError, before anything was changed, where the folder holds what archgen did not write.
+    """
+    with _named_errors(folder):
+        folder = folder.resolve()
+        if folder.exists() and not folder.is_dir():
+            msg = f"{folder} is a file, not a folder"
+            raise OutputError(msg, "give another folder with `-o`")
+        old = _read_manifest(folder)
+        own = _own(folder, old)
+        new = {path: hashlib.sha256(data).hexdigest() for path, data in files.files.items()}
+        changed = {path: data for path, data in files.files.items() if own.get(path) != new[path]}
+        stale = tuple(path for path in own if path not in new)
+        if changed or stale or old != {(digest, path) for path, digest in new.items()}:
+            _replace(folder, changed, stale, old, new)
+        return Written(tuple(changed), tuple(path for path in new if path not in changed), stale)
+
+
+def write_file(path: Path, data: bytes) -> None:
+    """Write one file: it is there whole or as it was. A link in its place is replaced, not followed."""
+    with _named_errors(path):
+        if path.exists() and not path.is_file():
+            msg = f"{path} is not a regular file"
+            raise OutputError(msg, "give the name of a file with `-o`")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        staged = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+        try:
+            (staged / path.name).write_bytes(data)
+            os.replace(staged / path.name, path)  # noqa: PTH105 - says what it does on every system
+        finally:
+            shutil.rmtree(staged, ignore_errors=True)
+
+
+def _replace(
+    folder: Path, changed: Mapping[str, bytes], stale: Iterable[str], old: set[tuple[str, str]], new: Mapping[str, str]
+) -> None:
+    """Write what changed beside the folder, then move it in.
+
+    While files are moved the manifest names the old and the new digests, so a run that was cut off is no obstacle.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    staged = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    final = {(digest, path) for path, digest in new.items()}
+    try:
+        for path, data in changed.items():
+            _write(staged / path, data)
+        _write(staged / MANIFEST, _manifest(final | old))
+        folder.mkdir(exist_ok=True)
+        os.replace(staged / MANIFEST, folder / MANIFEST)  # noqa: PTH105
+        for path in stale:
+            _remove(folder, path)
+        for path in changed:
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(staged / path, folder / path)  # noqa: PTH105
+        _write(staged / MANIFEST, _manifest(final))
+        os.replace(staged / MANIFEST, folder / MANIFEST)  # noqa: PTH105
+    finally:
+        shutil.rmtree(staged, ignore_errors=True)
+
+
+def _write(path: Path, data: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+
+
+def _remove(folder: Path, path: str) -> None:
+    """Remove a file of our own, and the folders that are empty without it."""
+    (folder / path).unlink(missing_ok=True)
+    for parent in (folder / path).parents:
+        if parent == folder or any(parent.iterdir()):
+            return
+        parent.rmdir()
+
+
+def _own(folder: Path, manifest: set[tuple[str, str]]) -> dict[str, str]:
+    """Give archgen's own files in the folder with their digests, or raise where there are others."""
+    own: dict[str, str] = {}
+    foreign = list(islice(_sort_out(folder, manifest, own), 4))
+    if not foreign:
+        return own
+    names = ", ".join(f"`{name}`" for name in foreign[:3]) + (" and others" if len(foreign) > 3 else "")  # noqa: PLR2004
+    named = {path for _, path in manifest}
+    if all(name in named for name in foreign):
+        msg = f"{folder} holds files that were changed after archgen wrote them: {names}"
+        raise OutputError(msg, "move your changes away and remove these files, or give another folder with `-o`")
+    msg = f"{folder} holds files that archgen did not write: {names}"
+    raise OutputError(msg, "nothing was changed; give an empty or new folder with `-o`, or move these files away")
+
+
+def _sort_out(folder: Path, manifest: set[tuple[str, str]], own: dict[str, str]) -> Iterator[str]:
+    """Yield what is not ours, in order; put what is into `own`. Links are never followed."""
+    named = {path for _, path in manifest}
+    for path in _walk(folder, ""):
+        full = folder / path
+        if path in named and stat.S_ISREG(full.lstat().st_mode):
+            digest = hashlib.sha256(full.read_bytes()).hexdigest()
+            if (digest, path) in manifest:
+                own[path] = digest
+                continue
+        if path != MANIFEST and full.name not in _DEBRIS:
+            yield path
+
+
+def _walk(folder: Path, prefix: str) -> Iterator[str]:
+    """Yield what is not a folder, everywhere below, as relative paths in order."""
+    if not folder.is_dir():
+        return
+    with os.scandir(folder) as entries:
+        found = sorted(entries, key=lambda entry: entry.name)
+    for entry in found:
+        if entry.is_dir(follow_symlinks=False):
+            yield from _walk(folder / entry.name, f"{prefix}{entry.name}/")
+        else:
+            yield prefix + entry.name
+
+
+def _read_manifest(folder: Path) -> set[tuple[str, str]]:
+    """Read (digest, path) pairs; lines that are none are nothing: what they would claim is then foreign."""
+    place = folder / MANIFEST
+    if place.is_symlink() or not place.is_file():
+        return set()
+    lines = place.read_text("utf-8", "replace").splitlines()
+    pairs = (line.partition("  ") for line in lines if not line.startswith("#"))
+    return {(digest, path) for digest, _, path in pairs if path and is_safe(path)}
+
+
+def _manifest(pairs: Iterable[tuple[str, str]]) -> bytes:
+    lines = (f"{digest}  {path}" for digest, path in sorted(pairs, key=lambda pair: (pair[1], pair[0])))
+    return "\n".join((_HEADER, *lines, "")).encode()
+
+
+@contextlib.contextmanager
+def _named_errors(path: Path) -> Iterator[None]:
+    """Say in words what the operating system refused."""
+    try:
+        yield
+    except OSError as error:
+        msg = f"cannot write {path}: {error.strerror or error}"
+        raise OutputError(msg) from error
