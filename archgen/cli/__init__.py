@@ -1,1 +1,75 @@
 """The command line: one file for each verb. Parse the options, call the pipeline, print."""
+
+from __future__ import annotations
+
+import importlib
+
+import click
+
+VERBS = {
+    "check": "Find mistakes in the architecture.",
+    "build": "Make everything: report, site, diagrams, packed file.",
+    "report": "Write the Word report.",
+    "site": "Write the static web site.",
+    "diagram": "Draw the diagrams.",
+    "pack": "Write one validated YAML file that holds the whole project.",
+    "stats": "Show size and progress.",
+    "show": "Show an element: ports, readers, nodes, place in the files.",
+    "list": "List elements or connections, as text, CSV or JSON.",
+    "explain": "Explain a rule: why it is there, a bad and a good example.",
+    "init": "Start a project.",
+    "completion": "Print the set-up of shell completion.",
+}
+"""Every verb with its line in the help; each is a module of this package with a command of the same name."""
+
+
+class Verbs(click.Group):
+    """A group that imports a verb only when it is called, so that `--help` is immediate."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        """Name the verbs in the order of their use."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002 - the same
+        """Import one verb."""
+        if cmd_name not in VERBS:
+            return None
+        module = importlib.import_module(f"archgen.cli.{cmd_name}_")
+        command: click.Command = module.command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Guess what a mistyped verb meant."""
+        if args and args[0] not in VERBS and not args[0].startswith("-"):
+            from archgen.suggest import did_you_mean
+
+            guess = did_you_mean(args[0], VERBS)
+            ctx.fail(f"there is no verb '{args[0]}'" + (f"; {guess}" if guess else ""))
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - the same
+        """List the verbs without importing them."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+
+def _version(ctx: click.Context, _parameter: click.Parameter, asked: bool) -> None:  # noqa: FBT001 - click's signature
+    if asked and not ctx.resilient_parsing:
+        from archgen.cli.version import version
+
+        click.echo(version())
+        ctx.exit()
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.option(
+    "--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the versions in use."
+)
+def main() -> None:
+    """Design a robot's software architecture together, in git.
+
+    Partners write YAML, a file for each functional group; archgen checks it and makes the report, the site, the
+    diagrams and one packed file. Start with `archgen init`, then `archgen check`.
+    """

@@ -116,7 +116,6 @@ def types(view: Index) -> Table | None:
 
 def type_remarks(mapped: Type) -> str:
     """Say what else is known of a type's mapping, in one line."""
-    origin = {"shipped": "archgen's mapper", "message": "is a message", "project": ""}[mapped.origin]
     inside = [
         f"{what}: {name}"
         for what, name in (("request", mapped.request), ("response", mapped.response), ("feedback", mapped.feedback))
@@ -124,7 +123,7 @@ def type_remarks(mapped: Type) -> str:
     ]
     planned = "message is planned" if mapped.status == "planned" else ""
     comment = " ".join((mapped.comment or "").split())
-    return "; ".join(part for part in (comment, planned, *inside, origin if mapped.message else "") if part)
+    return "; ".join(part for part in (comment, planned, *inside) if part)
 
 
 def requirements(view: Index, shown: Iterable[Requirement]) -> Table | None:

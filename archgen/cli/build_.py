@@ -1,0 +1,52 @@
+"""`archgen build`: make everything."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from archgen.cli import options, run
+
+
+@click.command("build")
+@options.project
+@options.output("The folder", "")
+@click.option(
+    "--backend",
+    metavar="NAME",
+    multiple=True,
+    help="Make this backend's output too (`wiki`, or one in the project's backends/); may be given several times.",
+)
+@click.option(
+    "--template",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A .docx or .dotx for the report.",
+)
+@options.select
+@options.level
+@options.revision
+@options.keep_going
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    output: Path | None,
+    backend: tuple[str, ...],
+    template: Path | None,
+    select: str | None,
+    level: str | None,
+    revision: str | None,
+    keep_going: bool,
+) -> None:
+    """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
+    from archgen import pipeline
+
+    checked = run.ready(project, keep_going=keep_going)
+    ask = pipeline.Ask(run.selected(checked, select), select or "", level, revision, run.progress())
+    target = output or checked.out
+    with run.phrased():
+        for path in pipeline.build(checked, ask, target, template, backend):
+            run.wrote(path)
+    counts = run.counted(checked.findings)
+    click.echo(f"archgen check tells more: {counts}" if counts else "no findings")
+    run.finish(checked)

@@ -1,0 +1,47 @@
+"""`archgen report`: write the Word report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from archgen.cli import options, run
+
+
+@click.command("report")
+@options.project
+@options.output("The file", "report.docx")
+@click.option("--format", "form", type=click.Choice(["docx"]), default="docx", show_default=True)
+@click.option(
+    "--template",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.",
+)
+@options.select
+@options.level
+@options.revision
+@options.keep_going
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    output: Path | None,
+    form: str,
+    template: Path | None,
+    select: str | None,
+    level: str | None,
+    revision: str | None,
+    keep_going: bool,
+) -> None:
+    """Write the architecture of PROJECT as a Word document that can be handed in."""
+    from archgen import pipeline
+
+    del form  # one for now; the option is there so that scripts say what they want
+    checked = run.ready(project, keep_going=keep_going)
+    selection = run.selected(checked, select)
+    ask = pipeline.Ask(selection, select or "", level, revision, run.progress())
+    target = output or checked.out / "report.docx"
+    with run.phrased():
+        pipeline.report(checked, ask, target, template)
+    run.wrote(target)
+    run.finish(checked)

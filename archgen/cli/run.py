@@ -1,0 +1,123 @@
+"""What verbs have in common: check a project, print findings, say what was written, show progress, end with a status."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from archgen.diagnostic import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from archgen.model.selector import Selection
+    from archgen.pipeline import Checked
+
+
+def check(project: Path | None) -> Checked:
+    """Check a project; that there is none is wrong usage."""
+    from archgen import pipeline
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        return pipeline.check(project)
+    except ProjectNotFoundError as error:
+        raise click.UsageError(str(error)) from None
+
+
+def report(checked: Checked, *, least: Severity = Severity.WARNING) -> None:
+    """Print findings and their count to the error stream; notes only where they are asked for."""
+    from archgen.findings import text
+
+    order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
+    shown = [d for d in checked.findings if order.index(d.severity or least) >= order.index(least)]
+    if shown:
+        click.echo(text.render(shown, checked.sources, colour=text.wants_colour(sys.stderr)), err=True, nl=False)
+
+
+def status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
+    """Give the exit status for findings."""
+    bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
+    return 1 if any(finding.severity in bad for finding in findings) else 0
+
+
+def ready(project: Path | None, *, keep_going: bool) -> Checked:
+    """Check before something is written: errors are shown and, without --keep-going, stop here."""
+    checked = check(project)
+    report(checked, least=Severity.ERROR)
+    if status(checked.findings) and not keep_going:
+        click.echo("Nothing was written. With --keep-going outputs are made of what is sound.", err=True)
+        sys.exit(1)
+    return checked
+
+
+def selected(checked: Checked, words: str | None) -> Selection | None:
+    """Evaluate a selector from the command line; what names nothing is wrong usage."""
+    from archgen import pipeline
+    from archgen.findings.text import clean
+
+    if words is None:
+        return None
+    selection, problems = pipeline.select(checked, words)
+    for problem in problems:
+        click.echo(clean(f"{problem.severity}: {problem.message}"), err=True)
+    if any(problem.severity == Severity.ERROR for problem in problems):
+        msg = f"the selector '{clean(words)}' cannot be used"
+        raise click.UsageError(msg)
+    return selection
+
+
+def finish(checked: Checked, *, strict: bool = False) -> NoReturn:
+    """End with the status that the findings ask for."""
+    sys.exit(status(checked.findings, strict=strict))
+
+
+@contextmanager
+def phrased() -> Iterator[None]:
+    """Turn what can go wrong while writing into one line for the user."""
+    from archgen.pipeline import OutputError
+
+    try:
+        yield
+    except OutputError as error:
+        raise click.ClickException(str(error)) from None
+    except OSError as error:
+        raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
+
+
+def counted(findings: Sequence[Diagnostic]) -> str:
+    """Count findings in words; empty where there are none."""
+    from archgen.views.tables import severities
+
+    return severities(findings) if findings else ""
+
+
+def wrote(path: Path, detail: str = "") -> None:
+    """Say what was written, relative to the current folder where that is shorter."""
+    try:
+        shown = path.resolve().relative_to(Path.cwd())
+    except ValueError:
+        shown = path
+    click.echo(f"wrote {shown}{f' ({detail})' if detail else ''}")
+
+
+def progress() -> Callable[[str, int, int], None] | None:
+    """Give a function that shows progress on a terminal (what, done, of how many), or None in a pipe."""
+    if not sys.stderr.isatty():
+        return None
+    last = [0.0]
+
+    def show(what: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if done < total and now - last[0] < 0.1:  # noqa: PLR2004 - ten times a second is enough for the eye
+            return
+        last[0] = now
+        end = "\r\x1b[K" if done >= total else ""
+        sys.stderr.write(f"\r\x1b[K{what}: {done} of {total}{end}")
+        sys.stderr.flush()
+
+    return show

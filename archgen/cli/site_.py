@@ -1,0 +1,37 @@
+"""`archgen site`: write the static web site."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from archgen.cli import options, run
+
+
+@click.command("site")
+@options.project
+@options.output("The folder", "site")
+@options.select
+@options.level
+@options.revision
+@options.keep_going
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    output: Path | None,
+    select: str | None,
+    level: str | None,
+    revision: str | None,
+    keep_going: bool,
+) -> None:
+    """Write the architecture of PROJECT as a web site that opens from the disk."""
+    from archgen import pipeline
+
+    checked = run.ready(project, keep_going=keep_going)
+    ask = pipeline.Ask(run.selected(checked, select), select or "", level, revision, run.progress())
+    target = output or checked.out / "site"
+    with run.phrased():
+        pipeline.site(checked, ask, target)
+    run.wrote(target / "index.html")
+    run.finish(checked)

@@ -1,0 +1,29 @@
+"""What `archgen --version` says: archgen and the libraries that it stands on."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+
+from archgen import __version__
+
+_LIBRARIES = ("click", "jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "python-docx", "pyyaml")
+
+
+def version() -> str:
+    """List versions, one a line; say where a fast part is missing."""
+    lines = [f"archgen {__version__}", f"Python {platform.python_version()}"]
+    lines += [f"{name} {_installed(name)}" for name in _LIBRARIES]
+    return "\n".join(lines)
+
+
+def _installed(name: str) -> str:
+    try:
+        found = metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "is not installed"
+    if name == "pyyaml":
+        import yaml
+
+        return found if hasattr(yaml, "CParser") else f"{found} (without libyaml: reading is about ten times slower)"
+    return found

@@ -1,0 +1,98 @@
+"""Plain data as YAML that reads the same by version 1.1 and 1.2: block style, quoted where one of them would stumble."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+Place = tuple[str | int, ...]
+_PLAIN = re.compile(r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ud800-\udfff#:,\[\]{}'\"]*\Z")
+_OTHERWISE = re.compile(
+    r"(?:~|null|true|false|yes|no|on|off|y|n|[-+]?\.(?:inf|nan)|<<|=)\Z"
+    r"|[-+.]?[0-9][0-9_]*(?:[.:eExXo+\-][0-9a-fA-F_.:eE+\-TtZz ]*)?\Z",
+    re.IGNORECASE,
+)
+_UNSAFE_BLOCK = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\u2028\u2029\ufeff\ud800-\udfff\t]")
+
+
+def write(data: Mapping[str, object], comments: Mapping[Place, str] | None = None) -> str:
+    """Write a mapping of mappings, lists, text, numbers, booleans and None.
+
+    `comments` puts `# text` behind the line on which the element at a place (keys and list positions) begins.
+    """
+    return "\n".join(_mapping(data, "", (), comments or {})) + "\n" if data else "{}\n"
+
+
+def _mapping(data: Mapping[str, object], indent: str, place: Place, comments: Mapping[Place, str]) -> Iterator[str]:
+    for key, value in data.items():
+        here = (*place, key)
+        yield from _entry(f"{indent}{_key(key)}:", value, indent, here, comments)
+
+
+def _entry(head: str, value: object, indent: str, here: Place, comments: Mapping[Place, str]) -> Iterator[str]:
+    comment = f"  # {comments[here]}" if here in comments else ""
+    inner = f"{indent}  "
+    if isinstance(value, Mapping) and value:
+        yield f"{head}{comment}"
+        yield from _mapping(value, inner, here, comments)
+    elif isinstance(value, Sequence) and not isinstance(value, str) and value:
+        yield f"{head}{comment}"
+        for number, item in enumerate(value):
+            yield from _item(item, inner, (*here, number), comments)
+    elif isinstance(value, str) and _block(value):
+        lines = value.split("\n")
+        chomping = "" if value.endswith("\n") else "-"
+        yield f"{head} |{chomping}{comment}"
+        yield from (f"{inner}{line}" if line else "" for line in (lines[:-1] if chomping == "" else lines))
+    else:
+        yield f"{head} {_scalar(value)}{comment}"
+
+
+def _item(value: object, indent: str, here: Place, comments: Mapping[Place, str]) -> Iterator[str]:
+    """Write a list's item; a mapping in it begins on a line of its own, so that every place has a line."""
+    if isinstance(value, (Mapping, list, tuple)) and value:
+        yield from _entry(f"{indent}-", value, indent, here, comments)
+    else:
+        comment = f"  # {comments[here]}" if here in comments else ""
+        yield f"{indent}- {_scalar(value)}{comment}"
+
+
+def _scalar(value: object) -> str:
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, (Mapping, list, tuple)):
+        return "{}" if isinstance(value, Mapping) else "[]"
+    return (
+        {float("inf"): ".inf", float("-inf"): "-.inf"}.get(value, _number(value))
+        if isinstance(value, float)
+        else json.dumps(value)
+    )
+
+
+def _number(value: float) -> str:
+    return ".nan" if value != value else repr(value)  # noqa: PLR0124 - what tells NaN
+
+
+def _key(key: str) -> str:
+    return _text(key)
+
+
+def _text(text: str) -> str:
+    plain = _PLAIN.match(text) and not _OTHERWISE.match(text) and text[-1] not in " \t"
+    return text if plain else _quoted(text)
+
+
+def _quoted(text: str) -> str:
+    """Quote; what YAML cannot hold (lone surrogates) becomes the replacement character."""
+    return json.dumps(text.encode("utf-8", "replace").decode("utf-8"), ensure_ascii=False).translate(_ESCAPES)
+
+
+_ESCAPES = {c: f"\\u{c:04x}" for c in (*range(0x7F, 0xA1), 0x2028, 0x2029, 0xFEFF)}
+
+
+def _block(text: str) -> bool:
+    """Say whether a literal block holds this text exactly."""
+    if "\n" not in text or text[0] in " \n" or _UNSAFE_BLOCK.search(text) or text.endswith("\n\n"):
+        return False
+    return all(line == line.rstrip() for line in text.split("\n"))

@@ -1,0 +1,116 @@
+"""The packed project: the merged slices as plain data, with all that stands in other files put in."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from archgen.model.architecture import Architecture
+from archgen.model.mapping import Type
+from archgen.syntax.tree import Entry, Ignore, Listing, Scalar, Table, Value
+
+Place = tuple[str | int, ...]
+_BARE = frozenset(
+    {"archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core"},
+)
+"""Keys whose values are numbers or booleans; everything else outside of parameters is text."""
+_RAW = frozenset({"parameters", "calls"})
+"""Keys below which values keep the kind that they were written in."""
+
+
+@dataclass(slots=True)
+class Packed:
+    """A project as one mapping, and the ignore comments at their places in it."""
+
+    data: dict[str, object] = field(default_factory=dict)
+    comments: dict[Place, str] = field(default_factory=dict)
+
+
+def pack(
+    merged: Table,
+    architecture: Architecture,
+    ignores: Iterable[Ignore],
+    definitions: Mapping[str, str],
+    texts: Mapping[str, str],
+    pictures: Mapping[str, bytes],
+) -> Packed:
+    """Make the packed project.
+
+    `definitions` are the project's own interfaces by full name, `texts` its chapters by path, `pictures` what the
+    chapters show by path.
+    """
+    waiting = {(ignore.at.file, ignore.at.line): ignore for ignore in ignores}
+    packed = Packed()
+    whole = _table(merged, (), packed.comments, waiting, raw=False)
+    project = {"id": architecture.project.id, "title": architecture.project.title}
+    whole["archgen"] = 1
+    whole["project"] = {**project, **_mapping(whole.get("project"))}
+    whole.pop("sources", None)
+    ros = {key: value for key, value in _mapping(whole.get("ros")).items() if key != "interfaces"}
+    if definitions:
+        ros["definitions"] = {**_mapping(ros.get("definitions")), **definitions}
+    report = _mapping(whole.get("report"))
+    if texts:
+        report["texts"] = dict(texts)
+    if pictures:
+        report["pictures"] = {path: base64.b64encode(data).decode("ascii") for path, data in pictures.items()}
+    types = _mapping(whole.get("types"))
+    types |= {t.name: _type(t) for t in architecture.types.values() if t.origin == "shipped" and t.name not in types}
+    rest = {"ros": ros, "report": report, "types": types}
+    whole |= {key: value for key, value in rest.items() if value}
+    first = ("archgen", "project")
+    packed.data = {key: whole[key] for key in first} | {key: whole[key] for key in whole if key not in first}
+    return packed
+
+
+def _mapping(value: object) -> dict[str, object]:
+    return dict(value) if isinstance(value, dict) else {}
+
+
+def _type(mapped: Type) -> dict[str, object]:
+    keys = ("message", "comment", "status", "request", "response", "feedback")
+    data: dict[str, object] = {key: getattr(mapped, key) for key in keys if getattr(mapped, key)}
+    return data | ({"size": str(mapped.size)} if mapped.size else {})
+
+
+def _value(
+    value: Value, place: Place, comments: dict[Place, str], waiting: dict[tuple[str, int], Ignore], *, raw: bool
+) -> object:
+    if isinstance(value, Table):
+        return _table(value, place, comments, waiting, raw=raw)
+    if isinstance(value, Listing):
+        items = []
+        for number, item in enumerate(value.items):
+            _comment(item.at.file, item.at.line, (*place, number), comments, waiting)
+            items.append(_value(item, (*place, number), comments, waiting, raw=raw))
+        return items
+    return _scalar(value, raw=raw)
+
+
+def _scalar(scalar: Scalar, *, raw: bool) -> object:
+    return scalar.value if raw else scalar.text
+
+
+def _table(
+    table: Table, place: Place, comments: dict[Place, str], waiting: dict[tuple[str, int], Ignore], *, raw: bool
+) -> dict[str, object]:
+    data: dict[str, object] = {}
+    for entry in table:
+        here = (*place, entry.key)
+        _comment(entry.at.file, entry.at.line, here, comments, waiting)
+        data[entry.key] = _value(entry.value, here, comments, waiting, raw=raw or _is_raw(entry))
+    return data
+
+
+def _is_raw(entry: Entry) -> bool:
+    return entry.key in _RAW or (entry.key in _BARE and isinstance(entry.value, Scalar))
+
+
+def _comment(
+    file: str, line: int, here: Place, comments: dict[Place, str], waiting: dict[tuple[str, int], Ignore]
+) -> None:
+    """Take an ignore comment along to the first element that stands on its line."""
+    ignore = waiting.pop((file, line), None)
+    if ignore is not None:
+        comments[here] = f"archgen: ignore[{', '.join(ignore.rules)}] {ignore.why}".rstrip()
