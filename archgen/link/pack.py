@@ -27,19 +27,19 @@ class Packed:
     comments: dict[Place, str] = field(default_factory=dict)
 
 
-def pack(
-    merged: Table,
-    architecture: Architecture,
-    ignores: Iterable[Ignore],
-    definitions: Mapping[str, str],
-    texts: Mapping[str, str],
-    pictures: Mapping[str, bytes],
-) -> Packed:
-    """Make the packed project.
-
-    `definitions` are the project's own interfaces by full name, `texts` its chapters by path, `pictures` what the
-    chapters show by path.
+@dataclass(frozen=True, slots=True)
+class Attachments:
+    """What stands in files of other kinds: the project's own interfaces by full name, its chapters by path, and the
+    pictures that the chapters show, by path.
     """
+
+    definitions: Mapping[str, str] = field(default_factory=dict)
+    texts: Mapping[str, str] = field(default_factory=dict)
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def pack(merged: Table, architecture: Architecture, ignores: Iterable[Ignore], attached: Attachments) -> Packed:
+    """Make the packed project."""
     waiting = {(ignore.at.file, ignore.at.line): ignore for ignore in ignores}
     packed = Packed()
     whole = _table(merged, (), packed.comments, waiting, raw=False)
@@ -48,13 +48,13 @@ def pack(
     whole["project"] = {**project, **_mapping(whole.get("project"))}
     whole.pop("sources", None)
     ros = {key: value for key, value in _mapping(whole.get("ros")).items() if key != "interfaces"}
-    if definitions:
-        ros["definitions"] = {**_mapping(ros.get("definitions")), **definitions}
+    if attached.definitions:
+        ros["definitions"] = {**_mapping(ros.get("definitions")), **attached.definitions}
     report = _mapping(whole.get("report"))
-    if texts:
-        report["texts"] = dict(texts)
-    if pictures:
-        report["pictures"] = {path: base64.b64encode(data).decode("ascii") for path, data in pictures.items()}
+    if attached.texts:
+        report["texts"] = dict(attached.texts)
+    if attached.pictures:
+        report["pictures"] = {path: base64.b64encode(data).decode("ascii") for path, data in attached.pictures.items()}
     types = _mapping(whole.get("types"))
     types |= {t.name: _type(t) for t in architecture.types.values() if t.origin == "shipped" and t.name not in types}
     rest = {"ros": ros, "report": report, "types": types}

@@ -1,0 +1,279 @@
+"""The resolved model as plain data, for other programs and code generators (`schemas/resolved.schema.json`).
+
+Elements are keyed by their complete ids; what is not known is left out; durations are in ms and rates in Hz as they
+were written (`text`), with exact numbers beside (`value`, in the unit named by the key).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from fractions import Fraction
+
+from archgen.model.component import Component, Input, Output
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.quantity import Quantity
+from archgen.model.timing import Timing
+from archgen.views.index import Index
+from archgen.views.shapes import Record
+
+VERSION = 1
+
+
+def record(view: Index) -> Record:
+    """Give the whole architecture, or what the scope shows of it, as dicts, lists and scalars."""
+    found = view.architecture
+    inside = view.scope.component
+    return {
+        "archgen_resolved": VERSION,
+        "project": _known(
+            {key: getattr(found.project, key) for key in ("id", "title", "version", "description")}
+            | {"distro": found.distro}
+        ),
+        "partners": {p.id: _known({"title": p.title, "description": p.description}) for p in found.partners.values()},
+        "use_cases": {u.id: _known({"title": u.title, "description": u.description}) for u in found.use_cases.values()},
+        "requirements": {
+            r.id: _known(
+                {
+                    "title": r.title,
+                    "description": r.description,
+                    "use_cases": list(r.use_cases),
+                    "served_by": [c.id for c in view.components_for.get(r.id, ())],
+                    "tags": list(r.tags),
+                }
+            )
+            for r in found.requirements.values()
+        },
+        "groups": {
+            name: _known(
+                {
+                    "title": found.groups[name].title,
+                    "description": found.groups[name].description,
+                    "owner": found.groups[name].owner,
+                    "tags": list(found.groups[name].tags),
+                    "components": [component.id for component in view.components(name)],
+                }
+            )
+            for name in view.groups()
+        },
+        "components": {c.id: _component(view, c) for c in found.components.values() if inside(c.id)},
+        "connections": [
+            {"input": c.input, "kind": c.kind, "target": c.target, "outputs": list(c.outputs)}
+            for c in found.connections
+            if inside(found.inputs[c.input].component)
+        ],
+        "edges": [
+            _known({"from": e.output, "to": e.input, **_carried(view, e.output)})
+            for e in found.edges
+            if inside(found.inputs[e.input].component) or inside(found.outputs[e.output].component)
+        ],
+        "nodes": {node.id: _node(view, node) for node in view.nodes()},
+        "topics": _topics(view),
+        "types": {
+            t.name: _known(
+                {
+                    "message": t.message,
+                    "comment": t.comment,
+                    "size": _quantity(t.size, "B"),
+                    "status": t.status,
+                    "request": t.request,
+                    "response": t.response,
+                    "feedback": t.feedback,
+                }
+            )
+            for t in found.types.values()
+        },
+        "hosts": {
+            h.id: _known({"title": h.title, "cores": h.cores, "tags": list(h.tags)}) for h in found.hosts.values()
+        },
+        "containers": {
+            c.id: _known({"title": c.title, "host": c.host, "threads": c.threads}) for c in found.containers.values()
+        },
+        "links": {
+            link.id: _known(
+                {
+                    "title": link.title,
+                    "connects": list(link.connects),
+                    "bandwidth": _quantity(link.bandwidth, "bit/s"),
+                    "best": _quantity(link.best, "ns"),
+                    "worst": _quantity(link.worst, "ns"),
+                }
+            )
+            for link in found.links.values()
+        },
+        "chains": {
+            c.id: _known(
+                {
+                    "title": c.title,
+                    "through": [{"kind": point.kind, "id": point.id} for point in c.through],
+                    "deadline": _quantity(c.deadline, "ns"),
+                    "requirements": list(c.requirements),
+                }
+            )
+            for c in found.chains.values()
+        },
+    }
+
+
+def _known(data: dict[str, object]) -> dict[str, object]:
+    """Leave out what is not known: None, and empty lists and mappings."""
+    return {key: value for key, value in data.items() if value is not None and value not in ([], {})}
+
+
+def _quantity(quantity: Quantity | None, unit: str) -> dict[str, object] | None:
+    return None if quantity is None else {"text": quantity.text, "value": _number(quantity.value), "unit": unit}
+
+
+def _number(value: Fraction) -> int | float:
+    return int(value) if value.denominator == 1 else float(value)
+
+
+def _component(view: Index, component: Component) -> dict[str, object]:
+    return _known(
+        {
+            "title": component.title,
+            "group": component.group,
+            "owner": component.owner,
+            "role": component.role,
+            "functionality": component.functionality,
+            "description": component.description,
+            "requirements": [use.text for use in component.requirements],
+            "performance": {
+                i.id: _known(
+                    {"title": i.title, "accuracy": i.accuracy, "execution_time": _quantity(i.execution_time, "ns")}
+                )
+                for i in component.performance
+            },
+            "inputs": {port.name: _input(port) for port in component.inputs.values()},
+            "outputs": {port.name: _output(view, port) for port in component.outputs.values()},
+            "nodes": [node.id for node in view.nodes_of.get(component.id, ())],
+            "timing": _timing(component.timing),
+            "tags": list(component.tags),
+            "urls": dict(component.urls),
+        }
+    )
+
+
+def _port(port: Input | Output) -> dict[str, object]:
+    return {
+        "id": port.id,
+        "type": port.type,
+        "medium": "physical" if port.physical else "digital",
+        "external": port.external,
+        "description": port.description,
+    }
+
+
+def _input(port: Input) -> dict[str, object]:
+    sources = dict.fromkeys(output for connection in port.connections for output in connection.outputs)
+    return _known(_port(port) | {"optional": port.optional or None, "sources": list(sources)})
+
+
+def _output(view: Index, port: Output) -> dict[str, object]:
+    readers = dict.fromkeys(connection.input for connection in view.readers.get(port.id, ()))
+    return _known(_port(port) | {"message": view.architecture.message(port), "readers": list(readers)})
+
+
+def _carried(view: Index, output: str) -> dict[str, object]:
+    port = view.architecture.outputs[output]
+    return {"type": port.type, "message": view.architecture.message(port), "physical": port.physical or None}
+
+
+def _node(view: Index, node: Node) -> dict[str, object]:
+    plain = (
+        "title",
+        "description",
+        "owner",
+        "name",
+        "namespace",
+        "package",
+        "executable",
+        "plugin",
+        "container",
+        "host",
+        "status",
+    )
+    return _known(
+        {
+            **{key: getattr(node, key) for key in plain},
+            "full_name": node.full_name,
+            "kind": list(node.kinds),
+            "implements": list(node.implements),
+            "derived": None if node.written else True,
+            "endpoints": [_endpoint(endpoint) for endpoint in view.endpoints_of.get(node.id, ())],
+            "timing": _known({component or "node": _timing(timing) for component, timing in node.timing.items()}),
+            "parameters": _plain(node.parameters),
+            "parameter_files": list(node.parameter_files),
+            "tags": list(node.tags),
+            "urls": dict(node.urls),
+        }
+    )
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _endpoint(endpoint: Endpoint) -> dict[str, object]:
+    return _known(
+        {
+            "use": endpoint.use,
+            "name": endpoint.name,
+            "flow": endpoint.flow,
+            "message": endpoint.message,
+            "type": endpoint.type,
+            "port": endpoint.port,
+            "internal": endpoint.internal or None,
+            "sources": list(endpoint.sources),
+            "qos": _qos(endpoint.qos) if endpoint.flow == "topic" else None,
+        }
+    )
+
+
+def _qos(qos: Qos) -> dict[str, object]:
+    durations = {key: _quantity(getattr(qos, key), "ns") for key in ("deadline", "lifespan", "lease_duration")}
+    plain = {k: v for k, v in asdict(qos).items() if k not in {*durations, "at", "written"}}
+    return _known(plain | durations)
+
+
+def _timing(timing: Timing | None) -> dict[str, object] | None:
+    if timing is None:
+        return None
+    durations = ("period", "jitter", "wcet", "bcet", "throttle", "response")
+    trigger = timing.trigger
+    return _known(
+        {
+            "behaviour": timing.behaviour,
+            "rate": _quantity(timing.rate, "Hz"),
+            **{key: _quantity(getattr(timing, key), "ns") for key in durations},
+            "trigger": _known({"mode": trigger.mode, "inputs": list(trigger.inputs or ())}) if trigger else None,
+            "every": timing.every,
+            "outputs": {
+                name: _known({"conditional": o.conditional or None, "max_gap": _quantity(o.max_gap, "ns")})
+                for name, o in timing.outputs.items()
+            },
+            "calls": {name: _number(count) for name, count in timing.calls.items()},
+            "priority": timing.priority,
+            "core": timing.core,
+        }
+    )
+
+
+def _topics(view: Index) -> list[dict[str, object]]:
+    return [
+        _known(
+            {
+                "name": topic.name,
+                "flow": topic.flow,
+                "messages": list(topic.messages),
+                "types": list(topic.types),
+                "writers": list(dict.fromkeys(end.node for end in topic.writers)),
+                "readers": list(dict.fromkeys(end.node for end in topic.readers)),
+                "size": _quantity(topic.size, "B"),
+            }
+        )
+        for topic in view.architecture.topics.values()
+        if any(view.scope.node(end.node) for end in (*topic.writers, *topic.readers))
+    ]
