@@ -73,7 +73,9 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
         expected = entry.type
         if expected is None:
             continue
-        wrong = [o for o in map(architecture.outputs.__getitem__, connection.outputs) if not fits(architecture, expected, o)]
+        wrong = [
+            o for o in map(architecture.outputs.__getitem__, connection.outputs) if not fits(architecture, expected, o)
+        ]
         if wrong:
             names = " and ".join(f"`{o.id}` sends `{o.type}`" for o in wrong[:2])
             more = f" (and {len(wrong) - 2} more)" if len(wrong) > 2 else ""  # noqa: PLR2004 - two are named

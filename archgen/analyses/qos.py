@@ -34,7 +34,12 @@ def clashes(offered: Qos, requested: Qos) -> Iterator[Clash]:
     https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html#qos-compatibilities.
     """
     if (offered.reliability, requested.reliability) == ("best_effort", "reliable"):
-        yield Clash("reliability", "reliable delivery", "best effort only", "`reliability: reliable` or `best_effort` on both sides")
+        yield Clash(
+            "reliability",
+            "reliable delivery",
+            "best effort only",
+            "`reliability: reliable` or `best_effort` on both sides",
+        )
     if (offered.durability, requested.durability) == ("volatile", "transient_local"):
         yield Clash(
             "durability",

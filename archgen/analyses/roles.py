@@ -47,7 +47,9 @@ def shape(architecture: Architecture, component: Component) -> Shape:
         maybe_fed=bool(open_inputs),
         digital=bool(flows),
         acts=any(o.physical or o.external for o in outputs),
-        sends=any(o.type and flow == "topic" for o, flow in zip((o for o in outputs if not o.physical), flows, strict=True)),
+        sends=any(
+            o.type and flow == "topic" for o, flow in zip((o for o in outputs if not o.physical), flows, strict=True)
+        ),
         serves=any(flow != "topic" for flow in flows),
         maybe_serves=any(architecture.message(o) is None and not o.physical for o in outputs),
     )

@@ -63,7 +63,10 @@ def _fault(architecture: Architecture, flows: Mapping[str, set[Flow]], use: Port
     """Say what is wrong with an entry and what to do, or give None."""
     port = architecture.outputs.get(use.port or "") or architecture.inputs.get(use.port or "")
     if port and port.physical:
-        return f"is physical and does not stand below `{use.use}`", "leave it out: physical ports have neither topic nor message"
+        return (
+            f"is physical and does not stand below `{use.use}`",
+            "leave it out: physical ports have neither topic nor message",
+        )
     there = {flow_of(use.message)} if use.message else flows.get(use.port or "", set())
     right = {(_TOPIC_SECTION if flow == "topic" else _SERVICE_SECTION)[use.use] for flow in there}
     if not there or use.use in right:

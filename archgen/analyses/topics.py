@@ -135,7 +135,11 @@ def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
     for reader in traffic.readers:
         if not architecture.nodes[reader.node].implements:
             continue  # an unjustified node is reported as a whole
-        found = _foreign(architecture, traffic, reader) if reader.internal else _not_among_sources(architecture, traffic, reader)
+        found = (
+            _foreign(architecture, traffic, reader)
+            if reader.internal
+            else _not_among_sources(architecture, traffic, reader)
+        )
         if found:
             yield found
 
@@ -155,7 +159,9 @@ def _foreign(architecture: Architecture, traffic: _Traffic, reader: Endpoint) ->
         return None
     verb = "publishes" if reader.flow == "topic" else "serves"
     message = f"`{reader.node}` uses the internal {what} `{reader.name}`, and no node of its component {verb} it"
-    return _unaccounted(architecture, reader, message, "what comes from another component or from outside is an input", [])
+    return _unaccounted(
+        architecture, reader, message, "what comes from another component or from outside is an input", []
+    )
 
 
 def _not_among_sources(architecture: Architecture, traffic: _Traffic, reader: Endpoint) -> Diagnostic | None:
@@ -177,7 +183,9 @@ def _unaccounted(
     architecture: Architecture, reader: Endpoint, message: str, cure: str, writers: list[Endpoint]
 ) -> Diagnostic:
     labels = tuple(Label(_place(architecture, w), "published here") for w in writers[:3])
-    return Diagnostic("unaccounted-topic", message, _place(architecture, reader), labels=labels, help=cure, element=reader.node)
+    return Diagnostic(
+        "unaccounted-topic", message, _place(architecture, reader), labels=labels, help=cure, element=reader.node
+    )
 
 
 def _place(architecture: Architecture, endpoint: Endpoint) -> Span:
