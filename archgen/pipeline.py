@@ -1,6 +1,6 @@
 """Every stage in order: whoever reads this first has seen the whole way from YAML files to documents.
 
-    project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
+project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
 """
 
 from __future__ import annotations

@@ -1,0 +1,60 @@
+"""`archgen stats`: show size and progress."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import options, run
+
+if TYPE_CHECKING:
+    from archgen.analyses.size import Progress, Size
+
+
+@click.command("stats")
+@options.project
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+def command(project: Path | None, form: str) -> None:
+    """Show how large PROJECT is and how far along: as a whole, for each group and for each partner.
+
+    Described: it has a functionality. Typed: each output has a type. Mapped: a node that somebody wrote implements it.
+    Timed: it or all its nodes have a timing. Traced: it names a declared requirement.
+    """
+    from archgen.analyses.size import progress, size
+    from archgen.diagnostic import Severity
+
+    checked = run.check(project)
+    run.report(checked, least=Severity.ERROR)
+    found, rows = size(checked.architecture), progress(checked.architecture)
+    if form == "json":
+        plain = {key: float(v) if isinstance(v, Fraction) else v for key, v in asdict(found).items()}
+        data = {"version": 1, **plain, "files": len(checked.files), "progress": [asdict(row) for row in rows]}
+        click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+    else:
+        click.echo(_text(checked.architecture.project.title, found, rows, len(checked.files)), nl=False)
+    run.finish(checked)
+
+
+def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> str:
+    from archgen.findings.text import clean
+    from archgen.views.statistics import STEPS, figures
+
+    lines = [clean(title), ""]
+    lines += [f"  {label:42}{value:>8}" for _, label, value in figures(found)]
+    lines += [f"  {'Files':42}{files:>8}", ""]
+    measured = [row for row in rows if row.components]
+    if measured:
+        lines.append(f"  {'Progress':32}{'components':>11}" + "".join(f"{step:>11}" for step in STEPS))
+    for row in measured:
+        counts = "".join(f"{_share(getattr(row, step), row.components):>11}" for step in STEPS)
+        lines.append(f"  {clean(row.title)[:31]:32}{row.components:>11}{counts}")
+    return "\n".join(lines) + "\n"
+
+
+def _share(count: int, of: int) -> str:
+    return f"{count} ({100 * count // of}%)"
