@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from archgen.model.selector import Selection
     from archgen.pipeline import Checked
 
+ERROR = Severity.ERROR
+
 
 def check(project: Path | None) -> Checked:
     """Check a project; that there is none is wrong usage."""

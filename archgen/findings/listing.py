@@ -1,0 +1,40 @@
+"""Lists as text columns, CSV or JSON."""
+
+from __future__ import annotations
+
+import csv as csv_
+import io
+import json as json_
+from collections.abc import Sequence
+
+from archgen.findings.text import clean
+
+Rows = Sequence[Sequence[str]]
+
+
+def text(columns: Sequence[str], rows: Rows) -> str:
+    """Align columns for the terminal; control characters are taken out."""
+    cleaned = [[clean(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
+    widths = [max(len(row[place]) for row in cleaned) for place in range(len(columns))]
+    return "".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n" for row in cleaned
+    )
+
+
+def csv(columns: Sequence[str], rows: Rows) -> str:
+    """Write RFC 4180. A cell that a spreadsheet would take for a formula gets an apostrophe in front."""
+    out = io.StringIO()
+    writer = csv_.writer(out)
+    writer.writerow(columns)
+    writer.writerows([_harmless(cell) for cell in row] for row in rows)
+    return out.getvalue()
+
+
+def _harmless(cell: str) -> str:
+    stripped = cell.lstrip()
+    return f"'{cell}" if stripped[:1] in {"=", "+", "-", "@"} or cell[:1] in {"\t", "\r", "\n"} else cell
+
+
+def json(columns: Sequence[str], rows: Rows) -> str:
+    """Write a list of objects."""
+    return json_.dumps([dict(zip(columns, row, strict=True)) for row in rows], ensure_ascii=False, indent=2) + "\n"
