@@ -1,6 +1,6 @@
 """Every stage in order: whoever reads this first has seen the whole way from YAML files to documents.
 
-project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
+    project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
 """
 
 from __future__ import annotations
@@ -8,14 +8,11 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import Literal
 
 from archgen import analyses, link, project, schema, syntax, transform
-from archgen.diagnostic import Diagnostic, Rule, settle
+from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import suppress
-from archgen.link import interfaces, merge
 from archgen.model import selector
 from archgen.model.architecture import Architecture
 from archgen.project import Loaded
@@ -31,3 +28,48 @@ ALL_RULES: tuple[Rule, ...] = (
     *suppress.RULES,
 )
 """Every rule there is, in the order in which the stages run."""
+_BY_NAME = {rule.name: rule for rule in ALL_RULES}
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A project, read and judged: the architecture as far as it is sound, and what was found."""
+
+    loaded: Loaded
+    merged: Table
+    architecture: Architecture
+    findings: tuple[Diagnostic, ...]
+    """Settled and sorted; those that a comment silences are left out."""
+
+    @property
+    def root(self) -> Path:
+        """Give the project's folder."""
+        return self.loaded.root
+
+    @property
+    def out(self) -> Path:
+        """Give the folder that outputs go to where nobody says otherwise."""
+        return self.loaded.root / "archgen-out"
+
+    @property
+    def sources(self) -> Sources:
+        """Give the texts that diagnostics quote."""
+        return self.loaded.sources
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Name the project's YAML files."""
+        return tuple(document.file for document in self.loaded.documents)
+
+    @property
+    def broken(self) -> bool:
+        """Say whether there are errors."""
+        return any(finding.severity is Severity.ERROR for finding in self.findings)
+
+
+def check(path: Path | None = None) -> Checked:
+    """Read the project at a path (a folder, a file, or None for the one around the current folder) and judge it.
+
+    Raises `project.ProjectNotFoundError` where there is none.
+    """
+    return judge(project.load(path))

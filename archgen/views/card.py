@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from archgen.model.component import Component, Group, Input, Output
 from archgen.model.node import Node, Topic
@@ -202,7 +203,7 @@ def _other(view: Index, sort: str, name: str) -> Card:
         "view": found.views,
         "policy": found.policies,
     }
-    element = tables[sort][name]
+    element: Any = tables[sort][name]
     facts = [
         (key, _fact(getattr(element, key, None)))
         for key in (
