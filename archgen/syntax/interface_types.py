@@ -59,7 +59,10 @@ def read_type(text: str, package: str, *, ros1: bool) -> FieldType | Complaint:
     size = _SIZE.match(array) if array else None
     if array and (size is None or (size[1] and ros1) or (size[2] and not int(size[2]) and not ros1)):
         return _bad_array(array, ros1=ros1)
-    element = _element(base, package, ros1=ros1)
+    if ros1 and array and base == "Header":
+        element: FieldType | Complaint = _message(base, package, ros1=ros1)  # only `Header` alone is special
+    else:
+        element = _element(base, package, ros1=ros1)
     if isinstance(element, Complaint) or size is None:
         return element
     return FieldType(element.base, element.builtin, element.bound, array, int(size[2]) if size[2] else None)

@@ -52,13 +52,15 @@ Good:
 _PARTS = {"msg": 1, "srv": 2, "action": 3}
 _KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 _LINE_END = re.compile(r"\r\n|\r|\n")
-_LOWER = re.compile(r"[a-z](?:_?[a-z0-9])*\Z", re.ASCII)
-_UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z", re.ASCII)
-_LOOSE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
+_LOOSE = {"field": re.compile(r"[A-Za-z]\w*\Z", re.ASCII), "constant": re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)}
+_STRICT = {
+    "field": re.compile(r"[a-z](?:_?[a-z0-9])*\Z", re.ASCII),
+    "constant": re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z", re.ASCII),
+}
 _ANNOTATION = re.compile(r"@(?:key|optional)(?: +|\Z)")
 _NAMES = {
     ("field", True): "letters, digits and underscores, a letter first",
-    ("constant", True): "letters, digits and underscores, a letter first",
+    ("constant", True): "letters, digits and underscores, no digit first",
     ("field", False): "small letters, digits and single underscores, a letter first, as in `gripper_width`",
     ("constant", False): "capitals, digits and single underscores, a capital first, as in `MAX_WIDTH`",
 }
@@ -97,7 +99,7 @@ class _Reading:
 
     def name(self, what: str, name: str, at: Span) -> bool:
         """Check the name of a field or a constant; say whether it can stand."""
-        pattern = _LOOSE if self.ros1 else {"field": _LOWER, "constant": _UPPER}[what]
+        pattern = (_LOOSE if self.ros1 else _STRICT)[what]
         if not pattern.match(name):
             self.say(f"`{name}` is no name of a {what}", at, _NAMES[what, self.ros1])
             return False

@@ -1,0 +1,213 @@
+"""The interfaces of one distribution: what ships with archgen, and over it what the project defines itself.
+
+Where the project names no distribution, every name that archgen holds for any is known, and nothing is wrong. Of a
+distribution that archgen does not hold, only the project's own definitions are known.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import TypedDict
+
+from archgen.diagnostic import Diagnostic, Label
+from archgen.model.interfaces import Field, Interface, Interfaces
+from archgen.source import Span
+from archgen.suggest import closest
+from archgen.syntax.interfaces import NAME, Definition, parse
+
+HELD = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
+"""The distributions that archgen holds names of; the first that has a message gives its fields where none is named."""
+_DATA = Path(__file__).resolve().parent / "ros_interfaces"
+_PATH = re.compile(r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII)
+_FULL = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
+_ROS2 = re.compile(r"[a-z](?:_?[a-z0-9])*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*\Z", re.ASCII)
+_FIELDS_OF = {"rolling": "lyrical"}
+
+
+class _Package(TypedDict, total=False):
+    """An entry of a data file."""
+
+    whole: bool
+    msg: list[str]
+    srv: list[str]
+    action: list[str]
+
+
+class Definitions(Mapping[str, Interface]):
+    """The fields of interfaces: the project's own, and those that ship, which are read on first use."""
+
+    __slots__ = ("_distros", "_own")
+
+    def __init__(self, distros: tuple[str, ...], own: Mapping[str, Interface]) -> None:
+        """Take the distributions to ask, in order."""
+        self._distros = distros
+        self._own = own
+
+    def __getitem__(self, name: str) -> Interface:
+        """Give the definition of `pkg/msg/Name`."""
+        if name in self._own:
+            return self._own[name]
+        for distro in self._distros:
+            fields = _fields(distro).get(name)
+            if fields is not None:
+                return Interface(name, (tuple(_field(text) for text in fields),))
+        raise KeyError(name)
+
+    def __iter__(self) -> Iterator[str]:
+        """Give all names: the project's own first."""
+        return iter(dict.fromkeys([*self._own, *(name for distro in self._distros for name in _fields(distro))]))
+
+    def __len__(self) -> int:
+        """Count the definitions."""
+        return sum(1 for _ in self)
+
+
+def load(
+    distro: str | None,
+    definitions: Sequence[tuple[str, str]] = (),
+    inline: Mapping[str, tuple[str, Span]] | None = None,
+) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
+    """Give what is known for a distribution, and what is wrong with the project's own definitions.
+
+    `definitions` are files (path, text), `inline` those of `ros: {definitions: ...}` with the place of their text.
+    """
+    shipped = _shipped(distro)
+    if not definitions and not inline:
+        return shipped, ()
+    ros1 = distro == "noetic"
+    diagnostics = list[Diagnostic]()
+    own = dict[str, Definition]()
+    places = dict[str, Span]()
+    for name, definition, place in _read(definitions, inline or {}, diagnostics, ros1=ros1):
+        if name in own:
+            label = Label(places[name], "the first one")
+            diagnostics.append(Diagnostic(NAME, f"`{name}` is defined twice", place, labels=(label,)))
+            continue
+        own[name], places[name] = definition, place
+        diagnostics += definition.diagnostics
+    interfaces = _merge(shipped, {name: definition.interface for name, definition in own.items()})
+    for definition in own.values():
+        diagnostics += _unknown_fields(definition, interfaces)
+    return interfaces, tuple(diagnostics)
+
+
+def name_of(file: str) -> str | None:
+    """Give the full name of the interface that a path stands for (`.../pkg/msg/Name.msg`), None where it says none."""
+    match = _PATH.match(file)
+    return f"{match[1]}/{match[2]}/{match[3]}" if match and match[2] == match[4] else None
+
+
+def _read(
+    files: Sequence[tuple[str, str]],
+    inline: Mapping[str, tuple[str, Span]],
+    diagnostics: list[Diagnostic],
+    *,
+    ros1: bool,
+) -> Iterator[tuple[str, Definition, Span]]:
+    """Parse the project's definitions; what has no name is a diagnostic."""
+    for file, text in files:
+        name, place = name_of(file), Span.of_file(file)
+        if name is None:
+            help_ = "a definition's path ends in its package, its kind and its name: `ramcip_msgs/msg/Grasp.msg`"
+            diagnostics.append(Diagnostic(NAME, f"`{file}` does not say which interface it defines", place, help=help_))
+        elif _nameable(name, place, diagnostics, ros1=ros1):
+            yield name, parse(text, name, file, ros1=ros1), place
+    for name, (text, place) in inline.items():
+        if not _FULL.match(name):
+            help_ = "it is written `package/msg/Name` (or srv, action)"
+            diagnostics.append(Diagnostic(NAME, f"`{name}` is no name of an interface", place, help=help_))
+        elif _nameable(name, place, diagnostics, ros1=ros1):
+            yield name, _moved(parse(text, name, place.file, ros1=ros1), place), place
+
+
+def _nameable(name: str, place: Span, diagnostics: list[Diagnostic], *, ros1: bool) -> bool:
+    if ros1 or _ROS2.match(name):
+        return True
+    help_ = "packages are written `like_this`, interfaces `LikeThis`, without underscores"
+    diagnostics.append(Diagnostic(NAME, f"`{name}` is no name of an interface in ROS 2", place, help=help_))
+    return False
+
+
+def _moved(definition: Definition, place: Span) -> Definition:
+    """Put the places of a definition that stands inside of YAML to where its text is; the line is said in words."""
+    moved = (
+        replace(d, span=place, message=f"line {d.span.line} of the definition: {d.message}", labels=())
+        for d in definition.diagnostics
+    )
+    references = ((name, place) for name, _ in definition.references)
+    return Definition(definition.interface, tuple(references), tuple(moved))
+
+
+def _unknown_fields(definition: Definition, interfaces: Interfaces) -> Iterator[Diagnostic]:
+    """Find fields whose type is a message that certainly does not exist."""
+    for message, place in definition.references:
+        if interfaces.answer(message) == "wrong":
+            guess = interfaces.nearest(message)
+            help_ = f"did you mean `{_inside(guess)}`?" if guess and "/msg/" in guess else None
+            yield Diagnostic(NAME, f"there is no message `{message}`", place, help=help_)
+
+
+def _inside(message: str) -> str:
+    """Write a full name as definitions do."""
+    return message.replace("/msg/", "/")
+
+
+def _merge(shipped: Interfaces, own: Mapping[str, Interface]) -> Interfaces:
+    """Lay the project's definitions over what ships.
+
+    A package that the project defines is held whole, unless archgen holds a part of the package of that name: then the
+    project adds to it, and names that nobody holds cannot be told.
+    """
+    packages = frozenset(name.split("/", 1)[0] for name in own)
+    known = shipped.packages()
+    return replace(
+        shipped,
+        names=shipped.names | frozenset(own),
+        whole=shipped.whole | (packages - known),
+        definitions=Definitions(_asked(shipped.distro), own),
+        project_packages=packages,
+    )
+
+
+def _asked(distro: str | None) -> tuple[str, ...]:
+    """Say which distributions' data answer for a project's distribution."""
+    return HELD if distro is None else (distro,) if distro in HELD else ()
+
+
+@cache
+def _shipped(distro: str | None) -> Interfaces:
+    """Give what ships for a distribution; for None, what any has."""
+    names, whole = set[str](), set[str]()
+    for asked in _asked(distro):
+        for package, kinds in _names(asked).items():
+            for kind in ("msg", "srv", "action"):
+                names.update(f"{package}/{kind}/{name}" for name in kinds.get(kind, ()))  # type: ignore[attr-defined]
+            if kinds["whole"] and distro is not None:
+                whole.add(package)
+    return Interfaces(
+        distro, frozenset(names), frozenset(whole), Definitions(_asked(distro), {}), held=bool(_asked(distro))
+    )
+
+
+def _names(distro: str) -> dict[str, _Package]:
+    found: dict[str, _Package] = json.loads((_DATA / f"{distro}.names.json").read_text(encoding="utf-8"))
+    return found
+
+
+@cache
+def _fields(distro: str) -> dict[str, list[str]]:
+    file = _DATA / f"{_FIELDS_OF.get(distro, distro)}.fields.json"
+    found: dict[str, list[str]] = json.loads(file.read_text(encoding="utf-8"))
+    return found
+
+
+def _field(text: str) -> Field:
+    """Read `float64[36] covariance`."""
+    type_, name = text.split(" ")
+    base, bracket, size = type_.partition("[")
+    return Field(name, base, bracket + size)
