@@ -12,12 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TypedDict
+from typing import Any
 
 from archgen.diagnostic import Diagnostic, Label
 from archgen.model.interfaces import Field, Interface, Interfaces
 from archgen.source import Span
-from archgen.suggest import closest
 from archgen.syntax.interfaces import NAME, Definition, parse
 
 HELD = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
@@ -27,15 +26,6 @@ _PATH = re.compile(r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][
 _FULL = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 _ROS2 = re.compile(r"[a-z](?:_?[a-z0-9])*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*\Z", re.ASCII)
 _FIELDS_OF = {"rolling": "lyrical"}
-
-
-class _Package(TypedDict, total=False):
-    """An entry of a data file."""
-
-    whole: bool
-    msg: list[str]
-    srv: list[str]
-    action: list[str]
 
 
 class Definitions(Mapping[str, Interface]):
@@ -186,7 +176,7 @@ def _shipped(distro: str | None) -> Interfaces:
     for asked in _asked(distro):
         for package, kinds in _names(asked).items():
             for kind in ("msg", "srv", "action"):
-                names.update(f"{package}/{kind}/{name}" for name in kinds.get(kind, ()))  # type: ignore[attr-defined]
+                names.update(f"{package}/{kind}/{name}" for name in kinds.get(kind, ()))
             if kinds["whole"] and distro is not None:
                 whole.add(package)
     return Interfaces(
@@ -194,8 +184,8 @@ def _shipped(distro: str | None) -> Interfaces:
     )
 
 
-def _names(distro: str) -> dict[str, _Package]:
-    found: dict[str, _Package] = json.loads((_DATA / f"{distro}.names.json").read_text(encoding="utf-8"))
+def _names(distro: str) -> dict[str, dict[str, Any]]:
+    found: dict[str, dict[str, Any]] = json.loads((_DATA / f"{distro}.names.json").read_text(encoding="utf-8"))
     return found
 
 
