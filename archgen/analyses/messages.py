@@ -1,4 +1,4 @@
-"""Messages: do they exist, does every type have one, does every topic carry only one."""
+"""Messages: whether they exist, and whether every topic carries only one."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.model.architecture import Architecture
+from archgen.model.component import Input, Output
 from archgen.model.interfaces import Answer, Interfaces
 from archgen.model.mapping import Type, flow_of
 from archgen.model.node import Endpoint
 from archgen.source import NOWHERE, Span
-from archgen.suggest import did_you_mean
 
 _KIND = {"topic": "message", "service": "service", "action": "action"}
 
@@ -30,33 +30,32 @@ def mentions(architecture: Architecture) -> Iterator[Mention]:
     A planned message is planned wherever it is written: the type says so for all.
     """
     planned = {type_.message for type_ in architecture.types.values() if type_.status == "planned"}
-    uses = _uses(architecture)
     seen = set[Span]()
-    for mention in _written(architecture, uses):
+    for mention in _written(architecture):
         if mention.at != NOWHERE and mention.at not in seen and mention.message not in planned:
             seen.add(mention.at)
             yield mention
 
 
-def _written(architecture: Architecture, uses: dict[str, list[Span]]) -> Iterator[Mention]:
+def _written(architecture: Architecture) -> Iterator[Mention]:
     for type_ in architecture.types.values():
         if type_.message is not None and type_.origin != "shipped":
-            at = next((at for at in (type_.message_at, type_.at, *uses.get(type_.name, ())) if at != NOWHERE), NOWHERE)
-            yield Mention(type_.message, at, type_.name)
+            yield Mention(type_.message, _first(type_.message_at, type_.at, _used_at(type_, architecture)), type_.name)
     for node in architecture.nodes.values():
         for use in node.uses:
             if use.message is not None:
                 yield Mention(use.message, use.message_at, node.id)
 
 
-def _uses(architecture: Architecture) -> dict[str, list[Span]]:
-    """Give the places where ports that carry messages name each type."""
-    found = dict[str, list[Span]]()
-    for component in architecture.components.values():
-        for port in (*component.inputs.values(), *component.outputs.values()):
-            if port.type is not None and not port.physical:
-                found.setdefault(port.type, []).append(port.type_at if port.type_at != NOWHERE else port.at)
-    return found
+def _used_at(type_: Type, architecture: Architecture) -> Span:
+    """Give where a port names a type that is itself a message."""
+    ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
+    return next((port.type_at for port in ports if port.type == type_.name), NOWHERE)
+
+
+def _first(*places: Span) -> Span:
+    """Give the first place that somebody wrote."""
+    return next((place for place in places if place != NOWHERE), NOWHERE)
 
 
 def _answered(architecture: Architecture, answer: Answer) -> Iterator[Mention]:
@@ -64,7 +63,7 @@ def _answered(architecture: Architecture, answer: Answer) -> Iterator[Mention]:
 
 
 def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A message, service or action that does not exist.
+    """No message, service or action of this name exists.
 
     Why: the name is written for a package whose interfaces archgen holds completely for this distribution, or which the
     project defines itself, and no such name is among them. The node that uses it will not build. A name that is
@@ -92,7 +91,7 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     interfaces = architecture.interfaces
     for message, at, element in _answered(architecture, "wrong"):
-        package = message.split("/")[0]
+        package = message.partition("/")[0]
         where = (
             "which the project defines" if package in interfaces.project_packages else f"as {interfaces.distro} has it"
         )
@@ -106,7 +105,7 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A message, service or action of which archgen cannot tell whether it exists.
+    """Nobody can tell whether this message, service or action exists.
 
     Why: nobody holds a complete list of its package for this distribution: neither archgen nor the project. The name may
     be right; a slip in it would go unseen. With the definition at hand, archgen checks the name and what is in it.
@@ -147,7 +146,7 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _unheld(message: str, interfaces: Interfaces) -> str:
     """Say why a name cannot be judged."""
-    package = message.split("/")[0]
+    package = message.partition("/")[0]
     if interfaces.distro is None:
         return "the project names no distribution (`ros: {distro: jazzy}`)"
     if not interfaces.held:
@@ -171,101 +170,8 @@ def _define(message: str, interfaces: Interfaces) -> str:
     return f'add its definition, for instance as `msgs/{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
 
 
-def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A conceptual type that carries messages, and no message is named for it.
-
-    Why: outputs and inputs of this type cannot become topics yet: nobody has decided what is sent. A port that is no message
-    at all (a sound, a push, light) says `medium: physical` instead.
-
-    Bad:
-
-        groups:
-          perception:
-            components:
-              tracker: {outputs: {people: Tracked people}}
-
-    Good:
-
-        groups:
-          perception:
-            components:
-              tracker: {outputs: {people: Tracked people}}
-        types:
-          Tracked people: {message: vision_msgs/msg/Detection3DArray}
-    """
-    for name, places in _uses(architecture).items():
-        type_ = architecture.types.get(name)
-        if type_ is None or type_.message is None:
-            yield Diagnostic(
-                "unmapped-type",
-                f"no message is named for the type `{name}`",
-                places[0],
-                labels=tuple(_elsewhere(type_, places[1:])),
-                help=_mapped(name, architecture),
-                element=name,
-            )
-
-
-def _elsewhere(type_: Type | None, places: list[Span]) -> Iterator[Label]:
-    if type_ is not None and type_.at != NOWHERE and type_.origin == "project":
-        yield Label(type_.at, "declared here, without a message")
-    yield from (Label(place, "also used here") for place in places)
-
-
-def _mapped(name: str, architecture: Architecture) -> str:
-    known = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
-    guess = did_you_mean(name, known | set(architecture.interfaces.mapper))
-    return guess or f"name it below `types:`, as in `{name}: {{message: package/msg/Name}}`"
-
-
-def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A type that is mapped, and nothing has it.
-
-    Why: the mapping is written for nobody: the port that had this type was renamed or taken away, or the name differs in a
-    letter. Types that stand in another one's `request`, `response` or `feedback` are used.
-
-    Bad:
-
-        groups:
-          perception:
-            components:
-              camera: {outputs: {colour: Colour picture}}
-        types:
-          Colour picture: {message: sensor_msgs/msg/Image}
-          Colour pictures: {message: sensor_msgs/msg/Image}
-
-    Good:
-
-        groups:
-          perception:
-            components:
-              camera: {outputs: {colour: Colour picture}}
-        types:
-          Colour picture: {message: sensor_msgs/msg/Image}
-    """
-    components = architecture.components.values()
-    used = {port.type for c in components for port in (*c.inputs.values(), *c.outputs.values())}
-    for type_ in architecture.types.values():
-        used |= {type_.request, type_.response, type_.feedback}
-    for type_ in architecture.types.values():
-        if type_.origin == "project" and type_.at != NOWHERE and type_.name not in used:
-            unmapped = {name for name in used if name and not _has_message(architecture, name)}
-            yield Diagnostic(
-                "unused-type",
-                f"nothing has the type `{type_.name}`",
-                type_.at,
-                help=did_you_mean(type_.name, unmapped),
-                element=type_.name,
-            )
-
-
-def _has_message(architecture: Architecture, name: str) -> bool:
-    type_ = architecture.types.get(name)
-    return type_ is not None and type_.message is not None
-
-
 def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A topic, service or action for which several messages are named.
+    """Several messages are named for one topic, service or action.
 
     Why: under one name all nodes have to use one message. Those that use another one are never connected (ROS 2), or are
     refused with an error when they meet (ROS 1).
@@ -322,20 +228,17 @@ def _place(endpoint: Endpoint, architecture: Architecture) -> Span:
     """Give where an endpoint's message comes from: it was written, or its port has it, or its node stands there."""
     port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
     node = architecture.nodes.get(endpoint.node)
-    places = (
+    return _first(
         endpoint.message_at,
         endpoint.at,
         port.type_at if port else NOWHERE,
         port.at if port else NOWHERE,
         node.at if node else NOWHERE,
     )
-    return next((place for place in places if place != NOWHERE), NOWHERE)
 
 
 RULES = (
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
-    (unmapped_type, Severity.WARNING),
-    (unused_type, Severity.NOTE),
     (topic_type_conflict, Severity.ERROR),
 )
