@@ -1,0 +1,244 @@
+"""Messages: whether they exist, and whether every topic carries only one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+from archgen.model.architecture import Architecture
+from archgen.model.component import Input, Output
+from archgen.model.interfaces import Answer, Interfaces
+from archgen.model.mapping import Type, flow_of
+from archgen.model.node import Endpoint
+from archgen.source import NOWHERE, Span
+
+_KIND = {"topic": "message", "service": "service", "action": "action"}
+
+
+class Mention(NamedTuple):
+    """One place where the project writes a message, and the element that it stands in."""
+
+    message: str
+    at: Span
+    element: str
+
+
+def mentions(architecture: Architecture) -> Iterator[Mention]:
+    """Give every place where somebody wrote a message, once; not those that are planned.
+
+    A planned message is planned wherever it is written: the type says so for all.
+    """
+    planned = {type_.message for type_ in architecture.types.values() if type_.status == "planned"}
+    seen = set[Span]()
+    for mention in _written(architecture):
+        if mention.at != NOWHERE and mention.at not in seen and mention.message not in planned:
+            seen.add(mention.at)
+            yield mention
+
+
+def _written(architecture: Architecture) -> Iterator[Mention]:
+    for type_ in architecture.types.values():
+        if type_.message is not None and type_.origin != "shipped":
+            yield Mention(type_.message, _first(type_.message_at, type_.at, _used_at(type_, architecture)), type_.name)
+    for node in architecture.nodes.values():
+        for use in node.uses:
+            if use.message is not None:
+                yield Mention(use.message, use.message_at, node.id)
+
+
+def _used_at(type_: Type, architecture: Architecture) -> Span:
+    """Give where a port names a type that is itself a message."""
+    ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
+    return next((port.type_at for port in ports if port.type == type_.name), NOWHERE)
+
+
+def _first(*places: Span) -> Span:
+    """Give the first place that somebody wrote."""
+    return next((place for place in places if place != NOWHERE), NOWHERE)
+
+
+def _answered(architecture: Architecture, answer: Answer) -> Iterator[Mention]:
+    return (found for found in mentions(architecture) if architecture.interfaces.answer(found.message) == answer)
+
+
+def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """No message, service or action of this name exists.
+
+    Why: the name is written for a package whose interfaces archgen holds completely for this distribution, or which the
+    project defines itself, and no such name is among them. The node that uses it will not build. A name that is
+    still to be defined is marked with `status: planned` at its type.
+
+    Bad:
+
+        ros: {distro: noetic}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {colour: Camera picture}}
+        types:
+          Camera picture: {message: sensor_msgs/msg/Imgae}
+
+    Good:
+
+        ros: {distro: noetic}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {colour: Camera picture}}
+        types:
+          Camera picture: {message: sensor_msgs/msg/Image}
+    """
+    interfaces = architecture.interfaces
+    for message, at, element in _answered(architecture, "wrong"):
+        package = message.partition("/")[0]
+        where = (
+            "which the project defines" if package in interfaces.project_packages else f"as {interfaces.distro} has it"
+        )
+        yield Diagnostic(
+            "unknown-message",
+            f"no {_KIND[flow_of(message)]} `{message}` in `{package}`, {where}",
+            at,
+            help=_meant(message, interfaces) or _define(message, interfaces),
+            element=element,
+        )
+
+
+def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Nobody can tell whether this message, service or action exists.
+
+    Why: nobody holds a complete list of its package for this distribution: neither archgen nor the project. The name may
+    be right; a slip in it would go unseen. With the definition at hand, archgen checks the name and what is in it.
+
+    Bad:
+
+        ros: {distro: jazzy}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {tags: Tags}}
+        types:
+          Tags: {message: demo_msgs/msg/Tags}
+
+    Good:
+
+        ros:
+          distro: jazzy
+          definitions:
+            demo_msgs/msg/Tags: "string[] names"
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {tags: Tags}}
+        types:
+          Tags: {message: demo_msgs/msg/Tags}
+    """
+    interfaces = architecture.interfaces
+    for message, at, element in _answered(architecture, "not held"):
+        yield Diagnostic(
+            "unchecked-message",
+            f"cannot tell whether the {_KIND[flow_of(message)]} `{message}` exists: {_unheld(message, interfaces)}",
+            at,
+            help=_meant(message, interfaces) or _define(message, interfaces),
+            element=element,
+        )
+
+
+def _unheld(message: str, interfaces: Interfaces) -> str:
+    """Say why a name cannot be judged."""
+    package = message.partition("/")[0]
+    if interfaces.distro is None:
+        return "the project names no distribution (`ros: {distro: jazzy}`)"
+    if not interfaces.held:
+        return f"archgen holds no interfaces of `{interfaces.distro}`"
+    if package in interfaces.packages():
+        return f"it is not among the names held of `{package}`, and newer ones may be missing there"
+    return f"archgen holds no names of `{package}` for {interfaces.distro}"
+
+
+def _meant(message: str, interfaces: Interfaces) -> str | None:
+    guess = interfaces.nearest(message)
+    return f"did you mean `{guess}`?" if guess else None
+
+
+def _define(message: str, interfaces: Interfaces) -> str:
+    """Say how the project makes a message known."""
+    package, kind, name = message.split("/")
+    file = f"{package}/{kind}/{name}.{kind}"
+    if package in interfaces.project_packages:
+        return f"add its definition, `{file}`, to the others, or write `status: planned` at its type"
+    return f'add its definition, for instance as `msgs/{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
+
+
+def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Several messages are named for one topic, service or action.
+
+    Why: under one name all nodes have to use one message. Those that use another one are never connected (ROS 2), or are
+    refused with an error when they meet (ROS 1).
+
+    Bad:
+
+        ros: {distro: jazzy}
+        nodes:
+          camera:
+            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+          viewer:
+            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/CompressedImage}}}
+
+    Good:
+
+        ros: {distro: jazzy}
+        nodes:
+          camera:
+            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+          viewer:
+            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+    """
+    for topic in architecture.topics.values():
+        users = _first_users((*topic.writers, *topic.readers))
+        if len(users) > 1:
+            first, second = list(users.values())[:2]
+            labels = (
+                Label(_place(user, architecture), f"`{user.message}` here, by the node `{user.node}`")
+                for user in users.values()
+                if user is not second
+            )
+            names = " and ".join(f"`{message}`" for message in users)
+            yield Diagnostic(
+                "topic-type-conflict",
+                f"the {topic.flow} `{topic.name}` carries {names}",
+                _place(second, architecture),
+                labels=tuple(label for label in labels if label.span != NOWHERE),
+                help=f"give both nodes the same message, or one of them another {topic.flow}: `{first.node}` has "
+                f"`{first.message}`, `{second.node}` `{second.message}`",
+                element=second.node,
+            )
+
+
+def _first_users(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
+    """Give the first endpoint for each message that a name carries."""
+    found = dict[str, Endpoint]()
+    for endpoint in endpoints:
+        if endpoint.message is not None:
+            found.setdefault(endpoint.message, endpoint)
+    return found
+
+
+def _place(endpoint: Endpoint, architecture: Architecture) -> Span:
+    """Give where an endpoint's message comes from: it was written, or its port has it, or its node stands there."""
+    port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
+    node = architecture.nodes.get(endpoint.node)
+    return _first(
+        endpoint.message_at,
+        endpoint.at,
+        port.type_at if port else NOWHERE,
+        port.at if port else NOWHERE,
+        node.at if node else NOWHERE,
+    )
+
+
+RULES = (
+    (unknown_message, Severity.ERROR),
+    (unchecked_message, Severity.NOTE),
+    (topic_type_conflict, Severity.ERROR),
+)
