@@ -1,1 +1,49 @@
 """Analyses: pure functions that compute, and right below each the rule that judges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.analyses import (
+    chains,
+    connectivity,
+    mapping,
+    names,
+    port_types,
+    progress,
+    qos,
+    requirements,
+    roles,
+    sections,
+    topics,
+)
+from archgen.diagnostic import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.diagnostic import Diagnostic
+    from archgen.model.architecture import Architecture
+
+_JUDGES = (
+    *connectivity.RULES,
+    *port_types.RULES,
+    *roles.RULES,
+    *mapping.RULES,
+    *topics.RULES,
+    *sections.RULES,
+    *names.RULES,
+    *qos.RULES,
+    *requirements.RULES,
+    *chains.RULES,
+    *progress.RULES,
+)
+
+RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in _JUDGES)
+"""All rules that judge an architecture, in the order in which they run."""
+
+
+def check(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Run all rules. The findings are neither sorted nor settled."""
+    for judge, _ in _JUDGES:
+        yield from judge(architecture)

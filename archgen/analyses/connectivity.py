@@ -1,0 +1,263 @@
+"""Is everything joined to something? Components that nobody knows, inputs that nothing feeds, outputs that nobody reads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+from archgen.model.mapping import flow_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component, Connection, Output
+
+
+def linked_components(architecture: Architecture) -> frozenset[str]:
+    """Give the components that a connection joins to another one, by complete id.
+
+    A component whose outputs are not known yet is joined by a reference to it, or to its group.
+    """
+    linked = set[str]()
+    for connection in architecture.connections:
+        reader = architecture.inputs[connection.input].component
+        feeders = {architecture.outputs[output].component for output in connection.outputs}
+        feeders.update(c.id for c in _targets(architecture, connection) if not c.outputs_known)
+        feeders.discard(reader)
+        if feeders:
+            linked.add(reader)
+            linked |= feeders
+    return frozenset(linked)
+
+
+def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A component exchanges nothing with any other component, nor with the world outside.
+
+    Why: Such a part was forgotten when the interfaces were agreed, or is not needed. While nothing is known of its inputs
+    and outputs, this is a note, and only once other components are connected.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {path: nav_msgs/msg/Path}}
+              controller: {inputs: {path: planner.path}}
+              recorder: {title: Recorder, inputs: {}, outputs: {}}
+        nodes:
+          planner: {implements: planner}
+          controller: {implements: controller}
+          recorder: {implements: recorder}
+
+    Good:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {path: nav_msgs/msg/Path}}
+              controller: {inputs: {path: planner.path}}
+              recorder: {title: Recorder, inputs: {path: planner.path}, outputs: {}}
+        nodes:
+          planner: {implements: planner}
+          controller: {implements: controller}
+          recorder: {implements: recorder}
+    """
+    if len(architecture.components) == 1:
+        return
+    linked = linked_components(architecture)
+    for component in architecture.components.values():
+        if component.id in linked or _touches_the_world(component) or _has_open_reference(component):
+            continue
+        stub = not (component.inputs or component.outputs or (component.inputs_known and component.outputs_known))
+        if stub and not architecture.connections:
+            continue
+        yield Diagnostic(
+            "disconnected-component",
+            f"`{component.id}` is connected to no other component",
+            component.at,
+            severity=Severity.NOTE if stub else None,
+            help="say in its `inputs` what it takes from others, or let another component take one of its outputs",
+            element=component.id,
+        )
+
+
+def unfed_input(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Nothing feeds an input: it has no source, is not fed from outside, and is not optional.
+
+    Why: The component waits for data that nobody sends. Partners find this in the integration week otherwise.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {path: nav_msgs/msg/Path}}
+              controller:
+                inputs:
+                  path: planner.path
+                  odometry:
+        nodes:
+          planner: {implements: planner}
+          controller: {implements: controller}
+
+    Good:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {path: nav_msgs/msg/Path}}
+              controller:
+                inputs:
+                  path: planner.path
+                  odometry: {external: The wheels of the bought base, type: nav_msgs/msg/Odometry}
+        nodes:
+          planner: {implements: planner}
+          controller: {implements: controller}
+    """
+    for entry in architecture.inputs.values():
+        if entry.from_written or entry.connections or entry.external or entry.optional:
+            continue
+        yield Diagnostic(
+            "unfed-input",
+            f"nothing feeds the input `{entry.name}` of `{entry.component}`",
+            entry.at,
+            help="name its source in `from`, say what feeds it from outside in `external`, or write `optional: true`",
+            element=entry.component,
+        )
+
+
+def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A reference to a whole component or group brings nothing: no output in it carries messages.
+
+    Why: A reference to a component or group takes every output that carries messages. Services, actions and physical outputs
+    are named one by one, so that such a reference to a pure server leaves the input empty.
+
+    Bad:
+        groups:
+          grasping:
+            components:
+              planner: {outputs: {trigger: std_srvs/srv/Trigger}}
+              button: {inputs: {check: planner.trigger}}
+              hand: {inputs: {plan: planner}}
+        nodes:
+          planner: {implements: planner}
+          button: {implements: button}
+          hand: {implements: hand}
+
+    Good:
+        groups:
+          grasping:
+            components:
+              planner: {outputs: {trigger: std_srvs/srv/Trigger}}
+              button: {inputs: {check: planner.trigger}}
+              hand: {inputs: {plan: planner.trigger}}
+        nodes:
+          planner: {implements: planner}
+          button: {implements: button}
+          hand: {implements: hand}
+    """
+    for connection in architecture.connections:
+        if connection.outputs or connection.kind == "output":
+            continue
+        reader = architecture.inputs[connection.input].component
+        targets = [c for c in _targets(architecture, connection) if c.id != reader]
+        if not all(c.outputs_known for c in targets):
+            continue
+        outputs = [output for c in targets for output in c.outputs.values()]
+        yield Diagnostic(
+            "empty-reference",
+            f"`{connection.written}` brings nothing: no output in it carries messages",
+            connection.at,
+            labels=tuple(Label(o.at, f"{_sort(architecture, o)}, named by itself only") for o in outputs[:3]),
+            help=f"write `{outputs[0].id}`" if len(outputs) == 1 else None,
+            element=reader,
+        )
+
+
+def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Nobody reads an output, inside the architecture or outside.
+
+    Why: Either a reader is missing, or work is done for nobody. An output for the world outside says so in `external`; what
+    stands on a topic that all nodes share, such as `/tf`, is meant for everybody.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera:
+                outputs:
+                  image: sensor_msgs/msg/Image
+                  depth: sensor_msgs/msg/Image
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera:
+                outputs:
+                  image: sensor_msgs/msg/Image
+                  depth: {type: sensor_msgs/msg/Image, external: The operator's tablet}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+    """
+    read = {edge.output for edge in architecture.edges}
+    shared = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
+    whole = {c.target for c in architecture.connections if c.kind != "output"}
+    for output in architecture.outputs.values():
+        if output.id in read or output.external or output.id in shared:
+            continue
+        group = architecture.components[output.component].group
+        yield Diagnostic(
+            "unread-output",
+            f"nobody {_verb(architecture, output)} `{output.name}` of `{output.component}`",
+            output.at,
+            help=_unread_help(architecture, output, taken=bool({output.component, group} & whole)),
+            element=output.component,
+        )
+
+
+def _unread_help(architecture: Architecture, output: Output, *, taken: bool) -> str:
+    sort = _sort(architecture, output)
+    if taken and sort != "topic":
+        return f"a reference to the whole component does not take it, being {_ARTICLES[sort]}: name `{output.id}`"
+    return "let an input name it in `from`, or say who reads it outside in `external`"
+
+
+_ARTICLES = {"service": "a service", "action": "an action", "physical": "physical"}
+
+
+def _sort(architecture: Architecture, output: Output) -> str:
+    return "physical" if output.physical else flow_of(architecture.message(output))
+
+
+def _verb(architecture: Architecture, output: Output) -> str:
+    return "calls" if _sort(architecture, output) in {"service", "action"} else "reads"
+
+
+def _targets(architecture: Architecture, connection: Connection) -> Iterable[Component]:
+    """Give the components whose outputs a reference stands for."""
+    if connection.kind == "group":
+        return architecture.groups[connection.target].components.values()
+    if connection.kind == "component":
+        return (architecture.components[connection.target],)
+    return ()
+
+
+def _touches_the_world(component: Component) -> bool:
+    return any(i.external for i in component.inputs.values()) or any(o.external for o in component.outputs.values())
+
+
+def _has_open_reference(component: Component) -> bool:
+    """Tell whether some reference could not be resolved: that is reported already."""
+    return any(entry.from_written and not entry.connections for entry in component.inputs.values())
+
+
+RULES = (
+    (disconnected_component, Severity.WARNING),
+    (unfed_input, Severity.WARNING),
+    (empty_reference, Severity.WARNING),
+    (unread_output, Severity.WARNING),
+)

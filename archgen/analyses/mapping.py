@@ -1,0 +1,216 @@
+"""Does the low level carry the whole high level? Components without nodes, nodes without components, ports nobody takes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component, Input
+    from archgen.model.node import Node
+
+
+def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, ...]]:
+    """Give the nodes that somebody wrote, by the complete id of the component that they implement."""
+    found: dict[str, list[Node]] = defaultdict(list)
+    for node in architecture.nodes.values():
+        if node.written:
+            for component in dict.fromkeys(node.implements):
+                found[component].append(node)
+    return {component: tuple(nodes) for component, nodes in found.items()}
+
+
+def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
+    """No node implements a component.
+
+    Why: Nobody has decided yet which ROS node does this work. Pictures show a planned node in its place. A component whose
+    inputs and outputs are all physical needs none.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+    """
+    nodes = nodes_of_components(architecture)
+    for component in architecture.components.values():
+        if component.id in nodes or _purely_physical(component):
+            continue
+        yield Diagnostic(
+            "unmapped-component",
+            f"no node implements `{component.id}`",
+            component.at,
+            help=f"write a node with `implements: {component.id}` (`status: planned` if it does not exist yet)",
+            element=component.id,
+        )
+
+
+def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A node implements no component.
+
+    Why: A node that serves no function of the design is left over, or a component is missing.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+          image_relay: {package: topic_tools, executable: relay}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+    """
+    for node in architecture.nodes.values():
+        if node.written and not node.implements and not node.implements_written:
+            yield Diagnostic(
+                "unjustified-node",
+                f"the node `{node.id}` implements no component",
+                node.at,
+                help="name the component in `implements`, or add a component for what the node is there for",
+                element=node.id,
+            )
+
+
+def unpublished_output(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Several nodes implement a component, and none of them publishes (or serves) one of its outputs.
+
+    Why: Where one node implements a component it has all of its inputs and outputs. Several nodes share them, and each names
+    what it carries; an output that none names is one that nobody will write.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
+              screen: {inputs: {camera: camera}}
+        nodes:
+          camera_driver: {implements: camera, publishes: {image: }}
+          camera_calibration: {implements: camera}
+          image_view: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
+              screen: {inputs: {camera: camera}}
+        nodes:
+          camera_driver: {implements: camera, publishes: {image: }}
+          camera_calibration: {implements: camera, publishes: {info: }}
+          image_view: {implements: screen}
+    """
+    for component, nodes, carried in _shared_components(architecture):
+        for output in component.outputs.values():
+            if output.physical or output.id in carried:
+                continue
+            names = " and ".join(f"`{node.id}`" for node in nodes)
+            yield Diagnostic(
+                "unpublished-output",
+                f"none of the nodes of `{component.id}` publishes `{output.name}`",
+                output.at,
+                labels=tuple(Label(node.at, "a node of it") for node in nodes),
+                help=f"name `{output.name}` in `publishes` (a service or action in `serves`) of {names}",
+                element=component.id,
+            )
+
+
+def unsubscribed_input(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Several nodes implement a component, and none of them subscribes to (or calls) one of its inputs.
+
+    Why: The component counts on data that none of its nodes receives. See `unpublished-output` for who names what.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
+              screen: {inputs: {image: camera.image, info: camera.info}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen, subscribes: {image: }}
+          overlay: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
+              screen: {inputs: {image: camera.image, info: camera.info}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen, subscribes: {image: }}
+          overlay: {implements: screen, subscribes: {info: }}
+    """
+    for component, nodes, carried in _shared_components(architecture):
+        for entry in component.inputs.values():
+            if entry.id in carried or not _brings_messages(architecture, entry):
+                continue
+            names = " and ".join(f"`{node.id}`" for node in nodes)
+            yield Diagnostic(
+                "unsubscribed-input",
+                f"none of the nodes of `{component.id}` reads `{entry.name}`",
+                entry.at,
+                labels=tuple(Label(node.at, "a node of it") for node in nodes),
+                help=f"name `{entry.name}` in `subscribes` (a service or action in `calls`) of {names}",
+                element=component.id,
+            )
+
+
+def _shared_components(architecture: Architecture) -> Iterator[tuple[Component, tuple[Node, ...], frozenset[str]]]:
+    """Give each component that several nodes implement, with them and the ports that they carry."""
+    endpoints = {e.port for e in architecture.endpoints if e.port}
+    nodes_of = nodes_of_components(architecture)
+    for component in architecture.components.values():
+        nodes = nodes_of.get(component.id, ())
+        if len(nodes) > 1:
+            named = {use.port for node in nodes for use in node.uses if use.port}
+            yield component, nodes, frozenset(named | endpoints)
+
+
+def _brings_messages(architecture: Architecture, entry: Input) -> bool:
+    outputs = (architecture.outputs[o] for connection in entry.connections for o in connection.outputs)
+    return not entry.physical and any(not output.physical for output in outputs)
+
+
+def _purely_physical(component: Component) -> bool:
+    ports = [port.physical for port in component.inputs.values()] + [
+        port.physical for port in component.outputs.values()
+    ]
+    return bool(ports) and all(ports)
+
+
+RULES = (
+    (unmapped_component, Severity.WARNING),
+    (unjustified_node, Severity.WARNING),
+    (unpublished_output, Severity.WARNING),
+    (unsubscribed_input, Severity.WARNING),
+)

@@ -1,0 +1,108 @@
+"""What is still blank: the note that lists what a component lacks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
+
+
+def missing_details(architecture: Architecture, component: Component, *, timed: bool) -> Iterator[str]:
+    """Name what nobody has written about a component yet, in the order in which it is usually filled in.
+
+    `inputs: {}` and `requirements: []` are answers. A source is not asked for inputs, nor a sink for outputs.
+    """
+    if not component.functionality:
+        yield "functionality"
+    if architecture.partners and component.owner is None:
+        yield "owner"
+    if not component.requirements_known:
+        yield "requirements"
+    if not component.inputs_known and component.role != "source":
+        yield "inputs"
+    if not component.outputs_known and component.role != "sink":
+        yield "outputs"
+    untyped = [output.name for output in component.outputs.values() if output.type is None]
+    if untyped:
+        yield f"the type of {_listed([f'`{name}`' for name in untyped])}"
+    if not component.performance:
+        yield "performance"
+    empty = [i.id for i in component.performance if i.accuracy is None and i.execution_time is None]
+    if empty:
+        yield f"figures for {_listed([f'`{name}`' for name in empty])}"
+    if not timed:
+        yield "timing"
+
+
+def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Something about a component is not written yet.
+
+    Why: A design starts with stubs and is filled in. One note for each component lists what is blank, so that nobody has to
+    look for it. `archgen stats` counts the same by group and partner.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera:
+                functionality: Takes pictures of what lies in front of the robot.
+                requirements: []
+                inputs: {}
+                outputs: {image: sensor_msgs/msg/Image}
+                performance: {accuracy: 1280 x 720 pixels}
+              screen:
+                functionality: Shows the pictures to the operator.
+                requirements: []
+                inputs: {image: camera.image}
+                outputs: {}
+                performance: {execution_time: 20 ms}
+                timing: {behaviour: event}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera:
+                functionality: Takes pictures of what lies in front of the robot.
+                requirements: []
+                inputs: {}
+                outputs: {image: sensor_msgs/msg/Image}
+                performance: {accuracy: 1280 x 720 pixels}
+                timing: {rate: 30 Hz}
+              screen:
+                functionality: Shows the pictures to the operator.
+                requirements: []
+                inputs: {image: camera.image}
+                outputs: {}
+                performance: {execution_time: 20 ms}
+                timing: {behaviour: event}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+    """
+    timed = {component for node in architecture.nodes.values() for component in node.timing}
+    for component in architecture.components.values():
+        missing = list(missing_details(architecture, component, timed=bool(component.timing) or component.id in timed))
+        if missing:
+            yield Diagnostic(
+                "missing-detail",
+                f"`{component.id}` still lacks {_listed(missing)}",
+                component.at,
+                element=component.id,
+            )
+
+
+def _listed(words: list[str]) -> str:
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+RULES = ((missing_detail, Severity.NOTE),)

@@ -1,0 +1,91 @@
+"""Does each port of a node stand in the section that its message asks for: a topic, or a service or action?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Severity
+from archgen.model.mapping import flow_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Flow, PortUse
+
+_TOPIC_SECTION = {"publishes": "publishes", "serves": "publishes", "subscribes": "subscribes", "calls": "subscribes"}
+_SERVICE_SECTION = {"publishes": "serves", "serves": "serves", "subscribes": "calls", "calls": "calls"}
+_ARTICLES: Mapping[Flow, str] = {"topic": "a topic", "service": "a service", "action": "an action"}
+
+
+def wrong_section(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A node lists a service or action among its topics, a topic among its services, or a physical port at all.
+
+    Why: The middle part of the message says what flows: `msg` is a topic (`publishes`, `subscribes`), `srv` a service and
+    `action` an action (`serves`, `calls`). Physical ports are not in ROS.
+
+    Bad:
+        groups:
+          grasping:
+            components:
+              planner: {outputs: {stop: std_srvs/srv/Trigger}}
+              button: {inputs: {stop: planner.stop}}
+        nodes:
+          planner: {implements: planner, publishes: {stop: /stop}}
+          button: {implements: button}
+
+    Good:
+        groups:
+          grasping:
+            components:
+              planner: {outputs: {stop: std_srvs/srv/Trigger}}
+              button: {inputs: {stop: planner.stop}}
+        nodes:
+          planner: {implements: planner, serves: {stop: /stop}}
+          button: {implements: button}
+    """
+    flows = _flows_of_ports(architecture)
+    for node in architecture.nodes.values():
+        for use in node.uses:
+            fault = _fault(architecture, flows, use)
+            if fault:
+                yield Diagnostic(
+                    "wrong-section",
+                    f"`{use.key}` of the node `{node.id}` {fault[0]}",
+                    use.at,
+                    help=fault[1],
+                    element=node.id,
+                )
+
+
+def _fault(architecture: Architecture, flows: Mapping[str, set[Flow]], use: PortUse) -> tuple[str, str] | None:
+    """Say what is wrong with an entry and what to do, or give None."""
+    port = architecture.outputs.get(use.port or "") or architecture.inputs.get(use.port or "")
+    if port and port.physical:
+        return (
+            f"is physical and does not stand below `{use.use}`",
+            "leave it out: physical ports have neither topic nor message",
+        )
+    there = {flow_of(use.message)} if use.message else flows.get(use.port or "", set())
+    right = {(_TOPIC_SECTION if flow == "topic" else _SERVICE_SECTION)[use.use] for flow in there}
+    if not there or use.use in right:
+        return None
+    what = " and ".join(_ARTICLES[flow] for flow in ("topic", "service", "action") if flow in there)
+    where = " or ".join(f"`{section}`" for section in sorted(right))
+    return f"is {what}, but stands below `{use.use}`", f"move it to {where}"
+
+
+def _flows_of_ports(architecture: Architecture) -> Mapping[str, set[Flow]]:
+    """Give what flows through each output and input, as far as messages are named."""
+    flows: dict[str, set[Flow]] = defaultdict(set)
+    for output in architecture.outputs.values():
+        message = architecture.message(output)
+        if message:
+            flows[output.id].add(flow_of(message))
+    for edge in architecture.edges:
+        flows[edge.input] |= flows.get(edge.output, set())
+    return flows
+
+
+RULES = ((wrong_section, Severity.WARNING),)
