@@ -247,8 +247,7 @@ def _targets(architecture: Architecture, connection: Connection) -> Iterable[Com
 
 
 def _touches_the_world(component: Component) -> bool:
-    ports = (*component.inputs.values(), *component.outputs.values())
-    return any(port.external for port in ports)
+    return any(i.external for i in component.inputs.values()) or any(o.external for o in component.outputs.values())
 
 
 def _has_open_reference(component: Component) -> bool:

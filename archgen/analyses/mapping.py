@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, ...]]:
     """Give the nodes that somebody wrote, by the complete id of the component that they implement."""
-    found = defaultdict[str, list[Node]](list)
+    found: dict[str, list[Node]] = defaultdict(list)
     for node in architecture.nodes.values():
         if node.written:
             for component in dict.fromkeys(node.implements):
@@ -202,8 +202,10 @@ def _brings_messages(architecture: Architecture, entry: Input) -> bool:
 
 
 def _purely_physical(component: Component) -> bool:
-    ports = (*component.inputs.values(), *component.outputs.values())
-    return bool(ports) and all(port.physical for port in ports)
+    ports = [port.physical for port in component.inputs.values()] + [
+        port.physical for port in component.outputs.values()
+    ]
+    return bool(ports) and all(ports)
 
 
 RULES = (

@@ -143,7 +143,7 @@ def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
           camera_driver: {implements: camera, name: usb_cam}
           image_view: {implements: screen, name: usb_cam, namespace: /operator}
     """
-    first = dict[str, "Node"]()
+    first: dict[str, Node] = {}
     for node in architecture.nodes.values():
         if not node.written:
             continue

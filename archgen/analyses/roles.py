@@ -108,19 +108,26 @@ def role_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _fault(role: str, seen: Shape) -> str | None:
     """Say what speaks against a role, or None."""
+    return next((fault for fits, fault in _demands(role, seen) if not fits), None)
+
+
+def _demands(role: str, seen: Shape) -> tuple[tuple[bool, str], ...]:
+    """Give what a role asks for, each with what to say where it is not so."""
     if role == "source":
-        if not seen.outputs:
-            return "it has no output"
-        return "it takes data from another component" if seen.fed else None
-    if role == "filter":
-        if not seen.digital:
-            return "it has no output that is not physical"
-        return None if seen.fed or seen.maybe_fed else "it takes no data from another component"
+        return ((seen.outputs, "it has no output"), (not seen.fed, "it takes data from another component"))
+    serves = seen.serves or seen.maybe_serves
     if role == "reactive":
-        return None if seen.serves or seen.maybe_serves else "it serves no service and no action"
-    if not (seen.fed or seen.maybe_fed or seen.serves or seen.maybe_serves):
-        return "no other component feeds it"
-    return None if seen.acts or not seen.sends else "all that it sends stays inside the architecture"
+        return ((serves, "it serves no service and no action"),)
+    fed = seen.fed or seen.maybe_fed
+    if role == "filter":
+        return (
+            (seen.digital, "it has no output that is not physical"),
+            (fed, "it takes no data from another component"),
+        )
+    return (
+        (fed or serves, "no other component feeds it"),
+        (seen.acts or not seen.sends, "all that it sends stays inside the architecture"),
+    )
 
 
 def _from_inside(architecture: Architecture, component: Component, connection: Connection) -> bool:

@@ -78,7 +78,7 @@ def _fault(architecture: Architecture, flows: Mapping[str, set[Flow]], use: Port
 
 def _flows_of_ports(architecture: Architecture) -> Mapping[str, set[Flow]]:
     """Give what flows through each output and input, as far as messages are named."""
-    flows = defaultdict[str, set["Flow"]](set)
+    flows: dict[str, set[Flow]] = defaultdict(set)
     for output in architecture.outputs.values():
         message = architecture.message(output)
         if message:

@@ -1,0 +1,81 @@
+"""Quote one line of a file with marks below it: tabs expanded, wide characters counted, long lines cut round the marks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from archgen.findings.escape import visible, width
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+TAB = 4
+_CUT = "…"
+_LONGEST = 4000
+"""Characters of a line that are looked at on each side of a mark: nobody's screen is wider."""
+
+
+class Mark(NamedTuple):
+    """Characters `start` to `end` (from 0, exclusive) of a line to point at, with which sign and what to say."""
+
+    start: int
+    end: int
+    sign: str
+    text: str = ""
+
+
+def quote(line: str, marks: Iterable[Mark], limit: int) -> Iterator[tuple[str, Mark | None]]:
+    """Give the line, then a line for each mark, at most `limit` columns wide apart from what the marks say.
+
+    A mark that ends beyond the line points at its end; an empty one is one sign wide.
+    """
+    marks = tuple(marks)
+    base = max(0, min((mark.start for mark in marks), default=0) - _LONGEST)
+    line = line[base : base + 2 * _LONGEST + limit]
+    cells = _cells(line)
+    columns = [0]
+    for cell in cells:
+        columns.append(columns[-1] + width(cell))
+    placed = [(mark, *_place(mark, base, columns)) for mark in marks]
+    left, right = _window(columns[-1], placed[0][1] if placed else 0, placed[0][2] if placed else 0, limit)
+    begin = next((i for i, column in enumerate(columns) if column >= left), len(cells))
+    end = next((i for i in range(len(cells), -1, -1) if columns[i] <= right), 0)
+    head = _CUT if begin > 0 or base else ""
+    tail = _CUT if end < len(cells) else ""
+    yield (head + "".join(cells[begin:end]) + tail).rstrip(), None
+    for mark, start, stop in placed:
+        low, high = max(start, columns[begin]), min(stop, columns[end])
+        if high <= low and not columns[begin] <= start <= columns[end]:
+            continue
+        blank = " " * (low - columns[begin] + len(head))
+        yield f"{blank}{mark.sign * max(1, high - low)}{' ' + visible(mark.text) if mark.text else ''}", mark
+
+
+def _cells(line: str) -> list[str]:
+    """Give what each character of the line prints as."""
+    cells = []
+    column = 0
+    for character in line:
+        cell = " " * (TAB - column % TAB) if character == "\t" else visible(character)
+        column += width(cell)
+        cells.append(cell)
+    return cells
+
+
+def _place(mark: Mark, base: int, columns: list[int]) -> tuple[int, int]:
+    """Give the first column of a mark and the one behind it."""
+    last = len(columns) - 1
+    start = columns[min(max(mark.start - base, 0), last)]
+    return start, max(columns[min(max(mark.end - base, 0), last)], start + 1)
+
+
+def _window(total: int, start: int, stop: int, limit: int) -> tuple[int, int]:
+    """Choose the columns to show: all if they fit, else a window with the mark in it, and room for the cuts."""
+    if total <= limit:
+        return 0, total
+    room = max(limit - 2, 1)
+    if stop <= room:
+        return 0, room
+    middle = (start + min(stop, start + room)) // 2
+    left = max(0, min(middle - room // 2, start, max(total - room, 0)))
+    return left, left + room

@@ -1,0 +1,90 @@
+"""A rule's page, for the terminal and as Markdown: what it says, why, an example that breaks it and one that does not."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from archgen.diagnostic import Rule
+
+_SECTION = re.compile(r"^(Why|Bad|Good):[ ]?", re.MULTILINE)
+
+
+class Page(NamedTuple):
+    """The parts of a rule's page; the examples are one-file projects."""
+
+    summary: str
+    why: str
+    bad: str
+    good: str
+
+
+def page(rule: Rule) -> Page:
+    """Take a rule's page apart."""
+    summary, *rest = _SECTION.split(rule.doc)
+    parts = dict(zip(rest[::2], rest[1::2], strict=True))
+    return Page(
+        " ".join(summary.split()),
+        parts.get("Why", "").strip(),
+        _example(parts.get("Bad", "")),
+        _example(parts.get("Good", "")),
+    )
+
+
+def terminal(rule: Rule, *, colour: bool = False) -> str:
+    """Give a rule's page as text for a terminal."""
+    parts = page(rule)
+    bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
+    blocks = [f"{bold[0]}{rule.name}{bold[1]} ({_standing(rule)})", parts.summary, *_paragraphs(parts.why)]
+    for title, example in (("Reported:", parts.bad), ("Not reported:", parts.good)):
+        if example:
+            blocks += [f"{bold[0]}{title}{bold[1]}", "\n".join(f"    {line}".rstrip() for line in example.splitlines())]
+    return "\n\n".join(blocks) + "\n"
+
+
+def markdown(rule: Rule) -> str:
+    """Give a rule's page as Markdown."""
+    parts = page(rule)
+    blocks = [f"# {rule.name}", parts.summary, f"*{_standing(rule)[0].upper()}{_standing(rule)[1:]}.*"]
+    blocks += ["## Why", *_paragraphs(parts.why)] if parts.why else []
+    for title, example in (("Reported", parts.bad), ("Not reported", parts.good)):
+        blocks += [f"## {title}", f"```yaml\n{example}\n```"] if example else []
+    if not rule.fixed:
+        setting = f"rules: {{{rule.name}: note}}  # off, note, warning or error"
+        comment = f"# archgen: ignore[{rule.name}] because ..."
+        blocks += ["## To change it", f"For the whole project, in `archgen.yaml`:\n\n```yaml\n{setting}\n```"]
+        blocks += [f"In one place, at the end of the line that it points at:\n\n```yaml\n{comment}\n```"]
+    return "\n\n".join(blocks) + "\n"
+
+
+def index(rules: Mapping[str, Rule]) -> str:
+    """Give the list of all rules' pages as Markdown."""
+    lines = [
+        f"| [{rule.name}]({rule.name}.md) | {_standing(rule)} | {_cell(page(rule).summary)} |"
+        for rule in rules.values()
+    ]
+    head = ["# Rules", "", "What archgen reports. `archgen explain NAME` shows a rule's page in the terminal.", ""]
+    return "\n".join([*head, "| rule | severity | what it finds |", "|---|---|---|", *lines]) + "\n"
+
+
+def _standing(rule: Rule) -> str:
+    return f"{rule.severity}, cannot be changed" if rule.fixed else str(rule.severity)
+
+
+def _example(text: str) -> str:
+    """Take the indentation out of an example."""
+    lines = text.strip("\n").rstrip().splitlines()
+    indent = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+    return "\n".join(line[indent:] for line in lines)
+
+
+def _paragraphs(text: str) -> Iterable[str]:
+    """Fold each paragraph into one line: the reader's screen decides where it breaks."""
+    return (" ".join(paragraph.split()) for paragraph in re.split(r"\n\s*\n", text) if paragraph.strip())
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")

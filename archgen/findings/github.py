@@ -1,0 +1,52 @@
+"""Findings on a pull request: workflow commands that GitHub shows beside the lines they speak of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Severity
+from archgen.findings.escape import visible
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from archgen.diagnostic import Diagnostic
+
+_COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
+
+
+def render(diagnostics: Iterable[Diagnostic], *, folder: str = "") -> Iterator[str]:
+    """Give a command for each settled finding. `folder` is the project's, relative to the repository's root."""
+    for diagnostic in diagnostics:
+        properties = {**_place(diagnostic, folder), "title": diagnostic.rule}
+        listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+        yield f"::{_COMMANDS[diagnostic.severity or Severity.ERROR]} {listed}::{_text(diagnostic)}"
+
+
+def _place(diagnostic: Diagnostic, folder: str) -> dict[str, str | int]:
+    """Give file and lines; GitHub takes columns only where the span stands on one line."""
+    span = diagnostic.span
+    if not span.file:
+        return {}
+    prefix = folder.strip("/")
+    place: dict[str, str | int] = {"file": f"{prefix}/{span.file}" if prefix not in {"", "."} else span.file}
+    place |= {"line": span.line, "endLine": span.end_line}
+    if span.line == span.end_line:
+        place |= {"col": span.column, "endColumn": span.end_column}
+    return place
+
+
+def _text(diagnostic: Diagnostic) -> str:
+    lines = [diagnostic.message]
+    lines += [f"{label.span}: {label.text}" for label in diagnostic.labels if label.span.file]
+    lines += [f"help: {diagnostic.help}"] if diagnostic.help else []
+    return "%0A".join(_data(line) for line in lines)
+
+
+def _data(text: str) -> str:
+    """Escape what a command carries. Line ends are made visible, as all that a terminal would obey."""
+    return visible(text).replace("%", "%25")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,73 @@
+"""All rules by name, and what settings and comments say of rules that there are not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.suggest import did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from archgen.source import Span
+
+
+def by_name(rules: Iterable[Rule]) -> Mapping[str, Rule]:
+    """Key the rules by name, in alphabetical order. Two of one name are a bug."""
+    found: dict[str, Rule] = {}
+    for rule in sorted(rules, key=lambda rule: rule.name):
+        if rule.name in found:
+            msg = f"two rules are called {rule.name}"
+            raise ValueError(msg)
+        found[rule.name] = rule
+    return found
+
+
+UNKNOWN_RULE = Rule(
+    "unknown-rule",
+    Severity.WARNING,
+    """\
+A setting or an ignore comment names a rule that does not exist, or one that cannot be set.
+
+Why: The setting does nothing, and the finding that it was meant for goes on (or is missed). Rules about reading and linking
+are always errors: what comes after them rests on them.
+
+Bad:
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+    rules: {unread-outputs: off}
+
+Good:
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+    rules: {unread-output: off}
+""",
+)
+
+
+def judge_settings(settings: Iterable[tuple[str, Span]], rules: Mapping[str, Rule]) -> Iterator[Diagnostic]:
+    """Judge the names below `rules:`, each with the place of its key."""
+    for name, at in settings:
+        rule = rules.get(name)
+        if rule is None:
+            cure = did_you_mean(name, (r.name for r in rules.values() if not r.fixed))
+            yield Diagnostic("unknown-rule", f"there is no rule `{name}`", at, help=cure)
+        elif rule.fixed:
+            message = f"`{name}` is always {_ARTICLE[rule.severity]}: what comes after reading and linking rests on it"
+            yield Diagnostic("unknown-rule", message, at, help="take this line out")
+
+
+_ARTICLE = {Severity.ERROR: "an error", Severity.WARNING: "a warning", Severity.NOTE: "a note", Severity.OFF: "off"}
