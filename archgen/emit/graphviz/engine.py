@@ -1,0 +1,71 @@
+"""The one place that calls Graphviz, through pygraphviz. Only worker processes import it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from pygraphviz import AGraph
+from pygraphviz import graphviz as library
+
+Attributes = dict[str, str]
+"""DOT attributes as they stand in the text: values quoted, or html-like in angle brackets."""
+
+_CONTEXT = library.gvContextWithBuiltins()
+_PDF_DATE = re.compile(rb"(/CreationDate \(D:)[^)]*\)")
+
+
+class LayoutError(Exception):
+    """Graphviz refused a graph, or lost a part of it."""
+
+
+def layout(dot: str, program: str = "dot") -> dict[str, Any]:
+    """Lay out a graph; gives Graphviz's json: `objects` (nodes, clusters) and `edges`, with positions in points."""
+    placed: dict[str, Any] = json.loads(render(dot, ("json0",), program)[0])
+    return placed
+
+
+def render(dot: str, formats: Sequence[str], program: str = "nop2") -> tuple[bytes, ...]:
+    """Draw a graph in several formats; `nop2` keeps the positions that it has."""
+    graph = AGraph(string=dot)
+    try:
+        if library.gvLayout(_CONTEXT, graph.handle, program.encode()):
+            message = f"{program} gave up"
+            raise LayoutError(message)
+        drawn = tuple(_drawn(graph, form) for form in formats)
+        library.gvFreeLayout(_CONTEXT, graph.handle)
+    finally:
+        graph.close()
+    return drawn
+
+
+def _drawn(graph: AGraph, form: str) -> bytes:
+    failed, data = library.gvRenderData(_CONTEXT, graph.handle, form.encode())
+    if failed:
+        message = f"no {form} came out"
+        raise LayoutError(message)
+    data = data if isinstance(data, bytes) else str(data).encode()
+    return _PDF_DATE.sub(_no_date, data) if form.startswith("pdf") else data
+
+
+def _no_date(found: re.Match[bytes]) -> bytes:
+    """Overwrite the date in place: the file's offsets must not move, and two runs must give the same bytes."""
+    digits = re.sub(rb"[0-9]", b"0", found[0][len(found[1]) :])
+    return found[1] + digits.replace(b"00000000", b"20000101", 1)
+
+
+def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
+    """Give the width and height in points that nodes with these attributes take."""
+    if not labels:
+        return ()
+    lines = (f"m{at} [{written(each)} pos=\"0,0\"];" for at, each in enumerate(labels))
+    placed = layout("digraph m {" + "".join(lines) + "}", "nop2")
+    sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in placed["objects"]}
+    return tuple(sizes[f"m{at}"] for at in range(len(labels)))
+
+
+def written(attributes: Attributes) -> str:
+    """Write attributes as DOT does."""
+    return " ".join(f"{name}={value}" for name, value in attributes.items())

@@ -1,0 +1,110 @@
+"""Colours of the pictures, each chosen and measured for light paper, with its counterpart in the dark.
+
+Pictures are emitted in the light colours, so that a file looks the same in every viewer. Where a page embeds the svg,
+`dark_rules` gives the style rules that replace each light colour by its dark one.
+"""
+
+from __future__ import annotations
+
+TEXT = "#1b2127"
+MUTED = "#55606a"
+EDGE = "#66717a"
+FRAME = "#3d4852"
+SUBJECT = "#0072b2"
+PAPER = "#ffffff"
+NEIGHBOUR_FILL = "#eeeeee"
+NEIGHBOUR_FRAME = "#8a8a8a"
+TOPIC_FILL = "#fff6dc"
+TOPIC_FRAME = "#a67c00"
+SERVICE_FILL = "#efe6f7"
+SERVICE_FRAME = "#6f4f9a"
+NOTE = "#0b5a9c"
+WARNING = "#8a5300"
+ERROR = "#b3261e"
+FADED = "#a3abb2"
+
+HUES = (
+    "#5b6770",
+    "#0072b2",
+    "#00795b",
+    "#7a6a00",
+    "#b04a00",
+    "#a0407c",
+    "#5b4fa8",
+    "#8a3b3b",
+    "#1b6e8c",
+    "#6b5b3e",
+)
+"""Ten hues for groups, each with at least 5:1 on white. Two of them may look alike to the colour-blind, so a hue never
+says anything alone: the title stands beside it."""
+
+_DARK_HUES = (
+    "#a9b4bd",
+    "#5db2e8",
+    "#4cc3a0",
+    "#cdbb3f",
+    "#f09a5c",
+    "#e39ac6",
+    "#b0a6f2",
+    "#e59a9a",
+    "#6fc3df",
+    "#cbb68f",
+)
+
+PERIODS = ("#08306b", "#08519c", "#2171b5", "#6baed6", "#9ecae1", "#deebf7", "#ffffff", "#fde7c7", "#e9dff2", "#e3e6e9")
+"""Fills by period, from index 100 on in the shapes: to 10 ms, 30, 100, 300, 1 s, above, unknown, event, on demand, once."""
+
+_DARK_PAPER = "#14181c"
+_DARK = {
+    TEXT: "#e6eaee",
+    MUTED: "#a7b1ba",
+    EDGE: "#8e9aa5",
+    FRAME: "#b8c2cb",
+    PAPER: _DARK_PAPER,
+    NEIGHBOUR_FILL: "#2a3138",
+    NEIGHBOUR_FRAME: "#808a93",
+    TOPIC_FILL: "#332b12",
+    TOPIC_FRAME: "#d9b33f",
+    SERVICE_FILL: "#2c2338",
+    SERVICE_FRAME: "#bfa3e6",
+    NOTE: "#7cc0f5",
+    WARNING: "#f2b84b",
+    ERROR: "#ff8a80",
+    FADED: "#5d6770",
+}
+
+
+def hue(index: int | None) -> str:
+    """Give the colour of a palette index; beyond ten they repeat, and periods begin at 100."""
+    if index is None:
+        return FRAME
+    return PERIODS[(index - 100) % len(PERIODS)] if index >= 100 else HUES[index % len(HUES)]  # noqa: PLR2004
+
+
+def tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
+    """Mix a little of a colour into the paper."""
+    pairs = ((int(colour[at : at + 2], 16), int(paper[at : at + 2], 16)) for at in (1, 3, 5))
+    return "#" + "".join(f"{round(share * over + (1 - share) * under):02x}" for over, under in pairs)
+
+
+def text_on(fill: str) -> str:
+    """Choose white or dark text, whichever reads better on a fill."""
+    red, green, blue = (int(fill[at : at + 2], 16) for at in (1, 3, 5))
+    return PAPER if 0.299 * red + 0.587 * green + 0.114 * blue < 135 else TEXT  # noqa: PLR2004
+
+
+def dark_pairs() -> tuple[tuple[str, str], ...]:
+    """Pair each light colour with its dark counterpart."""
+    hues = dict(zip(HUES, _DARK_HUES, strict=True))
+    tints = {tint(light): tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
+    return tuple({**tints, **hues, **_DARK}.items())
+
+
+def dark_rules(scope: str) -> str:
+    """Give the CSS that turns embedded pictures dark. `scope` is a selector of what stands round the svg elements."""
+    rules = []
+    for light, dark in dark_pairs():
+        rules.append(f'{scope} svg.archgen :not(text)[fill="{light}"]{{fill:{dark}}}')
+        rules.append(f'{scope} svg.archgen text[fill="{light}"]{{fill:{dark if light != PAPER else light}}}')
+        rules.append(f'{scope} svg.archgen [stroke="{light}"]{{stroke:{dark}}}')
+    return "\n".join(rules) + "\n"

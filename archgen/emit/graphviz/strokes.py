@@ -1,0 +1,90 @@
+"""How each kind of arrow looks, and the texts that stand beside it.
+
+| style | line |
+|---|---|
+| data | solid, filled head; optional input: hollow head |
+| physical | double line |
+| service | dashed, open head, from client to server |
+| action | bold, double head, from client to server |
+| internal | dotted |
+| link | thick, without head |
+
+An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are 1, 2 and 3.2 points.
+"""
+
+from __future__ import annotations
+
+from archgen.emit.graphviz import palette
+from archgen.emit.graphviz.marks import FONT, Link, linked
+from archgen.emit.graphviz.text import html, quoted, wrapped
+from archgen.views.shapes import Arrow
+
+Attributes = dict[str, str]
+
+WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))
+"""From how many flows on an arrow is how wide."""
+
+
+def width(count: int) -> str:
+    """Give the pen width of an arrow that stands for so many flows."""
+    return next((pen for least, pen in WIDTHS if count >= least), "1")
+
+
+def arrow(item: Arrow, link: Link, *, merged: bool = False) -> Attributes:
+    """Give the DOT attributes of an arrow, without its text."""
+    colour = palette.FADED if item.faded else palette.EDGE if item.colour is None else palette.hue(item.colour)
+    found = {
+        "class": quoted(" ".join(["arrow", item.style, *(["faded"] if item.faded else [])])),
+        "color": f'"{colour}"',
+        "arrowsize": "0.6",
+        "penwidth": width(item.count) if merged else "0.8",
+        **_form(item, colour),
+        **_tooltip(item, link),
+    }
+    if merged:
+        found["arrowsize"] = {"1": "0.7", "2": "0.6", "3.2": "0.5"}[width(item.count)]
+    return found
+
+
+def _form(item: Arrow, colour: str) -> Attributes:
+    if item.style == "service":
+        return {"style": '"dashed"', "arrowhead": '"vee"'}
+    if item.style == "action":
+        return {"style": '"bold"', "penwidth": "1.6", "arrowhead": '"normalnormal"'}
+    if item.style == "physical":
+        return {"color": f'"{colour}:{palette.PAPER}:{colour}"'}
+    if item.style == "internal":
+        return {"style": '"dotted"', "penwidth": "1.2"}
+    if item.style == "link":
+        return {"arrowhead": '"none"', "penwidth": "2"}
+    return {"arrowhead": '"onormal"'} if item.optional else {}
+
+
+def _tooltip(item: Arrow, link: Link) -> Attributes:
+    found = linked(item.ref, "\n".join(item.flows) or item.label or "flow", link)
+    return {("edgetooltip" if name == "tooltip" else name): value for name, value in found.items()} | {
+        "tooltip": found["tooltip"]
+    }
+
+
+def label(item: Arrow, link: Link, *, merged: bool = False, at: int = 20) -> Attributes | None:
+    """Give the DOT attributes of the text beside an arrow, a part of its own with a paper-coloured ground."""
+    text = item.label or (str(item.count) if merged and item.count > 1 else "")
+    if not text:
+        return None
+    ink = palette.MUTED if item.faded else palette.hue(item.colour) if item.colour is not None else palette.TEXT
+    rows = "<BR/>".join(html(row) for line in text.split("\n") for row in wrapped(line, at, 3))
+    return {
+        "shape": '"box"',
+        "style": '"filled,rounded"',
+        "class": '"label"',
+        "color": f'"{palette.PAPER}00"',
+        "fillcolor": f'"{palette.PAPER}e0"',
+        "penwidth": "0",
+        "margin": '"0.02,0.005"',
+        "width": "0.05",
+        "height": "0.05",
+        "fontname": f'"{FONT}"',
+        "label": f'<<FONT POINT-SIZE="8" COLOR="{ink}">{rows}</FONT>>',
+        **{name: value for name, value in linked(item.ref, "\n".join(item.flows) or text, link).items()},
+    }

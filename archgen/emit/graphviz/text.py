@@ -1,0 +1,71 @@
+"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
+
+Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\\N` is
+replaced by Graphviz; in a quoted string `"` ends it, and a character reference would be read as one. Both are
+escaped here and nowhere else. Control characters make an SVG that is no XML, and the marks that turn the direction of
+writing make a text look like another: neither gets into a picture.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+LONGEST = 400
+"""A text longer than this many characters is cut, with an ellipsis; pages and tables have it whole."""
+
+_BLANKS = re.compile(r"\s+")
+_UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff0-\uffff]")
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]*):")
+_BREAKS = re.compile(r"(?<=[-_/.:,;])")
+_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\\": "&#92;"})
+
+
+def clean(text: str, longest: int = LONGEST) -> str:
+    """Give the text on one line, without what no picture can hold."""
+    text = _BLANKS.sub(" ", text)
+    text = "".join(c for c in _UNFIT.sub("", text) if unicodedata.category(c) != "Cn").strip()
+    return text if len(text) <= longest else text[: longest - 1] + "…"
+
+
+def html(text: str) -> str:
+    """Escape one line of text for an html-like label."""
+    return clean(text).translate(_ESCAPES) or "\u00a0"
+
+
+def quoted(text: str) -> str:
+    """Write a value as DOT's quoted string; line feeds stay line feeds."""
+    lines = (clean(line, 4000) for line in text.split("\n"))
+    escaped = (line.replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"') for line in lines)
+    return '"' + "\\n".join(escaped) + '"'
+
+
+def address(href: str) -> str:
+    """Give an address that is safe to follow, or nothing: relative ones, http, https and mailto."""
+    href = _BLANKS.sub("%20", _UNFIT.sub("", href).strip())
+    scheme = _SCHEME.match(href)
+    if scheme and scheme[1].lower() not in {"http", "https", "mailto"}:
+        return ""
+    return href
+
+
+def wrapped(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
+    """Break a text into lines of about `width` characters, wider only where it would take too many lines."""
+    text = clean(text)
+    width = max(width, -(-len(text) // lines))
+    rows = [""]
+    for piece in _pieces(text, width):
+        if rows[-1] and len(rows[-1]) + len(piece.rstrip()) > width:
+            rows.append("")
+        rows[-1] += piece
+    return tuple(row.strip() for row in rows if row.strip()) or ("",)
+
+
+def _pieces(text: str, width: int) -> list[str]:
+    """Cut a text where a line may end: after blanks; within longer words after signs; else anywhere."""
+    pieces: list[str] = []
+    for word in re.findall(r"\S+\s*", text):
+        parts = _BREAKS.split(word) if len(word.rstrip()) > width else [word]
+        for part in parts:
+            pieces += [part[at : at + width] for at in range(0, len(part), width)] or []
+    return pieces
