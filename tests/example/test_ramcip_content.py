@@ -19,7 +19,7 @@ Tree = dict[str, Any]
 
 
 def merge(into: Tree, part: Tree) -> None:
-    """Adds a slice, key by key; a leaf that is there already must not be written again."""
+    """Add a slice, key by key; a leaf that is there already must not be written again."""
     for key, value in part.items():
         if isinstance(value, dict) and isinstance(into.get(key), dict):
             merge(into[key], value)
@@ -30,7 +30,7 @@ def merge(into: Tree, part: Tree) -> None:
 
 @pytest.fixture(scope="module")
 def project() -> Tree:
-    """The whole project as plain data, in the order of its sources."""
+    """Read the whole project as plain data, in the order of its sources."""
     whole: Tree = yaml.safe_load((RAMCIP / "archgen.yaml").read_text(encoding="utf-8"))
     for pattern in whole["sources"]:
         for path in sorted(RAMCIP.glob(pattern)):
@@ -49,13 +49,13 @@ def components(project: Tree) -> dict[str, Tree]:
 
 
 def ports(component: Tree, side: str) -> dict[str, Tree]:
-    """Inputs or outputs, with the short forms written out."""
+    """Give inputs or outputs, with the short forms written out."""
     key = "from" if side == "inputs" else "type"
     return {name: port if isinstance(port, dict) else {key: port} for name, port in component[side].items()}
 
 
 def sources(port: Tree) -> list[str]:
-    """The references of one input, none for an external one."""
+    """List the references of one input, none for an external one."""
     found = port.get("from", [])
     return cast("list[str]", found) if isinstance(found, list) else [found]
 
@@ -71,7 +71,7 @@ def repeated(texts: list[str]) -> list[str]:
 
 
 def reached(reference: str, components: dict[str, Tree]) -> set[str]:
-    """The outputs that a reference means: of one port, a component or a group, by the end of the path."""
+    """Find the outputs that a reference means: of one port, a component or a group, by the end of the path."""
     outputs = [f"{path}.{name}" for path, component in components.items() for name in component["outputs"]]
     complete = {path for path in outputs if path == reference or path.startswith(f"{reference}.")}
     return complete or {path for path in outputs if f".{reference}." in f".{path}."}
@@ -97,21 +97,30 @@ def test_mean_inputs_and_outputs(components: dict[str, Tree]) -> None:
 
 def test_every_connection_names_an_output_that_exists(components: dict[str, Tree]) -> None:
     references = {
-        reference for component in components.values() for port in ports(component, "inputs").values() for reference in sources(port)
+        reference
+        for component in components.values()
+        for port in ports(component, "inputs").values()
+        for reference in sources(port)
     }
     assert [reference for reference in sorted(references) if not reached(reference, components)] == []
 
 
 def test_every_type_but_five_is_mapped_by_the_project(project: Tree, components: dict[str, Tree]) -> None:
     used = {
-        port["type"] for component in components.values() for port in ports(component, "outputs").values() if port.get("medium") != "physical"
+        port["type"]
+        for component in components.values()
+        for port in ports(component, "outputs").values()
+        if port.get("medium") != "physical"
     }
     shipped = {"IMU", "Odometry", "Battery state", "Velocity command", "Occupancy grid"}
     assert used - set(project["types"]) == shipped
 
 
 def test_nine_main_files_hold_one_group_each() -> None:
-    held = [list(yaml.safe_load(path.read_text(encoding="utf-8"))["groups"]) for path in sorted(RAMCIP.glob("groups/*.yaml"))]
+    held = [
+        list(yaml.safe_load(path.read_text(encoding="utf-8"))["groups"])
+        for path in sorted(RAMCIP.glob("groups/*.yaml"))
+    ]
     assert [len(groups) for groups in held] == [1] * 9
     assert list(yaml.safe_load((RAMCIP / "hardware.yaml").read_text(encoding="utf-8"))["groups"]) == ["hardware"]
 
@@ -119,7 +128,9 @@ def test_nine_main_files_hold_one_group_each() -> None:
 def test_every_component_is_described(components: dict[str, Tree]) -> None:
     needed = {"title", "functionality", "role", "performance", "inputs", "outputs"}
     assert {path: needed - set(component) for path, component in components.items() if needed - set(component)} == {}
-    assert [path for path, component in components.items() if not 2 <= len(sentences(component["functionality"])) <= 7] == []
+    assert [
+        path for path, component in components.items() if not 2 <= len(sentences(component["functionality"])) <= 7
+    ] == []
 
 
 def test_every_indicator_has_accuracy_and_time(components: dict[str, Tree]) -> None:
@@ -137,7 +148,12 @@ def test_every_component_has_a_node(project: Tree, components: dict[str, Tree]) 
 
 
 def test_no_two_components_share_a_sentence(components: dict[str, Tree]) -> None:
-    assert repeated([sentence for component in components.values() for sentence in set(sentences(component["functionality"]))]) == []
+    assert (
+        repeated(
+            [sentence for component in components.values() for sentence in set(sentences(component["functionality"]))]
+        )
+        == []
+    )
 
 
 def test_no_two_components_share_a_title(components: dict[str, Tree]) -> None:
@@ -145,18 +161,29 @@ def test_no_two_components_share_a_title(components: dict[str, Tree]) -> None:
 
 
 def test_no_two_components_share_a_performance_figure(components: dict[str, Tree]) -> None:
-    figures = [str(indicator["accuracy"]).casefold() for component in components.values() for indicator in component["performance"].values()]
+    figures = [
+        str(indicator["accuracy"]).casefold()
+        for component in components.values()
+        for indicator in component["performance"].values()
+    ]
     assert repeated(figures) == []
 
 
 def test_no_two_components_share_a_free_requirement(components: dict[str, Tree]) -> None:
-    written = [text.casefold() for component in components.values() for text in component.get("requirements", []) if " " in text]
+    written = [
+        text.casefold()
+        for component in components.values()
+        for text in component.get("requirements", [])
+        if " " in text
+    ]
     assert len(written) > 40
     assert repeated(written) == []
 
 
 def test_every_requirement_id_is_declared(project: Tree, components: dict[str, Tree]) -> None:
-    named = {entry for component in components.values() for entry in component.get("requirements", []) if " " not in entry}
+    named = {
+        entry for component in components.values() for entry in component.get("requirements", []) if " " not in entry
+    }
     assert named <= set(project["requirements"])
     assert set(project["requirements"]) - named == {"R-80"}  # left open on purpose, see the example's README
 
