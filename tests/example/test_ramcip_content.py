@@ -112,7 +112,7 @@ def test_every_type_but_five_is_mapped_by_the_project(project: Tree, components:
         for port in ports(component, "outputs").values()
         if port.get("medium") != "physical"
     }
-    shipped = {"IMU", "Odometry", "Battery state", "Velocity command", "Occupancy grid"}
+    shipped = {"Laser scan", "Odometry", "Battery state", "Velocity command", "Occupancy grid"}
     assert used - set(project["types"]) == shipped
 
 
