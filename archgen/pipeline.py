@@ -1,6 +1,6 @@
 """Every stage in order: whoever reads this first has seen the whole way from YAML files to documents.
 
-    project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
+project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
 """
 
 from __future__ import annotations
@@ -73,3 +73,38 @@ def check(path: Path | None = None) -> Checked:
     Raises `project.ProjectNotFoundError` where there is none.
     """
     return judge(project.load(path))
+
+
+def check_text(text: str) -> tuple[Diagnostic, ...]:
+    """Judge a one-file project given as text; the file is called `project.yaml` in its findings."""
+    with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
+        file = Path(folder) / "project.yaml"
+        file.write_text(text, encoding="utf-8")
+        return check(file).findings
+
+
+def judge(loaded: Loaded) -> Checked:
+    """Take a project that was read through all stages up to its findings."""
+    merged, merge_findings = link.merge.merge(loaded.documents)
+    known, interface_findings = link.interfaces.load(
+        loaded.distro, loaded.interface_files, link.interfaces.inline(merged)
+    )
+    linked, link_findings = link.link(
+        merged,
+        default_id=loaded.default_id,
+        default_title=loaded.default_title,
+        shipped=link.shipped.Shipped(loaded.distro),
+        interfaces=known,
+    )
+    architecture = transform.transform(linked)
+    raw = [
+        *loaded.diagnostics,
+        *merge_findings,
+        *interface_findings,
+        *link_findings,
+        *analyses.check(architecture),
+        *findings.rules.judge_settings(loaded.rule_places, _BY_NAME),
+    ]
+    ignores = [ignore for document in loaded.documents for ignore in document.ignores]
+    kept = findings.suppress.suppress(raw, ignores, _BY_NAME, findings.suppress.first_lines(architecture))
+    return Checked(loaded, merged, architecture, settle(kept, _BY_NAME, loaded.settings))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -21,15 +22,22 @@ def command(project: Path | None, form: str, *, strict: bool, quiet: bool) -> No
     PROJECT is a folder or a single file; left out, it is the project around the current folder. The exit status is 0
     without errors, 1 with errors (with --strict also with warnings), 2 for wrong usage.
     """
-    from archgen.findings import github, json, text
+    from archgen.findings import github, json
 
     checked = run.check(project)
     findings = checked.findings
     if form == "json":
-        click.echo(json.render(findings), nl=False)
+        sys.stdout.write(json.render(findings))
     elif form == "github":
-        click.echo(github.render(findings), nl=False)
+        sys.stdout.writelines(f"{line}\n" for line in github.render(findings, folder=_folder(checked.root)))
     else:
         shown = [finding for finding in findings if not quiet or finding.severity == "error"]
-        click.echo(text.render(shown, checked.sources, colour=text.wants_colour(sys.stdout)), nl=False)
+        run.lines(shown, checked, sys.stdout)
     run.finish(checked, strict=strict)
+
+
+def _folder(root: Path) -> str:
+    """Give the project's folder relative to the workspace, whose root GitHub's annotations are relative to."""
+    workspace = Path(os.environ.get("GITHUB_WORKSPACE") or Path.cwd()).resolve()
+    resolved = root.resolve()
+    return resolved.relative_to(workspace).as_posix() if resolved.is_relative_to(workspace) else ""

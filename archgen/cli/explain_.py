@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+
 import click
 
 from archgen.suggest import did_you_mean
@@ -13,12 +16,16 @@ def command(rule: str | None) -> None:
     """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules."""
     from archgen import pipeline
     from archgen.findings import explain
+    from archgen.findings.rules import by_name
+    from archgen.findings.text import wants_colour
 
-    rules = {each.name: each for each in pipeline.ALL_RULES}
+    rules = by_name(pipeline.ALL_RULES)
     if rule is None:
-        click.echo(explain.listing(pipeline.ALL_RULES), nl=False)
+        width = max(len(name) for name in rules)
+        for name, each in rules.items():
+            click.echo(f"{name:{width}}  {each.severity:8} {explain.page(each).summary}")
     elif rule in rules:
-        click.echo(explain.page(rules[rule]), nl=False)
+        click.echo(explain.terminal(rules[rule], colour=wants_colour(sys.stdout, os.environ)), nl=False)
     else:
         guess = did_you_mean(rule, rules)
         msg = f"there is no rule '{rule}'" + (f"; {guess}" if guess else "")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
@@ -33,12 +35,19 @@ def check(project: Path | None) -> Checked:
 
 def report(checked: Checked, *, least: Severity = Severity.WARNING) -> None:
     """Print findings and their count to the error stream; notes only where they are asked for."""
-    from archgen.findings import text
-
     order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
     shown = [d for d in checked.findings if order.index(d.severity or least) >= order.index(least)]
     if shown:
-        click.echo(text.render(shown, checked.sources, colour=text.wants_colour(sys.stderr)), err=True, nl=False)
+        lines(shown, checked, sys.stderr)
+
+
+def lines(shown: Sequence[Diagnostic], checked: Checked, stream: TextIO) -> None:
+    """Print findings for people, as wide as the terminal is."""
+    from archgen.findings import text
+
+    colour = text.wants_colour(stream, os.environ)
+    width = shutil.get_terminal_size().columns if stream.isatty() else text.WIDTH
+    stream.writelines(f"{line}\n" for line in text.render(shown, checked.sources, colour=colour, width=width))
 
 
 def status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
@@ -60,15 +69,15 @@ def ready(project: Path | None, *, keep_going: bool) -> Checked:
 def selected(checked: Checked, words: str | None) -> Selection | None:
     """Evaluate a selector from the command line; what names nothing is wrong usage."""
     from archgen import pipeline
-    from archgen.findings.text import clean
+    from archgen.findings.escape import visible
 
     if words is None:
         return None
     selection, problems = pipeline.select(checked, words)
     for problem in problems:
-        click.echo(clean(f"{problem.severity}: {problem.message}"), err=True)
+        click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
     if any(problem.severity == Severity.ERROR for problem in problems):
-        msg = f"the selector '{clean(words)}' cannot be used"
+        msg = f"the selector '{visible(words)}' cannot be used"
         raise click.UsageError(msg)
     return selection
 
@@ -93,9 +102,9 @@ def phrased() -> Iterator[None]:
 
 def counted(findings: Sequence[Diagnostic]) -> str:
     """Count findings in words; empty where there are none."""
-    from archgen.views.tables import severities
+    from archgen.findings.text import summary
 
-    return severities(findings) if findings else ""
+    return summary(findings) if findings else ""
 
 
 def wrote(path: Path, detail: str = "") -> None:

@@ -23,7 +23,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     A word is an id (`object_recognition`, `sensing.rgbd_camera.rgbd`, `/camera/rgbd`, `R-12`), the end of one, or a
     title in quotes.
     """
-    from archgen.findings.text import clean
+    from archgen.findings.escape import visible
     from archgen.views import card
     from archgen.views.index import index
 
@@ -33,27 +33,27 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     for word in words:
         found = card.matches(view, word)
         for sort, name in found:
-            click.echo(clean_lines(card.card(view, sort, name)))
+            click.echo(laid_out(card.card(view, sort, name)))
         if not found:
             missing = True
             from archgen.suggest import did_you_mean
 
             guess = did_you_mean(word, [part for key in card.ids(view) for part in (key, key.rpartition(".")[2])])
-            click.echo(f"archgen: nothing is called '{clean(word)}'" + (f"; {guess}" if guess else ""), err=True)
+            click.echo(f"archgen: nothing is called '{visible(word)}'" + (f"; {guess}" if guess else ""), err=True)
     if missing:
         raise click.exceptions.Exit(1)
 
 
-def clean_lines(shown: Card) -> str:
+def laid_out(shown: Card) -> str:
     """Lay a card out for the terminal, control characters taken out."""
-    from archgen.findings.text import clean
+    from archgen.findings.escape import visible
 
     place = f"   {shown.at}" if shown.at.file else ""
     title = f" - {shown.title}" if shown.title != shown.id else ""
-    lines = [click.style(clean(f"{shown.sort} {shown.id}{title}"), bold=True) + clean(place)]
+    lines = [click.style(visible(f"{shown.sort} {shown.id}{title}"), bold=True) + visible(place)]
     for name, value in shown.facts:
-        lines += textwrap.wrap(clean(value), 96, initial_indent=f"  {name + ':':16}", subsequent_indent=" " * 18)
+        lines += textwrap.wrap(visible(value), 96, initial_indent=f"  {name + ':':16}", subsequent_indent=" " * 18)
     for name, items in shown.lists:
         lines.append(f"  {name}:" + ("" if items else " none"))
-        lines += [f"    {clean(item)}" for item in items]
+        lines += [f"    {visible(item)}" for item in items]
     return "\n".join(lines) + "\n"

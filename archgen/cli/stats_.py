@@ -41,10 +41,10 @@ def command(project: Path | None, form: str) -> None:
 
 
 def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> str:
-    from archgen.findings.text import clean
+    from archgen.findings.escape import visible
     from archgen.views.statistics import STEPS, figures
 
-    lines = [clean(title), ""]
+    lines = [visible(title), ""]
     lines += [f"  {label:42}{value:>8}" for _, label, value in figures(found)]
     lines += [f"  {'Files':42}{files:>8}", ""]
     measured = [row for row in rows if row.components]
@@ -52,7 +52,7 @@ def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> st
         lines.append(f"  {'Progress':32}{'components':>11}" + "".join(f"{step:>11}" for step in STEPS))
     for row in measured:
         counts = "".join(f"{_share(getattr(row, step), row.components):>11}" for step in STEPS)
-        lines.append(f"  {clean(row.title)[:31]:32}{row.components:>11}{counts}")
+        lines.append(f"  {visible(row.title)[:31]:32}{row.components:>11}{counts}")
     return "\n".join(lines) + "\n"
 
 

@@ -7,14 +7,14 @@ import io
 import json as json_
 from collections.abc import Sequence
 
-from archgen.findings.text import clean
+from archgen.findings.escape import visible
 
 Rows = Sequence[Sequence[str]]
 
 
 def text(columns: Sequence[str], rows: Rows) -> str:
     """Align columns for the terminal; control characters are taken out."""
-    cleaned = [[clean(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
+    cleaned = [[visible(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
     widths = [max(len(row[place]) for row in cleaned) for place in range(len(columns))]
     return "".join(
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n" for row in cleaned

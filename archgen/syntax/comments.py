@@ -14,7 +14,9 @@ from archgen.syntax.tree import Ignore
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-_IGNORE = re.compile(r"(?:^|(?<=[ \t]))#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)", re.MULTILINE)
+_IGNORE = re.compile(
+    r"(?:^|(?<=[ \t]))#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)", re.MULTILINE
+)
 _CONFLICT = re.compile(r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]+([^\r\n]*?))?[ \t]*\r?$", re.MULTILINE)
 _HASH = re.compile(r"[ \t]#[^\s]")
 _SWALLOWED = re.compile(r"[ \t]+#(?!\s*archgen:)[^\s][^\r\n]*")

@@ -100,7 +100,9 @@ def _second_colon(line: str, column: int) -> _Words:
 def _bad_start(character: str) -> _Words:
     if character == "\t":
         return _TAB
-    return _Words(f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE)
+    return _Words(
+        f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE
+    )
 
 
 def _out_of_place(line: str, column: int) -> _Words:
@@ -121,21 +123,33 @@ def _unclosed(found: str, problem: Problem) -> _Words:
 
 
 _FIXED: tuple[tuple[str, _Words], ...] = (
-    ("sequence entries are not allowed", _Words("a list cannot begin on the line of its key", "begin it on the next line")),
+    (
+        "sequence entries are not allowed",
+        _Words("a list cannot begin on the line of its key", "begin it on the next line"),
+    ),
     ("mapping keys are not allowed", _Words("text cannot begin with `? `", QUOTE)),
-    ("could not find expected ':'", _Words("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True)),
+    (
+        "could not find expected ':'",
+        _Words("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True),
+    ),
     ("unexpected end of stream", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
     ("unexpected document", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
     ("escape c", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
     ("hexdecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
     ("hexadecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
-    ("scanning a block scalar", _Words("text cannot begin with `>` or `|`: these open a block of lines", QUOTE, at_start=True)),
+    (
+        "scanning a block scalar",
+        _Words("text cannot begin with `>` or `|`: these open a block of lines", QUOTE, at_start=True),
+    ),
     ("scanning an anchor", _Words("text cannot begin with `&`", QUOTE, at_start=True)),
     ("scanning an alias", _Words("text cannot begin with `*`", QUOTE, at_start=True)),
     (" tag", _Words("text cannot begin with `!`", QUOTE, at_start=True)),
     (" directive", _Words("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
     ("incompatible YAML", _Words("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
     ("node content", _Words("a value cannot begin with this", QUOTE)),
-    ("<document start>", _Words("this does not belong to what is above it", "keys of one mapping begin in the same column")),
+    (
+        "<document start>",
+        _Words("this does not belong to what is above it", "keys of one mapping begin in the same column"),
+    ),
     ("did not find expected ':'", _Words("a key without `:`", "write `key: value`", at_start=True)),
 )

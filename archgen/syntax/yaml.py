@@ -154,7 +154,11 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                     if not text:
                         fault("a key is missing before this `:`", at)
                     elif text == "<<":
-                        fault("merge keys (`<<`) are not read", at, "write the keys out, or share whole values with `*name`")
+                        fault(
+                            "merge keys (`<<`) are not read",
+                            at,
+                            "write the keys out, or share whole values with `*name`",
+                        )
                 if event.anchor is not None:
                     anchors[event.anchor] = (Scalar(text, text, at), 1)
                 continue
@@ -162,7 +166,9 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                 value = Scalar(text, text, at, False)  # noqa: FBT003
             elif not text:
                 if entries is not None and ":" not in source[key_end : start.index]:
-                    fault(f"the key `{key}` has no `:`", key_at, "write `key: value`; a list stands in brackets: [a, b]")
+                    fault(
+                        f"the key `{key}` has no `:`", key_at, "write `key: value`; a list stands in brackets: [a, b]"
+                    )
                 value = Scalar(None, text, at)
             else:
                 value = Scalar(resolve(text) if text[0] in starts else text, text, at)
@@ -218,7 +224,9 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                     key = None
                 continue
             if count + size > MAX_VALUES:
-                fault(f"with its aliases expanded the file holds more than {MAX_VALUES:,} values", at, None, "too-large")
+                fault(
+                    f"with its aliases expanded the file holds more than {MAX_VALUES:,} values", at, None, "too-large"
+                )
                 return
             count += size
             value = copy_of(held, at)
@@ -227,7 +235,11 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
             if documents > 1:
                 mark = event.start_mark
                 at = Span(file, mark.line + 1, mark.column + 1, event.end_mark.line + 1, event.end_mark.column + 1)
-                fault("a second YAML document begins here", at, "a file is one document: put the second into a file of its own")
+                fault(
+                    "a second YAML document begins here",
+                    at,
+                    "a file is one document: put the second into a file of its own",
+                )
                 return
             continue
         elif kind is yaml.StreamEndEvent:
