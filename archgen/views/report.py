@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from archgen.model.component import Component, Group
+from archgen.model.document import GENERATED, Chapter
 from archgen.views import tables, words
 from archgen.views.functional import component_blocks, group_blocks
 from archgen.views.implementation import implementation_blocks, node_blocks
@@ -14,32 +15,6 @@ from archgen.views.index import Index
 from archgen.views.shapes import Block, Figure, Graph, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 
 Level = Literal["functional", "implementation"]
-GENERATED = (
-    "overview",
-    "groups",
-    "deployment",
-    "chains",
-    "views",
-    "types",
-    "connections",
-    "requirements",
-    "open_points",
-    "statistics",
-)
-"""The chapters that archgen writes, by the names that `report.chapters` uses, in their order where nobody says otherwise."""
-
-
-@dataclass(frozen=True, slots=True)
-class Chapter:
-    """A chapter that the project wrote: its path in the project, and its CommonMark."""
-
-    path: str
-    text: str
-
-    @property
-    def folder(self) -> str:
-        """Give the folder that the chapter's pictures are found from."""
-        return self.path.rpartition("/")[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,147 @@
+"""The project's own chapters: which, in what order, their text, and the pictures that they show."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import posixpath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import unquote
+
+from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.model.document import GENERATED, Chapter
+from archgen.source import Span
+from archgen.suggest import did_you_mean
+from archgen.syntax import files
+from archgen.syntax.tree import Listing, Scalar, Table
+
+MISSING_CHAPTER = Rule(
+    "missing-chapter",
+    Severity.ERROR,
+    """\
+The report asks for a chapter that is neither one that archgen writes nor a file of the project.
+
+Why: The document would lack what its readers were promised. archgen writes the chapters overview, groups, deployment,
+chains, views, types, connections, requirements, open_points and statistics; every other entry of `report.chapters` is the
+path of a CommonMark file inside the project's folder.
+
+Bad:
+    report: {chapters: [group, connections]}
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+
+Good:
+    report: {chapters: [groups, connections]}
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+""",
+    fixed=True,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Chapters:
+    """The order of all chapters, and the texts of those that the project wrote, by path."""
+
+    root: Path
+    order: tuple[str, ...] = GENERATED
+    texts: Mapping[str, Chapter] = field(default_factory=dict)
+    packed: Mapping[str, bytes] = field(default_factory=dict)
+    """Pictures that a packed project holds itself."""
+
+    def picture(self, path: str) -> bytes | None:
+        """Read a picture that a chapter shows, by its path in the project; None where there is none inside it."""
+        clean = posixpath.normpath(path)
+        if clean in self.packed:
+            return self.packed[clean]
+        if clean.startswith(("/", "../")) or clean == ".." or "\\" in clean or "\0" in clean:
+            return None
+        return files.read_bytes(self.root, clean)
+
+    def pictures(self) -> dict[str, bytes]:
+        """Read all pictures that the chapters show, by path."""
+        found = {}
+        for chapter in self.texts.values():
+            for name in shown(chapter.text):
+                clean = posixpath.normpath(posixpath.join(chapter.folder, name))
+                data = self.picture(clean)
+                if data is not None:
+                    found[clean] = data
+        return found
+
+
+def shown(markdown: str) -> Iterator[str]:
+    """Give the addresses of the pictures in a text that lie in the project, percent signs decoded."""
+    from markdown_it import MarkdownIt
+
+    for block in MarkdownIt("commonmark", {"html": False}).parse(markdown):
+        for token in block.children or ():
+            address = str(token.attrs.get("src", "")) if token.type == "image" else ""
+            if address and ":" not in address.split("/", 1)[0]:
+                yield unquote(address)
+
+
+def chapters(merged: Table, root: Path) -> tuple[Chapters, tuple[Diagnostic, ...]]:
+    """Find and read the chapters that the project asks for."""
+    report = merged.get("report")
+    if not isinstance(report, Table):
+        return Chapters(root), ()
+    listed = report.get("chapters")
+    entries = [item for item in listed.items if isinstance(item, Scalar)] if isinstance(listed, Listing) else None
+    packed = dict(_texts(report.get("texts")))
+    order, texts, diagnostics = [], {}, []
+    for entry in entries or ():
+        name = entry.text
+        if name in order:
+            continue
+        if name not in GENERATED:
+            text, problem = (packed[name], None) if name in packed else _read(root, name, entry.at)
+            if problem:
+                diagnostics.append(problem)
+                continue
+            texts[name] = Chapter(name, text)
+        order.append(name)
+    wanted = tuple(order) if entries is not None else GENERATED
+    return Chapters(root, wanted, texts, dict(_pictures(report.get("pictures")))), tuple(diagnostics)
+
+
+def _texts(value: object) -> Iterator[tuple[str, str]]:
+    for entry in value if isinstance(value, Table) else ():
+        if isinstance(entry.value, Scalar):
+            yield entry.key, entry.value.text
+
+
+def _pictures(value: object) -> Iterator[tuple[str, bytes]]:
+    for path, text in _texts(value):
+        try:
+            yield path, base64.b64decode(text, validate=True)
+        except binascii.Error:
+            continue  # the chapter says that its picture cannot be read
+
+
+def _read(root: Path, name: str, at: Span) -> tuple[str, Diagnostic | None]:
+    if not name.endswith(".md"):
+        said = did_you_mean(name, GENERATED) or f"archgen writes {', '.join(GENERATED)}; a file ends in .md"
+        return "", Diagnostic("missing-chapter", f"there is no chapter `{name}`", at, help=said)
+    clean = posixpath.normpath(name)
+    if clean.startswith(("/", "../")):
+        return "", Diagnostic("missing-chapter", f"the chapter `{name}` lies outside the project's folder", at)
+    read = files.read(root, clean)
+    if read.problem:
+        message = f"the chapter `{name}` cannot be read: {read.problem.message}"
+        return "", Diagnostic("missing-chapter", message, at, help=read.problem.help)
+    return read.text, None
