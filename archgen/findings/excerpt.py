@@ -76,6 +76,8 @@ def _window(total: int, start: int, stop: int, limit: int) -> tuple[int, int]:
     room = max(limit - 2, 1)
     if stop <= room:
         return 0, room
-    middle = (start + min(stop, start + room)) // 2
-    left = max(0, min(middle - room // 2, start, max(total - room, 0)))
-    return left, left + room
+    if stop - start > room * 3 // 4:
+        left = start - room // 4
+    else:
+        left = min((start + stop) // 2 - room // 2, total - room)
+    return max(left, 0), max(left, 0) + room
