@@ -1,24 +1,25 @@
 """What ROS itself makes of interface definitions. The system's Python runs this file: it has Debian's packages.
 
 In: a JSON list of `[ros1, "pkg/msg/Name", text]`. Out: a JSON list of the same length with null where the definition is
-refused, else a list of parts, each a list of `[name, type, array]`. ROS 1 judges messages and services (genmsg).
+refused, else a list of parts, each a list of `[name, type, array]`. ROS 1 (genmsg) judges messages and services, ROS 2
+(rosidl_adapter) actions too.
 """
 
+from __future__ import annotations
+
+import contextlib
 import importlib
+import io
 import json
-import os
 import sys
+from typing import Any
+
+Parts = list[list[list[str]]]
+TIMES = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}
 
 
-def _rosidl_type(type_):
-    base = type_.type if type_.pkg_name is None else f"{type_.pkg_name}/msg/{type_.type}"
-    base = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}.get(base, base)
-    bound = f"<={type_.string_upper_bound}" if type_.string_upper_bound else ""
-    size = "" if type_.array_size is None else str(type_.array_size)
-    return [base + bound, f"[{'<=' if type_.is_upper_bound else ''}{size}]" if type_.is_array else ""]
-
-
-def _rosidl(name, text):
+def rosidl(name: str, text: str) -> Parts:
+    """Let ROS 2 read a definition."""
     parser = importlib.import_module("rosidl_adapter.parser")
     package, kind, short = name.split("/")
     if kind == "msg":
@@ -32,7 +33,15 @@ def _rosidl(name, text):
     return [[[field.name, *_rosidl_type(field.type)] for field in part.fields] for part in parts]
 
 
-def _genmsg(name, text):
+def _rosidl_type(type_: Any) -> tuple[str, str]:  # noqa: ANN401  # rosidl_adapter has no types
+    base = type_.type if type_.pkg_name is None else f"{type_.pkg_name}/msg/{type_.type}"
+    bound = f"<={type_.string_upper_bound}" if type_.string_upper_bound else ""
+    size = "" if type_.array_size is None else str(type_.array_size)
+    return TIMES.get(base, base) + bound, f"[{'<=' if type_.is_upper_bound else ''}{size}]" if type_.is_array else ""
+
+
+def genmsg(name: str, text: str) -> Parts:
+    """Let ROS 1 read a definition."""
     loader = importlib.import_module("genmsg.msg_loader")
     package, kind, short = name.split("/")
     context = loader.MsgContext.create_default()
@@ -44,25 +53,30 @@ def _genmsg(name, text):
     return [[_genmsg_field(field) for field in part.parsed_fields()] for part in parts]
 
 
-def _genmsg_field(field):
-    base = field.base_type if "/" not in field.base_type else "/msg/".join(field.base_type.split("/"))
+def _genmsg_field(field: Any) -> list[str]:  # noqa: ANN401  # genmsg has no types
     size = "" if field.array_len is None else str(field.array_len)
-    return [field.name, base, f"[{size}]" if field.is_array else ""]
+    return [field.name, field.base_type.replace("/", "/msg/"), f"[{size}]" if field.is_array else ""]
 
 
-def main():
-    """Judge all definitions that stand in the standard input."""
-    verdicts = []
-    with open(os.devnull, "w", encoding="utf-8") as nowhere:
-        sys.stderr = nowhere
-        for ros1, name, text in json.load(sys.stdin):
-            try:
-                verdicts.append((_genmsg if ros1 else _rosidl)(name, text))
-            except ImportError as error:
-                sys.exit(f"{error.name.split('.')[0]} is missing")
-            except Exception:  # the judges refuse with whatever their code runs into
-                verdicts.append(None)
-    json.dump(verdicts, sys.stdout)
+def judge(ros1: bool, name: str, text: str) -> Parts | None:  # noqa: FBT001  # as it stands in the JSON
+    """Give what ROS reads, None where it refuses."""
+    try:
+        return (genmsg if ros1 else rosidl)(name, text)
+    except ImportError as error:
+        package = "python3-genmsg" if ros1 else "python3-rosidl"
+        sys.exit(f"{error}: install Debian's package {package}")
+    except Exception:  # noqa: BLE001  # they refuse with whatever their code runs into
+        return None
 
 
-main()
+def main() -> None:
+    """Judge all definitions of the standard input. What the judges print on the way is dropped."""
+    cases = json.load(sys.stdin)
+    out = sys.stdout
+    with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
+        verdicts = [judge(*case) for case in cases]
+    json.dump(verdicts, out)
+
+
+if __name__ == "__main__":
+    main()
