@@ -23,6 +23,7 @@ if [ "$what" = test ]; then
     need_command java default-jre-headless
     need_command npm npm
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"
+    /usr/bin/python3 -c "import genmsg" 2>/dev/null || missing="$missing python3-genmsg"
 fi
 [ -n "$missing" ] || exit 0
 if command -v apt-get >/dev/null 2>&1 && [ "$(id -u)" = 0 ]; then

@@ -76,6 +76,10 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
           sensing:
             components:
               camera: {outputs: {colour: Camera picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Camera picture: {message: sensor_msgs/msg/Imgae}
 
@@ -86,6 +90,10 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
           sensing:
             components:
               camera: {outputs: {colour: Camera picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Camera picture: {message: sensor_msgs/msg/Image}
     """
@@ -117,6 +125,10 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
           sensing:
             components:
               camera: {outputs: {tags: Tags}}
+              screen: {inputs: {tags: camera.tags}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Tags: {message: demo_msgs/msg/Tags}
 
@@ -130,6 +142,10 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
           sensing:
             components:
               camera: {outputs: {tags: Tags}}
+              screen: {inputs: {tags: camera.tags}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Tags: {message: demo_msgs/msg/Tags}
     """

@@ -38,6 +38,10 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
           perception:
             components:
               tracker: {outputs: {people: Tracked people}}
+              follower: {inputs: {people: tracker.people}}
+        nodes:
+          people_tracker: {implements: tracker}
+          people_follower: {implements: follower}
 
     Good:
 
@@ -45,6 +49,10 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
           perception:
             components:
               tracker: {outputs: {people: Tracked people}}
+              follower: {inputs: {people: tracker.people}}
+        nodes:
+          people_tracker: {implements: tracker}
+          people_follower: {implements: follower}
         types:
           Tracked people: {message: vision_msgs/msg/Detection3DArray}
     """
@@ -85,6 +93,10 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
           perception:
             components:
               camera: {outputs: {colour: Colour picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Colour picture: {message: sensor_msgs/msg/Image}
           Colour pictures: {message: sensor_msgs/msg/Image}
@@ -95,6 +107,10 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
           perception:
             components:
               camera: {outputs: {colour: Colour picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
         types:
           Colour picture: {message: sensor_msgs/msg/Image}
     """

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostic import Diagnostic, Label
+from archgen.model.distro import is_ros_1
 from archgen.model.interfaces import Field, Interface, Interfaces
 from archgen.source import Span
 from archgen.syntax.interfaces import NAME, Definition, parse
@@ -69,7 +70,7 @@ def load(
     shipped = _shipped(distro)
     if not definitions and not inline:
         return shipped, ()
-    ros1 = distro == "noetic"
+    ros1 = is_ros_1(distro)
     diagnostics = list[Diagnostic]()
     own = dict[str, Definition]()
     places = dict[str, Span]()

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from archgen.model.distro import is_ros_1
 from archgen.suggest import closest
 
 Answer = Literal["known", "wrong", "not held"]
@@ -81,7 +82,7 @@ class Interfaces:
 
     def _base(self, message: str) -> str:
         """Take off what ROS 2 appends to the names of services and actions (ROS 1 makes messages of its own)."""
-        pattern = _GENERATED.get(message.split("/")[1]) if self.distro != "noetic" else None
+        pattern = None if is_ros_1(self.distro) else _GENERATED.get(message.split("/")[1])
         return pattern.sub("", message) if pattern else message
 
     @staticmethod
