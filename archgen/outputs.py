@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import fnmatch
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from archgen import link, views
-from archgen.diagnostic import Severity
+from archgen.diagnostic import Diagnostic
 from archgen.emit import tree
+from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
 from archgen.model import selector
 from archgen.model.selector import Selection
 from archgen.pipeline import Checked
 from archgen.revision import revision
+from archgen.views import pages, record, statistics
+from archgen.views import report as report_view
 from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
 from archgen.views.shapes import Graph
@@ -23,19 +26,17 @@ Progress = Callable[[str, int, int], None]
 """Told what is being done, how many are done, of how many."""
 
 
-class OutputError(Exception):
-    """An output could not be written, for a reason that the user can mend; the message says which."""
-
-
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """What the user wants to see: a part, a level, a revision to print. `progress` is told of long work."""
+    """What the user wants to see: a part, a level, a revision to print. `progress` is told of long work, `warn` of what an
+    output could not hold as asked."""
 
     selection: Selection | None = None
     words: str = ""
     level: Level = "implementation"
     revision: str | None = None
     progress: Progress | None = None
+    warn: Callable[[str], None] = lambda _text: None
 
 
 def select(checked: Checked, words: str) -> tuple[Selection, tuple[selector.Problem, ...]]:
@@ -55,3 +56,194 @@ def view(checked: Checked, ask: Ask) -> Index:
     """Make the look-ups for what the user wants to see."""
     scope = Scope(ask.selection.components, ask.selection.nodes, ask.words) if ask.selection else Scope()
     return index(checked.architecture, checked.findings, scope)
+
+
+def report(checked: Checked, ask: Ask, target: Path, template: Path | None = None) -> None:
+    """Write the Word report."""
+    made = _make(checked, ask)
+    tree.write_file(target, _docx(checked, made, _draw(made, ask, ("png", "svg_outlines")), ask, template))
+
+
+def site(checked: Checked, ask: Ask, target: Path) -> None:
+    """Write the static site."""
+    made = _make(checked, ask)
+    tree.write(_site(checked, made, _draw(made, ask, ("svg",))), target)
+
+
+def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], only: Sequence[str] = ()) -> int:
+    """Write pictures, in the formats asked for (svg, png, pdf, dot), and give their number."""
+    made = _make(checked, ask)
+    chosen = {name: graph for name, graph in made.graphs.items() if not only or _matches(name, only)}
+    if only and not chosen:
+        shown = ", ".join(list(made.graphs)[:8])
+        raise tree.OutputError(f"no picture is called {' or '.join(only)}", f"there are {shown}, ...")
+    formats = tuple(form for form in forms if form != "dot")
+    pictures = draw(tuple(chosen.values()), formats, ask.progress)
+    tree.write(_picture_files(pictures, forms), target)
+    return len(pictures)
+
+
+def pack(checked: Checked, target: Path) -> None:
+    """Write the packed project."""
+    tree.write_file(target, _packed(checked).encode())
+
+
+def resolved(checked: Checked, ask: Ask, target: Path) -> None:
+    """Write the resolved model as a record for other programs."""
+    from archgen.emit import yaml
+
+    data = record.record(view(checked, ask))
+    tree.write_file(target, yaml.write(data).encode())
+
+
+def build(
+    checked: Checked, ask: Ask, target: Path, template: Path | None = None, extra: Sequence[str] = ()
+) -> Iterator[Path]:
+    """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths."""
+    chosen = _backends(checked, extra)
+    made = _make(checked, ask)
+    pictures = _draw(made, ask, ("svg", "png", "svg_outlines"))
+    tree.write_file(target / "report.docx", _docx(checked, made, pictures, ask, template))
+    yield target / "report.docx"
+    tree.write(_site(checked, made, pictures), target / "site")
+    yield target / "site" / "index.html"
+    tree.write(_picture_files(pictures, ("svg", "png")), target / "diagrams")
+    yield target / "diagrams"
+    pack(checked, target / "packed.yaml")
+    yield target / "packed.yaml"
+    for backend in chosen:
+        _extra(made, backend, target / backend.id)
+        yield target / backend.id
+
+
+def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
+    """Find the further backends that the user asks for, before any long work."""
+    if not names:
+        return []
+    from archgen.emit import backends
+
+    found, problems = backends.find(checked.root)
+    wrong = [problem for problem in problems if any(f"backends/{name}/" in problem.span.file for name in names)]
+    _refuse(wrong)
+    for name in names:
+        if name not in found or found[name].emitter != "text":
+            known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
+            raise tree.OutputError(f"there is no text backend `{name}`", f"there are {known}")
+    return [found[name] for name in names]
+
+
+def _extra(made: _Made, backend: Backend, target: Path) -> None:
+    """Write what one text backend makes."""
+    from archgen.emit import text
+
+    shapes: dict[str, Callable[[], object]] = {
+        "outline": lambda: report_view.report(made.view, made.edition),
+        "pages": lambda: pages.pages(made.view, made.edition),
+        "graphs": lambda: tuple(made.graphs.values()),
+        "record": lambda: record.record(made.view),
+        "tables": lambda: statistics.statistics(made.view.architecture),
+    }
+    files, problems = text.write(backend, {name: shapes[name]() for name in backend.views})
+    _refuse(problems)
+    if files is not None:
+        tree.write(files, target)
+
+
+def _refuse(problems: Sequence[Diagnostic]) -> None:
+    if problems:
+        said = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)
+        raise tree.OutputError(said, problems[0].help)
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """The views that documents are written from."""
+
+    view: Index
+    edition: Edition
+    graphs: Mapping[str, Graph]
+
+
+def _make(checked: Checked, ask: Ask) -> _Made:
+    found = view(checked, ask)
+    drawn = {graph.id: graph for graph in graphs.all_graphs(checked.architecture, ask.selection)}
+    if ask.level == "functional":
+        drawn = {name: graph for name, graph in drawn.items() if not _is_low(name)}
+    edition = Edition(
+        revision=revision(checked.root, checked.all_files) if ask.revision is None else ask.revision,
+        level=ask.level,
+        chapters=checked.chapters.order,
+        texts=checked.chapters.texts,
+        graphs=drawn,
+        statistics=statistics.statistics(checked.architecture),
+        broken=checked.broken,
+    )
+    return _Made(found, edition, drawn)
+
+
+def _is_low(graph: str) -> bool:
+    return graph in {"ros", "hosts"} or graph.startswith("implementation/")
+
+
+def _matches(name: str, patterns: Sequence[str]) -> bool:
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def _draw(made: _Made, ask: Ask, formats: Sequence[str]) -> Mapping[str, Picture]:
+    return draw(tuple(made.graphs.values()), formats, ask.progress)
+
+
+def draw(graphs: Sequence[Graph], formats: Sequence[str], progress: Progress | None = None) -> Mapping[str, Picture]:
+    """Draw graphs; links in a picture lead to `#` and an element's anchor."""
+    from archgen.emit import graphviz
+
+    return graphviz.draw(graphs, formats, link=lambda ref: f"#{ref}", cache=cache_folder(), progress=progress)
+
+
+def cache_folder() -> Path | None:
+    """Give the folder in which drawn pictures are kept, None where there is no place for it."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return Path(base) / "archgen" if base else Path.home() / ".cache" / "archgen"
+    except RuntimeError:  # nobody's home
+        return None
+
+
+def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: Ask, template: Path | None) -> bytes:
+    from archgen.emit import docx
+
+    outline = report_view.report(made.view, made.edition)
+    data = template.read_bytes() if template else None
+    document, warnings = docx.write(outline, pictures, template=data, chapter_files=checked.chapters.picture)
+    for warning in warnings:
+        ask.warn(warning)
+    return document
+
+
+def _site(checked: Checked, made: _Made, pictures: Mapping[str, Picture]) -> tree.FileTree:
+    from archgen.emit import site as emitter
+
+    return emitter.write(
+        pages.pages(made.view, made.edition),
+        pictures,
+        title=checked.architecture.project.title,
+        revision=made.edition.revision,
+        notices=report_view.notices(made.view, made.edition),
+        chapter_files=checked.chapters.picture,
+    )
+
+
+def _picture_files(pictures: Mapping[str, Picture], forms: Sequence[str]) -> tree.FileTree:
+    found = [
+        (f"{name}.{form}", picture.dot.encode() if form == "dot" else getattr(picture, form))
+        for name, picture in pictures.items()
+        for form in forms
+    ]
+    return tree.tree((path, data) for path, data in found if data is not None)
+
+
+def _packed(checked: Checked) -> str:
+    from archgen.emit import yaml
+
+    packed = checked.packed()
+    return yaml.write(packed.data, packed.comments)

@@ -6,18 +6,21 @@ project -> syntax -> schema -> link -> model -> transform -> analyses -> views -
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
-from archgen import analyses, link, project, schema, syntax, transform
+from archgen import analyses, findings, link, project, schema, syntax, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
-from archgen.findings import suppress
-from archgen.model import selector
+from archgen.findings import rules, suppress
+from archgen.link import chapters, interfaces, merge, shipped
+from archgen.link.chapters import Chapters
+from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
+from archgen.model.interfaces import Interfaces
 from archgen.project import Loaded
 from archgen.source import Sources
-from archgen.syntax.tree import Table
+from archgen.syntax import files
+from archgen.syntax.tree import Scalar, Table
 
 ALL_RULES: tuple[Rule, ...] = (
     *syntax.RULES,
@@ -25,10 +28,10 @@ ALL_RULES: tuple[Rule, ...] = (
     *project.RULES,
     *link.RULES,
     *analyses.RULES,
-    *suppress.RULES,
+    *findings.RULES,
 )
 """Every rule there is, in the order in which the stages run."""
-_BY_NAME = {rule.name: rule for rule in ALL_RULES}
+_BY_NAME = rules.by_name(ALL_RULES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,7 @@ class Checked:
     loaded: Loaded
     merged: Table
     architecture: Architecture
+    chapters: Chapters
     findings: tuple[Diagnostic, ...]
     """Settled and sorted; those that a comment silences are left out."""
 
@@ -62,9 +66,25 @@ class Checked:
         return tuple(document.file for document in self.loaded.documents)
 
     @property
+    def all_files(self) -> tuple[str, ...]:
+        """Name every file that the outputs are made from: YAML, interfaces, chapters."""
+        return (*self.files, *self.loaded.interfaces, *self.chapters.texts)
+
+    @property
     def broken(self) -> bool:
         """Say whether there are errors."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
+
+    def packed(self) -> Packed:
+        """Give the whole project as one mapping, with what stands in other files put in."""
+        texts, _ = definitions(self.loaded)
+        attached = Attachments(
+            {name: text for file, text in texts.items() if (name := interfaces.name_of(file))},
+            {path: chapter.text for path, chapter in self.chapters.texts.items()},
+            self.chapters.pictures(),
+        )
+        ignores = [ignore for found in self.loaded.ignores.values() for ignore in found]
+        return pack(self.merged, self.architecture, ignores, attached)
 
 
 def check(path: Path | None = None) -> Checked:
@@ -85,26 +105,49 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 def judge(loaded: Loaded) -> Checked:
     """Take a project that was read through all stages up to its findings."""
-    merged, merge_findings = link.merge.merge(loaded.documents)
-    known, interface_findings = link.interfaces.load(
-        loaded.distro, loaded.interface_files, link.interfaces.inline(merged)
-    )
+    merged, merge_findings = merge.merge(loaded.documents)
+    known, interface_findings = _interfaces(loaded, merged)
     linked, link_findings = link.link(
         merged,
-        default_id=loaded.default_id,
-        default_title=loaded.default_title,
-        shipped=link.shipped.Shipped(loaded.distro),
+        default_id=loaded.id,
+        default_title=loaded.title,
+        shipped=shipped.shipped_types(loaded.distro),
         interfaces=known,
     )
     architecture = transform.transform(linked)
-    raw = [
+    read, chapter_findings = chapters.chapters(merged, loaded.root)
+    raw = (
         *loaded.diagnostics,
         *merge_findings,
         *interface_findings,
         *link_findings,
+        *chapter_findings,
         *analyses.check(architecture),
-        *findings.rules.judge_settings(loaded.rule_places, _BY_NAME),
-    ]
-    ignores = [ignore for document in loaded.documents for ignore in document.ignores]
-    kept = findings.suppress.suppress(raw, ignores, _BY_NAME, findings.suppress.first_lines(architecture))
-    return Checked(loaded, merged, architecture, settle(kept, _BY_NAME, loaded.settings))
+        *rules.judge_settings(loaded.rule_places.items(), _BY_NAME),
+    )
+    ignores = [ignore for found in loaded.ignores.values() for ignore in found]
+    kept = suppress.suppress(raw, ignores, _BY_NAME, suppress.first_lines(architecture))
+    return Checked(loaded, merged, architecture, read, settle(kept, _BY_NAME, loaded.rules))
+
+
+def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
+    """Read the project's own interface definitions, and lay them over those that ship."""
+    texts, diagnostics = definitions(loaded)
+    ros = merged.get("ros")
+    inline = ros.get("definitions") if isinstance(ros, Table) else None
+    written = {e.key: (e.value.text, e.value.at) for e in inline or () if isinstance(e.value, Scalar)}
+    known, found = interfaces.load(loaded.distro, tuple(texts.items()), written)
+    return known, (*diagnostics, *found)
+
+
+def definitions(loaded: Loaded) -> tuple[dict[str, str], tuple[Diagnostic, ...]]:
+    """Read the interface files that the project names, by their path."""
+    texts, diagnostics = {}, []
+    for file in loaded.interfaces:
+        read = files.read(loaded.root, file)
+        if read.problem:
+            diagnostics.append(read.problem)
+        else:
+            texts[file] = read.text
+            loaded.sources.add(file, read.text)
+    return texts, tuple(diagnostics)

@@ -39,13 +39,13 @@ def command(  # noqa: PLR0913 - one for each option
     keep_going: bool,
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
-    from archgen import pipeline
+    from archgen import outputs
 
     checked = run.ready(project, keep_going=keep_going)
-    ask = pipeline.Ask(run.selected(checked, select), select or "", level, revision, run.progress())
+    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn)
     target = output or checked.out
     with run.phrased():
-        for path in pipeline.build(checked, ask, target, template, backend):
+        for path in outputs.build(checked, ask, target, template, backend):
             run.wrote(path)
     counts = run.counted(checked.findings)
     click.echo(f"archgen check tells more: {counts}" if counts else "no findings")

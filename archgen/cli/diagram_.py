@@ -45,7 +45,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     With --select one more picture, `selection`, shows just what is selected, neighbours grey.
     """
-    from archgen import pipeline
+    from archgen import outputs
 
     wanted = tuple(dict.fromkeys(form.strip() for form in forms.split(",") if form.strip()))
     unknown = [form for form in wanted if form not in FORMATS]
@@ -53,9 +53,9 @@ def command(  # noqa: PLR0913 - one for each option
         msg = f"--format takes {', '.join(FORMATS)}, separated by commas, not '{forms}'"
         raise click.UsageError(msg)
     checked = run.ready(project, keep_going=keep_going)
-    ask = pipeline.Ask(run.selected(checked, select), select or "", level, None, run.progress())
+    ask = outputs.Ask(run.selected(checked, select), select or "", level, None, run.progress(), run.warn)
     target = output or checked.out / "diagrams"
     with run.phrased():
-        count = pipeline.diagrams(checked, ask, target, wanted, only)
+        count = outputs.diagrams(checked, ask, target, wanted, only)
     run.wrote(target, f"{count} pictures")
     run.finish(checked)

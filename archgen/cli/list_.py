@@ -23,7 +23,7 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     Put a selector that begins with `-` behind `--`. `archgen list --of connections --format csv` is the table of all
     connections, safe to open in a spreadsheet.
     """
-    from archgen import pipeline
+    from archgen import outputs
     from archgen.findings import listing
     from archgen.views import listed
 
@@ -31,7 +31,7 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     run.report(checked, least=run.ERROR)
     words = " ".join(selector)
     selection = run.selected(checked, words or None)
-    columns, rows = listed.listed(pipeline.view(checked, pipeline.Ask(selection, words)), sort)
+    columns, rows = listed.listed(outputs.view(checked, outputs.Ask(selection, words)), sort)
     write = {"text": listing.text, "csv": listing.csv, "json": listing.json}[form]
     sys.stdout.write(write(columns, rows))
     run.finish(checked)

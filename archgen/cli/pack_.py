@@ -24,7 +24,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
 
     With --resolved it is a record for other programs instead (`resolved.yaml`); --select then names a part of it.
     """
-    from archgen import pipeline
+    from archgen import outputs
 
     if select and not resolved:
         msg = "--select goes with --resolved: a packed project is whole"
@@ -33,8 +33,8 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
     target = output or checked.out / ("resolved.yaml" if resolved else "packed.yaml")
     with run.phrased():
         if resolved:
-            pipeline.resolved(checked, pipeline.Ask(run.selected(checked, select), select or ""), target)
+            outputs.resolved(checked, outputs.Ask(run.selected(checked, select), select or ""), target)
         else:
-            pipeline.pack(checked, target)
+            outputs.pack(checked, target)
     run.wrote(target)
     run.finish(checked)

@@ -34,14 +34,14 @@ def command(  # noqa: PLR0913 - one for each option
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a Word document that can be handed in."""
-    from archgen import pipeline
+    from archgen import outputs
 
     del form  # one for now; the option is there so that scripts say what they want
     checked = run.ready(project, keep_going=keep_going)
     selection = run.selected(checked, select)
-    ask = pipeline.Ask(selection, select or "", level, revision, run.progress())
+    ask = outputs.Ask(selection, select or "", level, revision, run.progress(), run.warn)
     target = output or checked.out / "report.docx"
     with run.phrased():
-        pipeline.report(checked, ask, target, template)
+        outputs.report(checked, ask, target, template)
     run.wrote(target)
     run.finish(checked)

@@ -68,12 +68,12 @@ def ready(project: Path | None, *, keep_going: bool) -> Checked:
 
 def selected(checked: Checked, words: str | None) -> Selection | None:
     """Evaluate a selector from the command line; what names nothing is wrong usage."""
-    from archgen import pipeline
+    from archgen import outputs
     from archgen.findings.escape import visible
 
     if words is None:
         return None
-    selection, problems = pipeline.select(checked, words)
+    selection, problems = outputs.select(checked, words)
     for problem in problems:
         click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
     if any(problem.severity == Severity.ERROR for problem in problems):
@@ -90,12 +90,14 @@ def finish(checked: Checked, *, strict: bool = False) -> NoReturn:
 @contextmanager
 def phrased() -> Iterator[None]:
     """Turn what can go wrong while writing into one line for the user."""
-    from archgen.pipeline import OutputError
+    from archgen.emit.tree import OutputError
+    from archgen.findings.escape import visible
 
     try:
         yield
     except OutputError as error:
-        raise click.ClickException(str(error)) from None
+        message = f"{error.message}; {error.help}" if error.help else error.message
+        raise click.ClickException(visible(message)) from None
     except OSError as error:
         raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
 
@@ -105,6 +107,13 @@ def counted(findings: Sequence[Diagnostic]) -> str:
     from archgen.findings.text import summary
 
     return summary(findings) if findings else ""
+
+
+def warn(said: str) -> None:
+    """Print what an output could not hold as asked."""
+    from archgen.findings.escape import visible
+
+    click.echo(f"warning: {visible(said)}", err=True)
 
 
 def wrote(path: Path, detail: str = "") -> None:

@@ -26,12 +26,12 @@ def command(  # noqa: PLR0913 - one for each option
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
-    from archgen import pipeline
+    from archgen import outputs
 
     checked = run.ready(project, keep_going=keep_going)
-    ask = pipeline.Ask(run.selected(checked, select), select or "", level, revision, run.progress())
+    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn)
     target = output or checked.out / "site"
     with run.phrased():
-        pipeline.site(checked, ask, target)
+        outputs.site(checked, ask, target)
     run.wrote(target / "index.html")
     run.finish(checked)

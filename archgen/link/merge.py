@@ -131,7 +131,9 @@ def _undeclared(groups: Table, path: Path, known: Sequence[Path]) -> Diagnostic:
     guess = did_you_mean(name, (".".join(other) for other in known if len(other) == len(path)))
     needed = "a title or a component" if kind == "group" else "a title, a functionality, inputs or outputs"
     help_line = guess or f"give it {needed} where it belongs"
-    return Diagnostic("undeclared-element", f"no file declares the {kind} `{name}`", entry.at, help=help_line, element=name)
+    return Diagnostic(
+        "undeclared-element", f"no file declares the {kind} `{name}`", entry.at, help=help_line, element=name
+    )
 
 
 def _without(groups: Table, lost: frozenset[Path]) -> Table:

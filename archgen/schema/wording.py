@@ -24,14 +24,25 @@ _SPELLED = {
     "Mb/s": "Mbit/s", "Gb/s": "Gbit/s", "kb/s": "kbit/s", "b/s": "bit/s", "bytes": "B", "byte": "B",
 }  # fmt: skip
 _EXAMPLE_UNIT = {"duration": "ms", "frequency": "Hz", "size": "kB", "bandwidth": "Mbit/s"}
-_YES = {"yes": "true", "on": "true", "y": "true", "1": "true", "no": "false", "off": "false", "n": "false", "0": "false"}
+_YES = {
+    "yes": "true",
+    "on": "true",
+    "y": "true",
+    "1": "true",
+    "no": "false",
+    "off": "false",
+    "n": "false",
+    "0": "false",
+}
 _PLAIN_WORDS = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}
 
 
 def unknown_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
     """Phrase a key that does not exist there."""
     known = tuple(part.get("properties", ()))
-    message = f"no section is called `{entry.key}`" if not path else f"{_article(part['title'])} has no key `{entry.key}`"
+    message = (
+        f"no section is called `{entry.key}`" if not path else f"{_article(part['title'])} has no key `{entry.key}`"
+    )
     help_line = _key_help(entry, known) or did_you_mean(entry.key, known) or f"its keys are {_listed(known)}"
     if not path and help_line.startswith("its keys"):
         help_line = f"the sections are {_listed(known)}"
@@ -122,7 +133,10 @@ def _wrong_value(kind: str, name: str, value: Value, part: dict[str, Any]) -> tu
         options = [option for option in part["enum"] if option is not None]
         return shown, did_you_mean(text, options) or f"it is one of {_listed(options)}"
     if kind == "const":
-        return f"this archgen reads version {part['const']} of the language, not `{_short(text)}`", f"write `{part['const']}`"
+        return (
+            f"this archgen reads version {part['const']} of the language, not `{_short(text)}`",
+            f"write `{part['const']}`",
+        )
     if kind in {"minimum", "maximum"}:
         return shown, f"it is at {'least' if kind == 'minimum' else 'most'} {part[kind]}"
     if kind in {"maxLength", "minLength"}:
@@ -177,7 +191,9 @@ def _expected(part: dict[str, Any]) -> str:
     words = ["a text"] if "string" in types else []
     if "enum" in part:
         words = [f"one of {_listed([option for option in part['enum'] if option is not None])}"]
-    words += [_PLAIN_WORDS[kind] for kind in types if kind in _PLAIN_WORDS and not ("string" in types and kind == "boolean")]
+    words += [
+        _PLAIN_WORDS[kind] for kind in types if kind in _PLAIN_WORDS and not ("string" in types and kind == "boolean")
+    ]
     if "number" in types and "boolean" not in types:
         words = ["a number", *(word for word in words if word != "a text")]
     return " or ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else words[0]

@@ -1,0 +1,127 @@
+"""archgen in Python: load a project, look at its architecture and findings, write what people need.
+
+import archgen
+
+project = archgen.load("example_ramcip")
+for finding in project.findings:
+    print(finding.severity, finding.span, finding.message)
+print(project.size.components, "components")
+project.write_report("report.docx", select="owner:certh")
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+
+from archgen import outputs, pipeline
+from archgen.analyses import size as size_analysis
+from archgen.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.selector import Selection
+from archgen.outputs import Ask
+from archgen.pipeline import Checked
+from archgen.views import record
+from archgen.views.report import Level
+from archgen.views.shapes import Record
+
+Name = str | PathLike[str]
+
+
+class SelectorError(ValueError):
+    """A selector cannot be used; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """A project, read and judged. Everything is frozen: load it again to see changed files."""
+
+    checked: Checked
+
+    @property
+    def root(self) -> Path:
+        """Give the project's folder."""
+        return self.checked.root
+
+    @property
+    def architecture(self) -> Architecture:
+        """Give the architecture, as far as it is sound: both levels, linked."""
+        return self.checked.architecture
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """Give all findings, sorted by place, with their severities settled."""
+        return self.checked.findings
+
+    @property
+    def ok(self) -> bool:
+        """Say whether there are no errors."""
+        return not self.checked.broken
+
+    @property
+    def size(self) -> size_analysis.Size:
+        """Give the figures of `archgen stats`, means as exact fractions."""
+        return size_analysis.size(self.architecture)
+
+    @property
+    def progress(self) -> tuple[size_analysis.Progress, ...]:
+        """Give how far the whole, each group and each partner are."""
+        return size_analysis.progress(self.architecture)
+
+    def select(self, words: str) -> Selection:
+        """Evaluate a selector. Raises `SelectorError` where it cannot be used."""
+        selection, problems = outputs.select(self.checked, words)
+        errors = [problem.message for problem in problems if problem.severity == "error"]
+        if errors:
+            raise SelectorError("; ".join(errors))
+        return selection
+
+    def record(self, select: str | None = None) -> Record:
+        """Give the resolved model, or a part of it, as plain data (`schemas/resolved.schema.json`)."""
+        return record.record(outputs.view(self.checked, self._ask(select)))
+
+    def write_report(
+        self,
+        file: Name,
+        *,
+        template: Name | None = None,
+        select: str | None = None,
+        level: Level = "implementation",
+        revision: str | None = None,
+    ) -> None:
+        """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can mend."""
+        made = Path(fspath(template)) if template is not None else None
+        outputs.report(self.checked, self._ask(select, level, revision), Path(fspath(file)), made)
+
+    def write_site(
+        self, folder: Name, *, select: str | None = None, level: Level = "implementation", revision: str | None = None
+    ) -> None:
+        """Write the static site."""
+        outputs.site(self.checked, self._ask(select, level, revision), Path(fspath(folder)))
+
+    def write_diagrams(
+        self,
+        folder: Name,
+        *,
+        formats: tuple[str, ...] = ("svg",),
+        only: tuple[str, ...] = (),
+        select: str | None = None,
+    ) -> int:
+        """Write pictures (svg, png, pdf, dot), and give their number."""
+        return outputs.diagrams(self.checked, self._ask(select), Path(fspath(folder)), formats, only)
+
+    def write_packed(self, file: Name) -> None:
+        """Write the whole project as one YAML file."""
+        outputs.pack(self.checked, Path(fspath(file)))
+
+    def _ask(self, select: str | None, level: Level = "implementation", revision: str | None = None) -> Ask:
+        return Ask(self.select(select) if select else None, select or "", level, revision)
+
+
+def load(path: Name | None = None) -> Project:
+    """Read the project at a path (a folder, a single file; None for the one around the current folder) and judge it.
+
+    Raises `archgen.project.ProjectNotFoundError` where there is none. Mistakes in its files are findings, not exceptions.
+    """
+    return Project(pipeline.check(Path(fspath(path)) if path is not None else None))
