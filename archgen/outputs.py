@@ -16,7 +16,7 @@ from archgen.model import selector
 from archgen.model.selector import Selection
 from archgen.pipeline import Checked
 from archgen.revision import revision
-from archgen.views import pages, record, statistics
+from archgen.views import graphs, pages, record, statistics
 from archgen.views import report as report_view
 from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
@@ -29,7 +29,8 @@ Progress = Callable[[str, int, int], None]
 @dataclass(frozen=True, slots=True)
 class Ask:
     """What the user wants to see: a part, a level, a revision to print. `progress` is told of long work, `warn` of what an
-    output could not hold as asked."""
+    output could not hold as asked.
+    """
 
     selection: Selection | None = None
     words: str = ""
@@ -76,7 +77,8 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
     chosen = {name: graph for name, graph in made.graphs.items() if not only or _matches(name, only)}
     if only and not chosen:
         shown = ", ".join(list(made.graphs)[:8])
-        raise tree.OutputError(f"no picture is called {' or '.join(only)}", f"there are {shown}, ...")
+        msg = f"no picture is called {' or '.join(only)}"
+        raise tree.OutputError(msg, f"there are {shown}, ...")
     formats = tuple(form for form in forms if form != "dot")
     pictures = draw(tuple(chosen.values()), formats, ask.progress)
     tree.write(_picture_files(pictures, forms), target)
@@ -128,7 +130,8 @@ def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
     for name in names:
         if name not in found or found[name].emitter != "text":
             known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
-            raise tree.OutputError(f"there is no text backend `{name}`", f"there are {known}")
+            msg = f"there is no text backend `{name}`"
+            raise tree.OutputError(msg, f"there are {known}")
     return [found[name] for name in names]
 
 

@@ -112,9 +112,7 @@ def _title(chooser: random.Random, group: int, at: int) -> str:
     return f"{chooser.choice(_WORDS)} {chooser.choice(_TASKS)} {group}.{at}"
 
 
-def _robot_wires(
-    chooser: random.Random, sizes: Sequence[int]
-) -> list[tuple[tuple[int, int], tuple[int, int]]]:
+def _robot_wires(chooser: random.Random, sizes: Sequence[int]) -> list[tuple[tuple[int, int], tuple[int, int]]]:
     wires = set[tuple[tuple[int, int], tuple[int, int]]]()
     for pair in _PAIRS.split("|"):
         ends, count = pair.split(" ")
@@ -125,7 +123,12 @@ def _robot_wires(
         while sum(w[0][0] == group == w[1][0] for w in wires) < count:
             one, other = chooser.sample(range(sizes[group]), 2)
             forward = chooser.random() < 0.9  # noqa: PLR2004
-            wires.add(((group, min(one, other) if forward else max(one, other)), (group, max(one, other) if forward else min(one, other))))
+            wires.add(
+                (
+                    (group, min(one, other) if forward else max(one, other)),
+                    (group, max(one, other) if forward else min(one, other)),
+                )
+            )
     return sorted(wires)
 
 
@@ -188,7 +191,12 @@ def _wire(
         f"{head}.{name}", tail, "component" if whole else "output", tail if whole else output.id, carried
     )
     inputs[head][name] = Input(
-        f"{head}.{name}", name, head, (connection,), optional=chooser.random() < 0.1, from_written=True  # noqa: PLR2004
+        f"{head}.{name}",
+        name,
+        head,
+        (connection,),
+        optional=chooser.random() < 0.1,
+        from_written=True,  # noqa: PLR2004
     )
 
 
@@ -234,11 +242,16 @@ def _with_nodes(architecture: Architecture, chooser: random.Random) -> Architect
         nodes={node.id: node for node in nodes.values()},
         endpoints=endpoints,
         topics=topics(endpoints),
-        hosts={key: Host(key, title) for key, title in (("main_pc", "Main PC"), ("arm_pc", "Arm PC"), ("vision_pc", "Vision PC"))},
+        hosts={
+            key: Host(key, title)
+            for key, title in (("main_pc", "Main PC"), ("arm_pc", "Arm PC"), ("vision_pc", "Vision PC"))
+        },
         containers={"vision": Container("vision", "Vision pipeline", "vision_pc", 4)},
         links={
             "lan": Link("lan", "Gigabit LAN", ("main_pc", "arm_pc", "vision_pc"), parse("1 Gbit/s", "bandwidth")),
-            "can": Link("can", "CAN bus", ("main_pc", "arm_pc"), parse("1 Mbit/s", "bandwidth"), worst=parse("2 ms", "duration")),
+            "can": Link(
+                "can", "CAN bus", ("main_pc", "arm_pc"), parse("1 Mbit/s", "bandwidth"), worst=parse("2 ms", "duration")
+            ),
         },
     )
 

@@ -10,7 +10,7 @@ Place = tuple[str | int, ...]
 _PLAIN = re.compile(r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ud800-\udfff#:,\[\]{}'\"]*\Z")
 _OTHERWISE = re.compile(
     r"(?:~|null|true|false|yes|no|on|off|y|n|[-+]?\.(?:inf|nan)|<<|=)\Z"
-    r"|[-+.]?[0-9][0-9_]*(?:[.:eExXo+\-][0-9a-fA-F_.:eE+\-TtZz ]*)?\Z",
+    r"|[-+.]?[0-9][0-9_]*(?:[.:eExXobB+\-][0-9a-fA-F_.:eE+\-TtZz ]*)?\Z",
     re.IGNORECASE,
 )
 _UNSAFE_BLOCK = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\u2028\u2029\ufeff\ud800-\udfff\t]")
@@ -46,7 +46,7 @@ def _entry(head: str, value: object, indent: str, here: Place, comments: Mapping
         yield f"{head} |{chomping}{comment}"
         yield from (f"{inner}{line}" if line else "" for line in (lines[:-1] if chomping == "" else lines))
     else:
-        yield f"{head} {_scalar(value)}{comment}"
+        yield f"{head} {scalar(value)}{comment}"
 
 
 def _item(value: object, indent: str, here: Place, comments: Mapping[Place, str]) -> Iterator[str]:
@@ -55,10 +55,11 @@ def _item(value: object, indent: str, here: Place, comments: Mapping[Place, str]
         yield from _entry(f"{indent}-", value, indent, here, comments)
     else:
         comment = f"  # {comments[here]}" if here in comments else ""
-        yield f"{indent}- {_scalar(value)}{comment}"
+        yield f"{indent}- {scalar(value)}{comment}"
 
 
-def _scalar(value: object) -> str:
+def scalar(value: object) -> str:
+    """Write one scalar, or an empty mapping or list, on one line."""
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, (Mapping, list, tuple)):

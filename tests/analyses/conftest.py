@@ -73,7 +73,9 @@ class _Sketch:
         component, _, name = words[0].rpartition(".")
         self.component(component, at)["outputs_known"] = True
         external = "somebody" if "external" in options else None
-        output = Output(words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at)
+        output = Output(
+            words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at
+        )
         self.outputs[words[0]] = output
 
     def add_type(self, words: list[str], options: Words, at: Span) -> None:
