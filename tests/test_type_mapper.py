@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema_rs
-import numpy
+import numpy as np
 import pytest
 import yaml
 from rosbags.interfaces import Nodetype
@@ -120,12 +120,12 @@ def made(store: Typestore, message: str) -> object:
     return store.types[message](**{name: value(store, node) for name, node in store.fielddefs[message][1]})
 
 
-def value(store: Typestore, node: tuple[Any, Any]) -> object:
+def value(store: Typestore, node: tuple[Any, Any]) -> Any:  # noqa: ANN401  # whatever a field may hold
     kind, details = node
     if kind == Nodetype.NAME:
         return made(store, details)
     if kind == Nodetype.ARRAY:
-        return numpy.zeros(details[1], dtype=details[0][1][0])
+        return np.zeros(details[1], dtype=details[0][1][0])
     return {"string": "base_link", "bool": False}.get(details[0], 0.0 if details[0].startswith("float") else 0)
 
 

@@ -14,6 +14,7 @@ from archgen.diagnostic import Diagnostic
 from archgen.link.interfaces import load, name_of
 from archgen.model.interfaces import Answer, Field, Interface
 from archgen.source import Span
+from archgen.syntax.interfaces import RULES
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "archgen" / "link" / "ros_interfaces"
@@ -153,6 +154,15 @@ def test_own_definitions_add_to_a_package_that_is_held_in_part() -> None:
     interfaces, _ = load("jazzy", [("sensor_msgs/msg/Smell.msg", "float32 strength")])
     answers = [interfaces.answer(f"sensor_msgs/msg/{name}") for name in ("Smell", "Image", "Taste")]
     assert answers == ["known", "known", "not held"]
+
+
+def test_the_rule_page_tells_the_truth() -> None:
+    (rule,) = RULES
+    for section, count in (("Bad", 1), ("Good", 0)):
+        example = yaml.safe_load(rule.doc.split(f"{section}:\n")[1].split("\nGood:")[0])
+        place = Span("archgen.yaml", 1, 1, 1, 2)
+        inline = {name: (text, place) for name, text in example["ros"]["definitions"].items()}
+        assert len(load(example["ros"]["distro"], (), inline)[1]) == count
 
 
 def test_own_definitions_win() -> None:
