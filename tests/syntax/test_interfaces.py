@@ -202,6 +202,15 @@ def test_all_errors_at_once_and_the_sound_fields_stay() -> None:
     assert definition.diagnostics[3].labels == ((Span("Foo", 2, 9, 2, 14), "the first one"),)
 
 
+def test_optional_fields_of_newer_distributions() -> None:
+    """The judge at hand is older than this; it refuses them."""
+    definition = read("@optional int32 x\n@optional\nbool y\n@optional float z")
+    assert parts(definition) == [[["x", "int32", ""], ["y", "bool", ""]]]
+    assert [brief(diagnostic) for diagnostic in definition.diagnostics] == [
+        "4:11-16 there is no type `float` in ROS (did you mean `float32`?)"
+    ]
+
+
 def test_references_carry_their_places() -> None:
     definition = read("geometry_msgs/Pose[] a\nGrasp b")
     assert definition.references == (
