@@ -8,10 +8,11 @@ from typing import NamedTuple
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
-from archgen.model.interfaces import Answer, Interfaces
-from archgen.model.mapping import Type, flow_of
+from archgen.model.interfaces import DISTROS, Answer, Interfaces
+from archgen.model.mapping import flow_of
 from archgen.model.node import Endpoint
 from archgen.source import NOWHERE, Span
+from archgen.suggest import closest, did_you_mean
 
 _KIND = {"topic": "message", "service": "service", "action": "action"}
 
@@ -38,19 +39,16 @@ def mentions(architecture: Architecture) -> Iterator[Mention]:
 
 
 def _written(architecture: Architecture) -> Iterator[Mention]:
+    ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
+    used_at = {port.type: port.type_at for port in reversed(ports)}
     for type_ in architecture.types.values():
         if type_.message is not None and type_.origin != "shipped":
-            yield Mention(type_.message, _first(type_.message_at, type_.at, _used_at(type_, architecture)), type_.name)
+            at = _first(type_.message_at, type_.at, used_at.get(type_.name, NOWHERE))
+            yield Mention(type_.message, at, type_.name)
     for node in architecture.nodes.values():
         for use in node.uses:
             if use.message is not None:
                 yield Mention(use.message, use.message_at, node.id)
-
-
-def _used_at(type_: Type, architecture: Architecture) -> Span:
-    """Give where a port names a type that is itself a message."""
-    ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
-    return next((port.type_at for port in ports if port.type == type_.name), NOWHERE)
 
 
 def _first(*places: Span) -> Span:
@@ -107,7 +105,7 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
             "unknown-message",
             f"no {_KIND[flow_of(message)]} `{message}` in `{package}`, {where}",
             at,
-            help=_meant(message, interfaces) or _define(message, interfaces),
+            help=_meant(message, interfaces) or _later(message, interfaces),
             element=element,
         )
 
@@ -155,7 +153,7 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
             "unchecked-message",
             f"cannot tell whether the {_KIND[flow_of(message)]} `{message}` exists: {_unheld(message, interfaces)}",
             at,
-            help=_meant(message, interfaces) or _define(message, interfaces),
+            help=_slip(message, interfaces) or _define(message),
             element=element,
         )
 
@@ -166,7 +164,7 @@ def _unheld(message: str, interfaces: Interfaces) -> str:
     if interfaces.distro is None:
         return "the project names no distribution (`ros: {distro: jazzy}`)"
     if not interfaces.held:
-        return f"archgen holds no interfaces of `{interfaces.distro}`"
+        return f"archgen holds no interfaces of `{interfaces.distro}`, only of {', '.join(sorted(DISTROS))}"
     if package in interfaces.packages():
         return f"it is not among the names held of `{package}`, and newer ones may be missing there"
     return f"archgen holds no names of `{package}` for {interfaces.distro}"
@@ -177,13 +175,29 @@ def _meant(message: str, interfaces: Interfaces) -> str | None:
     return f"did you mean `{guess}`?" if guess else None
 
 
-def _define(message: str, interfaces: Interfaces) -> str:
+def _slip(message: str, interfaces: Interfaces) -> str | None:
+    """Guess as above, but a namesake in a package of quite another name is no guess: the name may well be right."""
+    if interfaces.distro is not None and not interfaces.held:
+        return did_you_mean(interfaces.distro, DISTROS)
+    guess = interfaces.nearest(message)
+    near = guess and closest(message.partition("/")[0], [guess.partition("/")[0]])
+    return f"did you mean `{guess}`?" if near else None
+
+
+def _later(message: str, interfaces: Interfaces) -> str:
+    """Say what to do about a name that is right, but not there yet."""
+    package, kind, name = message.split("/")
+    planned = "if it is still to be defined, write `status: planned` at its type"
+    if package in interfaces.project_packages:
+        return f"add its definition, `{package}/{kind}/{name}.{kind}`, to the others; {planned}"
+    return planned
+
+
+def _define(message: str) -> str:
     """Say how the project makes a message known."""
     package, kind, name = message.split("/")
-    file = f"{package}/{kind}/{name}.{kind}"
-    if package in interfaces.project_packages:
-        return f"add its definition, `{file}`, to the others, or write `status: planned` at its type"
-    return f'add its definition, for instance as `msgs/{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
+    file = f"msgs/{package}/{kind}/{name}.{kind}"
+    return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
 
 
 def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -117,9 +117,9 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     used = {port.type for port in _ports(architecture)}
     for type_ in architecture.types.values():
         used |= {type_.request, type_.response, type_.feedback}
+    unmapped = [name for name in used if name and not _has_message(architecture, name)]
     for type_ in architecture.types.values():
         if type_.origin == "project" and type_.at != NOWHERE and type_.name not in used:
-            unmapped = {name for name in used if name and not _has_message(architecture, name)}
             yield Diagnostic(
                 "unused-type",
                 f"nothing has the type `{type_.name}`",

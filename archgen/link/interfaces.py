@@ -16,12 +16,10 @@ from typing import Any
 
 from archgen.diagnostic import Diagnostic, Label
 from archgen.model.distro import is_ros_1
-from archgen.model.interfaces import Field, Interface, Interfaces
+from archgen.model.interfaces import DISTROS, Field, Interface, Interfaces
 from archgen.source import Span
 from archgen.syntax.interfaces import NAME, Definition, parse
 
-HELD = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
-"""The distributions that archgen holds names of; the first that has a message gives its fields where none is named."""
 _DATA = Path(__file__).resolve().parent / "ros_interfaces"
 _PATH = re.compile(r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII)
 _FULL = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
@@ -167,7 +165,7 @@ def _merge(shipped: Interfaces, own: Mapping[str, Interface]) -> Interfaces:
 
 def _asked(distro: str | None) -> tuple[str, ...]:
     """Say which distributions' data answer for a project's distribution."""
-    return HELD if distro is None else (distro,) if distro in HELD else ()
+    return DISTROS if distro is None else (distro,) if distro in DISTROS else ()
 
 
 @cache

@@ -10,6 +10,10 @@ from typing import Literal
 from archgen.model.distro import is_ros_1
 from archgen.suggest import closest
 
+DISTROS = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
+"""The distributions of which archgen holds names; where a project names none, the first that has a message gives its
+fields.
+"""
 Answer = Literal["known", "wrong", "not held"]
 
 _GENERATED = {

@@ -57,7 +57,8 @@ _STRICT = {
     "field": re.compile(r"[a-z](?:_?[a-z0-9])*\Z", re.ASCII),
     "constant": re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z", re.ASCII),
 }
-_ANNOTATION = re.compile(r"@(?:key|optional)(?: +|\Z)")
+_OPTIONAL = re.compile(r"@optional(?: +|\Z)")
+"""In front of a field, or on the line above it: rosidl 5.1 and newer."""
 _NAMES = {
     ("field", True): "letters, digits and underscores, a letter first",
     ("constant", True): "letters, digits and underscores, no digit first",
@@ -152,8 +153,8 @@ def _line(reading: _Reading, number: int, line: str) -> None:
     if not reading.ros1:
         if start:
             reading.say("a definition of ROS 2 begins in the first column", reading.place(number, 0, start))
-        annotation = _ANNOTATION.match(code, start)
-        start = annotation.end() if annotation else start
+        optional = _OPTIONAL.match(code, start)
+        start = optional.end() if optional else start
         if start == len(code):
             return
     end = code.find(" ", start)
