@@ -1,0 +1,141 @@
+"""What is wrong with a YAML file, in our own words: the parser's problem becomes a diagnostic that says what to do."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from archgen.diagnostic import Diagnostic, Label
+from archgen.source import Span
+
+QUOTE = 'put the text in quotes: "..."'
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
+
+
+class Problem(NamedTuple):
+    """What the parser reports: its words, and offsets from 0; `begun` is where what it was reading begins."""
+
+    words: str
+    line: int
+    column: int
+    context: str = ""
+    begun: tuple[int, int] | None = None
+
+
+class _Words(NamedTuple):
+    """Our words for a problem. `label` is for where it began; `at_start` points there first of all."""
+
+    message: str
+    help: str | None = None
+    label: str | None = None
+    at_start: bool = False
+
+
+def forbidden_character(file: str, text: str) -> Diagnostic | None:
+    """Find the first character that no YAML file may hold."""
+    match = _FORBIDDEN.search(text)
+    if match is None:
+        return None
+    before = text[: match.start()].replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    at = Span(file, len(before), len(before[-1]) + 1, len(before), len(before[-1]) + 2)
+    message = f"the control character U+{ord(match[0]):04X} cannot stand in YAML"
+    return Diagnostic("syntax-error", message, at, help="delete it")
+
+
+def explain(file: str, text: str, problem: Problem) -> Diagnostic:
+    """Phrase what the parser found."""
+    lines = re.split(r"\r\n|\r|\n", text)
+    at = _clamp(lines, problem.line, problem.column)
+    words = _words(lines[at[0]], at[1], problem)
+    begun = problem.begun
+    if words.at_start and begun is not None:
+        return Diagnostic("syntax-error", words.message, _span(file, lines, begun), help=words.help)
+    labels = (Label(_span(file, lines, begun), words.label),) if words.label and begun and begun != at else ()
+    return Diagnostic("syntax-error", words.message, _span(file, lines, at), labels=labels, help=words.help)
+
+
+def _clamp(lines: list[str], line: int, column: int) -> tuple[int, int]:
+    """Move a place at the end of the file onto the end of its last line that is not blank."""
+    last = len(lines) - 1
+    while last > 0 and not lines[last].strip():
+        last -= 1
+    if line > last:
+        return last, len(lines[last])
+    return line, min(column, len(lines[line]))
+
+
+def _span(file: str, lines: list[str], at: tuple[int, int]) -> Span:
+    line, column = _clamp(lines, *at)
+    return Span(file, line + 1, column + 1, line + 1, column + 1 + (column < len(lines[line])))
+
+
+def _words(line: str, column: int, problem: Problem) -> _Words:
+    found = problem.words
+    if "mapping values are not allowed" in found:
+        return _second_colon(line, column)
+    if "cannot start any token" in found:
+        return _bad_start(line[column : column + 1])
+    if "tab character" in found:
+        return _TAB
+    if "expected key" in found or "expected <block end>" in found or "'-' indicator" in found:
+        return _out_of_place(line, column)
+    if "',' or ']'" in found or "',' or '}'" in found:
+        return _unclosed(found, problem)
+    for needle, words in _FIXED:
+        if needle in found or needle in problem.context:
+            return words
+    return _Words("this is not YAML", "compare it with the lines around it, or put text in quotes")
+
+
+_TAB = _Words("a tab cannot stand in the indentation", "indent with blanks")
+
+
+def _second_colon(line: str, column: int) -> _Words:
+    if re.search(r":\s", line[:column]):
+        return _Words("a second `: ` in one line: text that holds `: ` must be quoted", QUOTE)
+    help_line = "check the indentation, and that the key above ends in `:`"
+    return _Words("a key cannot stand here: what is above is text", help_line)
+
+
+def _bad_start(character: str) -> _Words:
+    if character == "\t":
+        return _TAB
+    return _Words(f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE)
+
+
+def _out_of_place(line: str, column: int) -> _Words:
+    if line[:column].strip(" -"):
+        return _Words("the value ends before this", "put the whole text in one pair of quotes")
+    if line[column : column + 1] == "-":
+        return _Words("a list entry stands where a key is expected", "indent the list below its key")
+    help_line = "keys of one mapping begin in the same column, and so do the entries of one list"
+    return _Words("this line does not belong to anything above it", help_line, "what is open begins here")
+
+
+def _unclosed(found: str, problem: Problem) -> _Words:
+    opening, closing = ("[", "]") if "]" in found else ("{", "}")
+    if problem.begun is not None and problem.begun[0] != problem.line:
+        return _Words(f"this `{opening}` is not closed", f"write `{closing}` at its end", at_start=True)
+    help_line = f"separate entries with `,`, end with `{closing}`, and quote text that holds `: `, brackets or braces"
+    return _Words(f"`,` or `{closing}` is missing before this", help_line, f"this `{opening}` is open")
+
+
+_FIXED: tuple[tuple[str, _Words], ...] = (
+    ("sequence entries are not allowed", _Words("a list cannot begin on the line of its key", "begin it on the next line")),
+    ("mapping keys are not allowed", _Words("text cannot begin with `? `", QUOTE)),
+    ("could not find expected ':'", _Words("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True)),
+    ("unexpected end of stream", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
+    ("unexpected document", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
+    ("escape c", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
+    ("hexdecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
+    ("hexadecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
+    ("scanning a block scalar", _Words("text cannot begin with `>` or `|`: these open a block of lines", QUOTE, at_start=True)),
+    ("scanning an anchor", _Words("text cannot begin with `&`", QUOTE, at_start=True)),
+    ("scanning an alias", _Words("text cannot begin with `*`", QUOTE, at_start=True)),
+    (" tag", _Words("text cannot begin with `!`", QUOTE, at_start=True)),
+    (" directive", _Words("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
+    ("incompatible YAML", _Words("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
+    ("node content", _Words("a value cannot begin with this", QUOTE)),
+    ("<document start>", _Words("this does not belong to what is above it", "keys of one mapping begin in the same column")),
+    ("did not find expected ':'", _Words("a key without `:`", "write `key: value`", at_start=True)),
+)

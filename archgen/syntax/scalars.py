@@ -1,0 +1,43 @@
+"""What an unquoted scalar means: YAML 1.2's core schema, so that `no`, `on` and `1:30` are text."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from archgen.syntax.tree import Plain
+
+MAX_DIGITS = 30
+"""Longer integers stay text: no element needs them, and long ones cost time that grows with their square."""
+STARTS = frozenset("0123456789+-.~nNtTfF")
+"""What any scalar that is not text begins with; the reader asks nobody about the others."""
+_WORDS: dict[str, Plain] = {
+    "~": None,
+    **dict.fromkeys(("null", "Null", "NULL"), None),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+    **dict.fromkeys((".inf", ".Inf", ".INF", "+.inf", "+.Inf", "+.INF"), math.inf),
+    **dict.fromkeys(("-.inf", "-.Inf", "-.INF"), -math.inf),
+    **dict.fromkeys((".nan", ".NaN", ".NAN"), math.nan),
+}
+_NUMBER = re.compile(
+    r"(?P<int>[-+]?[0-9]+)|0o(?P<oct>[0-7]+)|0x(?P<hex>[0-9a-fA-F]+)"
+    r"|(?P<float>[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?)"
+)
+_BASES = {"int": 10, "oct": 8, "hex": 16}
+
+
+def resolve(text: str) -> Plain:
+    """Give the value of a plain scalar that is not empty."""
+    if text in _WORDS:
+        return _WORDS[text]
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        return text
+    if match.lastgroup == "float":
+        number = float(text)
+        return number if math.isfinite(number) else text
+    base = _BASES[match.lastgroup or "int"]
+    return int(match[match.lastgroup or "int"], base) if len(text) <= MAX_DIGITS else text
