@@ -1,0 +1,178 @@
+"""Take out the short forms, file by file, so that nobody after this sees them: every element becomes a mapping.
+
+Empty entries go too (they are "not written"), but below an id an empty entry declares the element and becomes `{}`.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label
+from archgen.syntax.tree import Entry, Listing, Scalar, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.source import Span
+    from archgen.syntax.tree import Document, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """What a kind of element looks like.
+
+    A scalar or list in its place stands for the keys in `short`; the keys in `lists` always hold lists; below the keys
+    in `keyed` stand elements by id, below those in `parts` one thing; `raw` keys are left as they are.
+    """
+
+    short: tuple[str, ...] = ()
+    lists: frozenset[str] = frozenset()
+    keyed: Mapping[str, Form] = field(default_factory=dict)
+    parts: Mapping[str, Form] = field(default_factory=dict)
+    raw: frozenset[str] = frozenset()
+
+
+_PLAIN = Form()
+_TITLED = Form(("title",))
+_TOPIC = Form(("topic",), frozenset({"topic"}), parts={"qos": Form(("profile",))})
+_CALL = Form(("name",))
+_USES = {"publishes": _TOPIC, "subscribes": _TOPIC, "serves": _CALL, "calls": _CALL}
+_COMPONENT = Form(
+    ("title",),
+    keyed={
+        "inputs": Form(("from",), frozenset({"from"})),
+        "outputs": Form(("type",)),
+        "performance": _PLAIN,
+    },
+)
+_NODE = Form(
+    ("implements",),
+    frozenset({"implements", "kind"}),
+    keyed=_USES,
+    parts={"internal": Form(keyed=_USES)},
+    raw=frozenset({"parameters"}),
+)
+_LINK = Form(("connects",), frozenset({"connects"}), parts={"latency": Form(("best", "worst"))})
+_ROOT = Form(
+    keyed={
+        "partners": _TITLED,
+        "use_cases": _TITLED,
+        "requirements": _TITLED,
+        "groups": Form(("title",), keyed={"components": _COMPONENT}),
+        "nodes": _NODE,
+        "types": Form(("message",)),
+        "hosts": _TITLED,
+        "containers": Form(("host",)),
+        "links": _LINK,
+        "chains": Form(("through",), frozenset({"through"})),
+        "views": Form(("show",)),
+        "policies": _PLAIN,
+    }
+)
+
+
+def normalise(document: Document) -> tuple[Diagnostic, ...]:
+    """Bring a document, already validated, into the normal form. Its tree is changed in place."""
+    types = document.root.get("types")
+    found = tuple(_fold_types(types)) if isinstance(types, Table) else ()
+    groups = document.root.get("groups")
+    clashes = tuple(_overall(groups)) if isinstance(groups, Table) else ()
+    _table(document.root, _ROOT)
+    return found + clashes
+
+
+def fold(name: str) -> str:
+    """Give a type's name as it is compared: blanks folded to one, in Unicode's composed form."""
+    return name if name.isascii() and "  " not in name and name == name.strip() else _folded(name)
+
+
+def _folded(name: str) -> str:
+    return unicodedata.normalize("NFC", " ".join(name.split()))
+
+
+def _element(value: Value, form: Form) -> Table:
+    """Give what stands for an element as a mapping."""
+    if isinstance(value, Table):
+        _table(value, form)
+        return value
+    if isinstance(value, Scalar) and value.value is None:
+        return Table({}, value.at)
+    return Table({key: Entry(key, value.at, _leaf(key, value, form)) for key in form.short}, value.at)
+
+
+def _leaf(key: str, value: Value, form: Form) -> Value:
+    return Listing([value], value.at) if key in form.lists and isinstance(value, Scalar) else value
+
+
+def _table(table: Table, form: Form) -> None:
+    empty: list[str] = []
+    for key, entry in table.entries.items():
+        value = entry.value
+        if isinstance(value, Scalar):
+            if value.value is None:
+                empty.append(key)
+                continue
+            if key in form.lists:
+                entry.value = Listing([value], value.at)
+        if key in form.keyed:
+            if isinstance(value, Table):
+                below = form.keyed[key]
+                for element in value.entries.values():
+                    element.value = _element(element.value, below)
+        elif key in form.parts:
+            entry.value = _element(value, form.parts[key])
+        elif isinstance(value, Table) and key not in form.raw:
+            _table(value, _PLAIN)
+    for key in empty:
+        del table.entries[key]
+
+
+def _fold_types(types: Table) -> Iterator[Diagnostic]:
+    """Write the names of types as they are compared."""
+    if all(fold(key) == key for key in types.entries):
+        return
+    folded: dict[str, Entry] = {}
+    for entry in types:
+        name = fold(entry.key)
+        first = folded.setdefault(name, entry)
+        if first is not entry:
+            yield _twice("duplicate-key", f"the type `{name}` is written twice", entry.at, first.at)
+        entry.key = name
+    types.entries = folded
+
+
+_DIRECT = ("accuracy", "execution_time")
+
+
+def _overall(groups: Table) -> Iterator[Diagnostic]:
+    """Move what stands directly in `performance` to its indicator `overall`."""
+    for group in groups:
+        components = group.value.get("components") if isinstance(group.value, Table) else None
+        for component in components if isinstance(components, Table) else ():
+            performance = component.value.get("performance") if isinstance(component.value, Table) else None
+            if isinstance(performance, Table):
+                yield from _hoist(performance)
+
+
+def _hoist(performance: Table) -> Iterator[Diagnostic]:
+    direct = [performance.entries[key] for key in _DIRECT if isinstance(performance.get(key), Scalar)]
+    for entry in direct:
+        del performance.entries[entry.key]
+    written = [entry for entry in direct if isinstance(entry.value, Scalar) and entry.value.value is not None]
+    if not written:
+        return
+    overall = performance.entries.get("overall")
+    if overall is None or not isinstance(overall.value, Table):
+        overall = Entry("overall", written[0].at, Table({}, written[0].at))
+        performance.entries = {"overall": overall, **performance.entries, "overall": overall}
+    for entry in written:
+        first = overall.value.entries.setdefault(entry.key, entry) if isinstance(overall.value, Table) else entry
+        if first is not entry:
+            message = f"`{entry.key}` of the indicator `overall` is written twice"
+            yield _twice("conflicting-values", message, entry.value.at, first.value.at)
+
+
+def _twice(rule: str, message: str, at: Span, first: Span) -> Diagnostic:
+    return Diagnostic(rule, message, at, labels=(Label(first, "first written here"),))

@@ -1,0 +1,168 @@
+"""Hold a document against the JSON Schema, phrase what differs, and take it out, so that later stages rely on kinds."""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import jsonschema_rs
+
+from archgen import resources
+from archgen.diagnostic import Diagnostic
+from archgen.schema import wording
+from archgen.syntax.tree import Entry, Listing, Scalar, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from archgen.syntax.tree import Document, Value
+
+_USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
+"""Ids that break a rule of style are reported, and kept: what refers to them is not wrong as well."""
+
+
+class Place(NamedTuple):
+    """Where an error stands: its path, the value there, what holds it, and its key's entry if that is a mapping."""
+
+    path: tuple[str | int, ...]
+    value: Value
+    parent: Table | Listing | None = None
+    entry: Entry | None = None
+
+
+def validate(document: Document) -> tuple[Diagnostic, ...]:
+    """Check a document; afterwards it holds only what the schema allows."""
+    data = _data(document.root)
+    validator = _validator()
+    if validator.is_valid(data):
+        return ()
+    found: list[Diagnostic] = []
+    wrong: list[tuple[Place, str | None]] = []
+    seen = set[tuple[str | int, ...]]()
+    for error in _by_weight(validator.iter_errors(data)):
+        _judge(document, error, found, wrong, seen)
+    for place, key in wrong:
+        _prune(place, key)
+    _drop_holes(document.root)
+    return tuple(found)
+
+
+@functools.cache
+def schema() -> dict[str, Any]:
+    """Give the JSON Schema of the language."""
+    text = resources.path("schemas", "archgen.schema.json").read_text(encoding="utf-8")
+    return json.loads(text)  # type: ignore[no-any-return]
+
+
+@functools.cache
+def _validator() -> jsonschema_rs.Draft202012Validator:
+    return jsonschema_rs.Draft202012Validator(schema())
+
+
+def sections() -> frozenset[str]:
+    """Name the top-level sections."""
+    return frozenset(schema()["properties"])
+
+
+def _data(value: Value) -> object:
+    """Turn a tree into what the validator takes. Floats go as text: it reads NaN as null and 5.0 as a whole number."""
+    if isinstance(value, Table):
+        return {key: _data(entry.value) for key, entry in value.entries.items()}
+    if isinstance(value, Listing):
+        return [_data(item) for item in value.items]
+    found = value.value
+    return value.text if type(found) is float or (type(found) is int and abs(found) >> 62) else found
+
+
+def _by_weight(errors: Iterable[jsonschema_rs.ValidationError]) -> list[jsonschema_rs.ValidationError]:
+    """Put a wrong type before all that follows from it."""
+    return sorted(errors, key=lambda error: error.kind.name != "type")
+
+
+def _judge(
+    document: Document,
+    error: jsonschema_rs.ValidationError,
+    found: list[Diagnostic],
+    wrong: list[tuple[Place, str | None]],
+    seen: set[tuple[str | int, ...]],
+) -> None:
+    place = _locate(document.root, tuple(error.instance_path))
+    part = _part(error.schema_path)
+    kind = error.kind.name
+    if kind == "additionalProperties" and isinstance(place.value, Table):
+        for key in error.kind.unexpected:
+            found.append(wording.unknown_key(place.value.entries[key], part, place.path))
+            wrong.append((place, key))
+    elif kind == "propertyNames" and isinstance(place.value, Table):
+        key = str(error.kind.error.instance)
+        if (*place.path, key) not in seen:
+            seen.add((*place.path, key))
+            found.append(wording.wrong_key(place.value.entries[key], part, place.path))
+            if not _USABLE_ID.match(key):
+                wrong.append((place, key))
+    elif place.path not in seen:
+        seen.add(place.path)
+        found.append(wording.wrong(kind, place, part))
+        wrong.append((place, None))
+
+
+def _locate(root: Table, path: tuple[str | int, ...]) -> Place:
+    value: Value = root
+    parent: Table | Listing | None = None
+    entry: Entry | None = None
+    for step in path:
+        parent = value if isinstance(value, Table | Listing) else None
+        if isinstance(value, Table):
+            entry = value.entries[str(step)]
+            value = entry.value
+        elif isinstance(value, Listing):
+            value = value.items[int(step)]
+    return Place(path, value, parent, entry)
+
+
+def _part(path: Iterable[str | int]) -> dict[str, Any]:
+    """Give the part of the schema that an error comes from."""
+    found: Any = schema()
+    for step in list(path)[:-1]:
+        found = found[step]
+    return found  # type: ignore[no-any-return]
+
+
+_HOLE = Scalar(None, "", wording.NO_PLACE)
+_KEPT = frozenset({"from", "implements", "through"})
+"""What a rule asks for: where nothing sound is left of it, an empty list says that somebody wrote it."""
+_KEYED = frozenset(
+    "groups components inputs outputs nodes publishes subscribes serves calls types requirements use_cases partners"
+    " hosts containers links chains views policies".split()
+)
+
+
+def _prune(place: Place, key: str | None) -> None:
+    """Take out what is wrong. An element stays by its id, so that what refers to it is not wrong as well."""
+    if key is not None and isinstance(place.value, Table):
+        place.value.entries.pop(key, None)
+    elif isinstance(place.parent, Listing):
+        place.parent.items[int(place.path[-1])] = _HOLE
+    elif isinstance(place.parent, Table) and place.entry is not None:
+        if place.entry.key in _KEPT:
+            place.entry.value = Listing([], place.value.at)
+        elif len(place.path) > 1 and place.path[-2] in _KEYED:
+            place.entry.value = Scalar(None, "", place.value.at)
+        else:
+            place.parent.entries.pop(place.entry.key, None)
+
+
+def _drop_holes(value: Value) -> None:
+    """Take the wrong entries out of lists, and lists of which nothing is left out of mappings."""
+    if isinstance(value, Listing):
+        value.items = [item for item in value.items if item is not _HOLE]
+        for item in value.items:
+            _drop_holes(item)
+    elif isinstance(value, Table):
+        for entry in tuple(value):
+            had = isinstance(entry.value, Listing) and bool(entry.value.items)
+            _drop_holes(entry.value)
+            if had and isinstance(entry.value, Listing) and not entry.value.items and entry.key not in _KEPT:
+                del value.entries[entry.key]
