@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.schema import element
 from archgen.source import NOWHERE
 from archgen.suggest import did_you_mean
 from archgen.syntax.tree import Entry, Table
@@ -65,15 +66,6 @@ def _conflict(entry: Entry, first: Entry, path: Path) -> Diagnostic:
     return Diagnostic("conflicting-values", message, entry.value.at, labels=(label,), help=help_line, element=owner)
 
 
-def element(path: Path) -> str | None:
-    """Name the element to which a path leads, as people write it."""
-    if len(path) < 2:  # noqa: PLR2004: a section and an id
-        return None
-    if path[0] == "groups":
-        return ".".join([path[1], *path[3:4], *path[5:6]])
-    return path[1]
-
-
 def _declared(root: Table, documents: Sequence[Document]) -> tuple[Table, list[Diagnostic]]:
     """Take out the components and groups that nobody declared."""
     groups = root.get("groups")
@@ -131,7 +123,9 @@ def _undeclared(groups: Table, path: Path, known: Sequence[Path]) -> Diagnostic:
     guess = did_you_mean(name, (".".join(other) for other in known if len(other) == len(path)))
     needed = "a title or a component" if kind == "group" else "a title, a functionality, inputs or outputs"
     help_line = guess or f"give it {needed} where it belongs"
-    return Diagnostic("undeclared-element", f"no file declares the {kind} `{name}`", entry.at, help=help_line, element=name)
+    return Diagnostic(
+        "undeclared-element", f"no file declares the {kind} `{name}`", entry.at, help=help_line, element=name
+    )
 
 
 def _without(groups: Table, lost: frozenset[Path]) -> Table:

@@ -17,7 +17,13 @@ OUTPUT = "archgen-out"
 def is_inside(pattern: str) -> bool:
     """Say whether a pattern stays in the folder from which it starts."""
     parts = PurePosixPath(pattern).parts
-    return bool(pattern) and "\\" not in pattern and not pattern.startswith("/") and ".." not in parts and "\0" not in pattern
+    return (
+        bool(pattern)
+        and "\\" not in pattern
+        and not pattern.startswith("/")
+        and ".." not in parts
+        and "\0" not in pattern
+    )
 
 
 def expand(root: Path, pattern: str, skip: frozenset[str] = frozenset()) -> tuple[str, ...]:

@@ -54,6 +54,19 @@ def explain(file: str, text: str, problem: Problem) -> Diagnostic:
     return Diagnostic("syntax-error", words.message, _span(file, lines, at), labels=labels, help=words.help)
 
 
+def duplicate(key: str, at: Span, first: Span) -> Diagnostic:
+    """Phrase a key that one mapping has twice."""
+    labels = (Label(first, "first written here"),)
+    return Diagnostic("duplicate-key", f"the key `{key}` is written twice", at, labels=labels, help="keep one of them")
+
+
+def recursive(anchor: str, at: Span, begun: Span) -> Diagnostic:
+    """Phrase an alias inside of its own anchor."""
+    label = Label(Span(begun.file, begun.line, begun.column, begun.line, begun.column + 1), "begins here")
+    message = f"`*{anchor}` stands inside of what it stands for"
+    return Diagnostic("recursive-alias", message, at, labels=(label,), help="write out what is meant")
+
+
 def _clamp(lines: list[str], line: int, column: int) -> tuple[int, int]:
     """Move a place at the end of the file onto the end of its last line that is not blank."""
     last = len(lines) - 1
@@ -75,16 +88,12 @@ def _words(line: str, column: int, problem: Problem) -> _Words:
         return _second_colon(line, column)
     if "cannot start any token" in found:
         return _bad_start(line[column : column + 1])
-    if "tab character" in found:
-        return _TAB
     if "expected key" in found or "expected <block end>" in found or "'-' indicator" in found:
         return _out_of_place(line, column)
     if "',' or ']'" in found or "',' or '}'" in found:
         return _unclosed(found, problem)
-    for needle, words in _FIXED:
-        if needle in found or needle in problem.context:
-            return words
-    return _Words("this is not YAML", "compare it with the lines around it, or put text in quotes")
+    fixed = (words for needle, words in _FIXED if needle in found or needle in problem.context)
+    return next(fixed, _Words("this is not YAML", "compare it with the lines around it, or put text in quotes"))
 
 
 _TAB = _Words("a tab cannot stand in the indentation", "indent with blanks")
@@ -100,7 +109,9 @@ def _second_colon(line: str, column: int) -> _Words:
 def _bad_start(character: str) -> _Words:
     if character == "\t":
         return _TAB
-    return _Words(f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE)
+    return _Words(
+        f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE
+    )
 
 
 def _out_of_place(line: str, column: int) -> _Words:
@@ -121,21 +132,34 @@ def _unclosed(found: str, problem: Problem) -> _Words:
 
 
 _FIXED: tuple[tuple[str, _Words], ...] = (
-    ("sequence entries are not allowed", _Words("a list cannot begin on the line of its key", "begin it on the next line")),
+    ("tab character", _TAB),
+    (
+        "sequence entries are not allowed",
+        _Words("a list cannot begin on the line of its key", "begin it on the next line"),
+    ),
     ("mapping keys are not allowed", _Words("text cannot begin with `? `", QUOTE)),
-    ("could not find expected ':'", _Words("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True)),
+    (
+        "could not find expected ':'",
+        _Words("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True),
+    ),
     ("unexpected end of stream", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
     ("unexpected document", _Words("this quote is never closed", "close it, or take it out", at_start=True)),
     ("escape c", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
     ("hexdecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
     ("hexadecimal", _Words("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")),
-    ("scanning a block scalar", _Words("text cannot begin with `>` or `|`: these open a block of lines", QUOTE, at_start=True)),
+    (
+        "scanning a block scalar",
+        _Words("text cannot begin with `>` or `|`: these open a block of lines", QUOTE, at_start=True),
+    ),
     ("scanning an anchor", _Words("text cannot begin with `&`", QUOTE, at_start=True)),
     ("scanning an alias", _Words("text cannot begin with `*`", QUOTE, at_start=True)),
     (" tag", _Words("text cannot begin with `!`", QUOTE, at_start=True)),
     (" directive", _Words("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
     ("incompatible YAML", _Words("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
     ("node content", _Words("a value cannot begin with this", QUOTE)),
-    ("<document start>", _Words("this does not belong to what is above it", "keys of one mapping begin in the same column")),
+    (
+        "<document start>",
+        _Words("this does not belong to what is above it", "keys of one mapping begin in the same column"),
+    ),
     ("did not find expected ':'", _Words("a key without `:`", "write `key: value`", at_start=True)),
 )
