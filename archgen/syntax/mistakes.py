@@ -8,6 +8,8 @@ from typing import NamedTuple
 from archgen.diagnostic import Diagnostic, Label
 from archgen.source import Span
 
+HALF = re.compile("[\ud800-\udfff]")
+"""Half of a character beyond U+FFFF, which no text may hold alone; libyaml refuses it itself."""
 QUOTE = 'put the text in quotes: "..."'
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
 

@@ -76,7 +76,7 @@ def _root(walk: _Walk) -> Table | None:
         return root
     if root is None or (isinstance(root, Scalar) and root.value is None):
         return Table({}, Span.of_file(walk.file))
-    kind = "a list" if isinstance(root, Listing) else "a text"
+    kind = "a list" if isinstance(root, Listing) else "text"
     help_line = "write sections: `groups:`, `nodes:`, `types:`, ..."
     walk.diagnostics.append(Diagnostic("wrong-type", f"the file is {kind}, not a mapping", root.at, help=help_line))
     return None
@@ -130,7 +130,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
     new, starts, quoted = tuple.__new__, STARTS, walk.quoted
     hashes = comments.lines_with_hashes(source)
     note = bool(hashes) or comments.may_hold_ignores(source)
-    rare = bool(restore) or "!" in source or "&" in source
+    rare = not FAST or bool(restore) or "!" in source or "&" in source
     anchors: dict[str, tuple[Value, int | None]] = {}
     stack: list[tuple[Any, ...]] = []
     entries: dict[str, Entry] | None = None
@@ -265,6 +265,8 @@ def _rare(walk: _Walk, event: Any, at: Span, restore: dict[int, int]) -> str:  #
     if event.tag is not None:
         walk.fault(f"the tag `{event.tag}` is not read", f"take it out; if it is text, {mistakes.QUOTE}", at)
     text: str = event.value
+    if not FAST and mistakes.HALF.search(text):
+        walk.fault("an escape that names half a character", "write the whole character", at)
     return text.translate(restore) if restore else text
 
 
