@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.schema import element
 from archgen.source import NOWHERE
 from archgen.suggest import did_you_mean
 from archgen.syntax.tree import Entry, Table
@@ -19,11 +20,14 @@ _SUPPORT = frozenset({"timing", "requirements", "tags", "urls", "layout", "owner
 """What supporting files say of components that others declare."""
 
 
-def merge(documents: Sequence[Document]) -> tuple[Table, tuple[Diagnostic, ...]]:
-    """Merge documents in normal form. The documents stay as they are; the result shares their values."""
+def merge(documents: Sequence[Document], lost: frozenset[str] = frozenset()) -> tuple[Table, tuple[Diagnostic, ...]]:
+    """Merge documents in normal form. The documents stay as they are; the result shares their values.
+
+    `lost` are the keys in files that could not be read: nobody is told that what they declare is not declared.
+    """
     found: list[Diagnostic] = []
     root = _join([document.root for document in documents], (), found)
-    root, undeclared = _declared(root, documents)
+    root, undeclared = _declared(root, documents, lost)
     return root, (*found, *undeclared, *_incomplete(root))
 
 
@@ -65,16 +69,7 @@ def _conflict(entry: Entry, first: Entry, path: Path) -> Diagnostic:
     return Diagnostic("conflicting-values", message, entry.value.at, labels=(label,), help=help_line, element=owner)
 
 
-def element(path: Path) -> str | None:
-    """Name the element to which a path leads, as people write it."""
-    if len(path) < 2:  # noqa: PLR2004: a section and an id
-        return None
-    if path[0] == "groups":
-        return ".".join([path[1], *path[3:4], *path[5:6]])
-    return path[1]
-
-
-def _declared(root: Table, documents: Sequence[Document]) -> tuple[Table, list[Diagnostic]]:
+def _declared(root: Table, documents: Sequence[Document], unread: frozenset[str]) -> tuple[Table, list[Diagnostic]]:
     """Take out the components and groups that nobody declared."""
     groups = root.get("groups")
     if not isinstance(groups, Table):
@@ -83,7 +78,7 @@ def _declared(root: Table, documents: Sequence[Document]) -> tuple[Table, list[D
     if not lost:
         return root, []
     known = [path for path in _all(groups) if path not in lost]
-    found = [_undeclared(groups, path, known) for path in lost]
+    found = [_undeclared(groups, path, known) for path in lost if path[-1] not in unread]
     entry = root.entries["groups"]
     kept = _without(groups, frozenset(lost))
     return Table({**root.entries, "groups": Entry("groups", entry.at, kept)}, root.at), found

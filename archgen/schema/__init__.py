@@ -3,5 +3,6 @@
 from archgen.schema.rules import RULES
 from archgen.schema.shorthand import fold, normalise
 from archgen.schema.validate import sections, validate
+from archgen.schema.wording import element
 
-__all__ = ["RULES", "fold", "normalise", "sections", "validate"]
+__all__ = ["RULES", "element", "fold", "normalise", "sections", "validate"]

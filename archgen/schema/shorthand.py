@@ -107,26 +107,29 @@ def _leaf(key: str, value: Value, form: Form) -> Value:
 
 
 def _table(table: Table, form: Form) -> None:
+    """Bring the entries of a mapping into the normal form, and drop those that are empty."""
     empty: list[str] = []
     for key, entry in table.entries.items():
         value = entry.value
-        if isinstance(value, Scalar):
-            if value.value is None:
-                empty.append(key)
-                continue
-            if key in form.lists:
-                entry.value = Listing([value], value.at)
-        if key in form.keyed:
-            if isinstance(value, Table):
-                below = form.keyed[key]
-                for element in value.entries.values():
-                    element.value = _element(element.value, below)
+        if isinstance(value, Scalar) and value.value is None:
+            empty.append(key)
         elif key in form.parts:
             entry.value = _element(value, form.parts[key])
-        elif isinstance(value, Table) and key not in form.raw:
-            _table(value, _PLAIN)
+        elif isinstance(value, Table):
+            _below(key, value, form)
+        else:
+            entry.value = _leaf(key, value, form)
     for key in empty:
         del table.entries[key]
+
+
+def _below(key: str, value: Table, form: Form) -> None:
+    if key in form.keyed:
+        element_form = form.keyed[key]
+        for element in value.entries.values():
+            element.value = _element(element.value, element_form)
+    elif key not in form.raw:
+        _table(value, _PLAIN)
 
 
 def _fold_types(types: Table) -> Iterator[Diagnostic]:
@@ -166,7 +169,7 @@ def _hoist(performance: Table) -> Iterator[Diagnostic]:
     overall = performance.entries.get("overall")
     if overall is None or not isinstance(overall.value, Table):
         overall = Entry("overall", written[0].at, Table({}, written[0].at))
-        performance.entries = {"overall": overall, **performance.entries, "overall": overall}
+        performance.entries = {"overall": overall} | performance.entries | {"overall": overall}
     for entry in written:
         first = overall.value.entries.setdefault(entry.key, entry) if isinstance(overall.value, Table) else entry
         if first is not entry:

@@ -5,31 +5,23 @@ from __future__ import annotations
 import functools
 import json
 import re
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import jsonschema_rs
 
 from archgen import resources
 from archgen.diagnostic import Diagnostic
 from archgen.schema import wording
-from archgen.syntax.tree import Entry, Listing, Scalar, Table
+from archgen.schema.wording import Place
+from archgen.syntax.tree import Listing, Scalar, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from archgen.syntax.tree import Document, Value
+    from archgen.syntax.tree import Document, Entry, Value
 
 _USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
 """Ids that break a rule of style are reported, and kept: what refers to them is not wrong as well."""
-
-
-class Place(NamedTuple):
-    """Where an error stands: its path, the value there, what holds it, and its key's entry if that is a mapping."""
-
-    path: tuple[str | int, ...]
-    value: Value
-    parent: Table | Listing | None = None
-    entry: Entry | None = None
 
 
 def validate(document: Document) -> tuple[Diagnostic, ...]:
@@ -92,11 +84,13 @@ def _judge(
     part = _part(error.schema_path)
     kind = error.kind.name
     if kind == "additionalProperties" and isinstance(place.value, Table):
-        for key in error.kind.unexpected:
+        kind_of: Any = error.kind  # its attributes depend on the kind, which the library's types do not say
+        for key in kind_of.unexpected:
             found.append(wording.unknown_key(place.value.entries[key], part, place.path))
             wrong.append((place, key))
     elif kind == "propertyNames" and isinstance(place.value, Table):
-        key = str(error.kind.error.instance)
+        inner: Any = error.kind
+        key = str(inner.error.instance)
         if (*place.path, key) not in seen:
             seen.add((*place.path, key))
             found.append(wording.wrong_key(place.value.entries[key], part, place.path))
@@ -133,10 +127,7 @@ def _part(path: Iterable[str | int]) -> dict[str, Any]:
 _HOLE = Scalar(None, "", wording.NO_PLACE)
 _KEPT = frozenset({"from", "implements", "through"})
 """What a rule asks for: where nothing sound is left of it, an empty list says that somebody wrote it."""
-_KEYED = frozenset(
-    "groups components inputs outputs nodes publishes subscribes serves calls types requirements use_cases partners"
-    " hosts containers links chains views policies".split()
-)
+_KEYED = wording.SECTIONS_BY_ID | {"components", "inputs", "outputs", "publishes", "subscribes", "serves", "calls"}
 
 
 def _prune(place: Place, key: str | None) -> None:

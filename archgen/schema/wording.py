@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 from archgen.diagnostic import Diagnostic
 from archgen.model import quantity
 from archgen.source import NOWHERE
-from archgen.suggest import closest, did_you_mean
-from archgen.syntax.tree import Listing, Scalar, Table
-
-if TYPE_CHECKING:
-    from archgen.schema.validate import Place
-    from archgen.syntax.tree import Entry, Value
+from archgen.suggest import did_you_mean
+from archgen.syntax.tree import Entry, Listing, Scalar, Table, Value
 
 NO_PLACE = NOWHERE
 _NUMBER = re.compile(r"\s*([-+]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*(\S*)\s*\Z", re.ASCII)
@@ -34,7 +30,21 @@ _YES = {
     "n": "false",
     "0": "false",
 }
+SECTIONS_BY_ID = frozenset(
+    {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
+    | {"views", "policies"}
+)
+"""The sections that hold elements by id."""
 _PLAIN_WORDS = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}
+
+
+class Place(NamedTuple):
+    """Where an error stands: its path, the value there, what holds it, and its key's entry if that is a mapping."""
+
+    path: tuple[str | int, ...]
+    value: Value
+    parent: Table | Listing | None = None
+    entry: Entry | None = None
 
 
 def unknown_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
@@ -125,25 +135,25 @@ def _container_help(name: str, value: Value, part: dict[str, Any]) -> str | None
 
 def _wrong_value(kind: str, name: str, value: Value, part: dict[str, Any]) -> tuple[str, str | None]:
     text = value.text if isinstance(value, Scalar) else ""
-    shown = f"{name} cannot be `{_short(text)}`"
     dimension = _dimension(part)
     if kind == "pattern" and dimension:
         return _wrong_quantity(name, text, dimension, part)
-    if kind == "enum":
-        options = [option for option in part["enum"] if option is not None]
-        return shown, did_you_mean(text, options) or f"it is one of {_listed(options)}"
     if kind == "const":
-        return (
-            f"this archgen reads version {part['const']} of the language, not `{_short(text)}`",
-            f"write `{part['const']}`",
-        )
-    if kind in {"minimum", "maximum"}:
-        return shown, f"it is at {'least' if kind == 'minimum' else 'most'} {part[kind]}"
+        return f"this archgen reads version {part[kind]} of the language, not `{_short(text)}`", f"write `{part[kind]}`"
     if kind in {"maxLength", "minLength"}:
         return f"{name} is too {'long' if kind == 'maxLength' else 'short'}", f"the limit is {part[kind]} characters"
     if text != text.strip() and re.search(part.get("pattern", ""), text.strip()):
         return f"{name} has a blank at its beginning or end", f"write `{text.strip()}`"
-    return shown, part.get("patternErrorMessage")
+    return f"{name} cannot be `{_short(text)}`", _value_help(kind, text, part)
+
+
+def _value_help(kind: str, text: str, part: dict[str, Any]) -> str | None:
+    if kind == "enum":
+        options = [option for option in part["enum"] if option is not None]
+        return did_you_mean(text, options) or f"it is one of {_listed(options)}"
+    if kind in {"minimum", "maximum"}:
+        return f"it is at {'least' if kind == 'minimum' else 'most'} {part[kind]}"
+    return part.get("patternErrorMessage")
 
 
 def _dimension(part: dict[str, Any]) -> str | None:
@@ -213,16 +223,11 @@ def _name(place: Place) -> str:
 
 def element(path: tuple[str | int, ...]) -> str | None:
     """Give the id of the element that a path leads into."""
-    if len(path) < 2:  # noqa: PLR2004: a section and an id
+    if len(path) < 2:  # noqa: PLR2004 - a section and an id
         return None
     if path[0] == "groups" and len(path) > 3 and path[2] == "components":  # noqa: PLR2004
         return f"{path[1]}.{path[3]}"
-    return str(path[1]) if path[0] in _KEYED else None
-
-
-_KEYED = frozenset(
-    "partners use_cases requirements groups nodes types hosts containers links chains views policies".split()
-)
+    return str(path[1]) if path[0] in SECTIONS_BY_ID else None
 
 
 def _article(title: str) -> str:
@@ -234,6 +239,9 @@ def _listed(words: tuple[str, ...] | list[str]) -> str:
     return ", ".join(f"`{word}`" for word in words)
 
 
+_LONGEST = 60
+
+
 def _short(text: str) -> str:
     line = " ".join(text.split())
-    return line if len(line) <= 60 else f"{line[:57]}..."  # noqa: PLR2004
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 3]}..."

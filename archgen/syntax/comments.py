@@ -14,11 +14,9 @@ from archgen.syntax.tree import Ignore
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-_IGNORE = re.compile(
-    r"(?:^|(?<=[ \t]))#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)", re.MULTILINE
-)
+_IGNORE = re.compile(r"#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)")
 _CONFLICT = re.compile(r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]+([^\r\n]*?))?[ \t]*\r?$", re.MULTILINE)
-_HASH = re.compile(r"[ \t]#[^\s]")
+_HASH = re.compile(r"#(?<=[ \t]#)[^\s]")
 _SWALLOWED = re.compile(r"[ \t]+#(?!\s*archgen:)[^\s][^\r\n]*")
 _SWALLOWED_WHOLE = re.compile(r"[ \t]*#(?:[0-9]|[0-9a-fA-F]{6}\b)[^\r\n]*")
 
@@ -48,6 +46,8 @@ def ignores(file: str, text: str, quoted: Sequence[tuple[int, int]]) -> Iterator
     for match in _IGNORE.finditer(text):
         before = bisect_right(starts, match.start()) - 1
         if before >= 0 and match.start() < quoted[before][1]:
+            continue
+        if match.start() and text[match.start() - 1] not in " \t\r\n":
             continue
         lines = lines or Lines(text)
         names = tuple(name.strip() for name in (match[1] or "").split(",") if name.strip())
@@ -95,16 +95,23 @@ def _both(ours: str | None, theirs: str | None) -> str:
 
 def lines_with_hashes(text: str) -> frozenset[int]:
     """Give the lines (from 0) on which a comment could have swallowed text."""
-    if _HASH.search(text) is None:
+    if "#" not in text or _HASH.search(text) is None:
         return frozenset()
     lines = re.split(r"\r\n|\r|\n", text)
     return frozenset(number for number, line in enumerate(lines) if "#" in line and _HASH.search(line))
 
 
-def swallowed(text: str, offset: int, *, empty: bool) -> int | None:
-    """Give where the comment right after a plain scalar ends if it may have been meant as text, or None.
+def swallowed(source: str, at: Span, offset: int, *, empty: bool) -> Iterator[Diagnostic]:
+    """Say where a comment right after plain text, which ends at `offset`, looks like a part of it.
 
     After an empty value only what looks like a number or a colour counts: comments are common there.
     """
-    match = (_SWALLOWED_WHOLE if empty else _SWALLOWED).match(text, offset)
-    return match.end() if match else None
+    match = (_SWALLOWED_WHOLE if empty else _SWALLOWED).match(source, offset)
+    if match is None:
+        return
+    comment = match[0]
+    start = at.end_column + len(comment) - len(comment.lstrip())
+    span = Span(at.file, at.end_line, start, at.end_line, at.end_column + len(comment))
+    message = f"`{comment.strip()}` is a comment, not part of the text"
+    help_line = "quote the whole text if it belongs to it; write `# ` with a blank if it is a comment"
+    yield Diagnostic("swallowed-text", message, span, help=help_line)

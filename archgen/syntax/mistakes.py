@@ -8,6 +8,8 @@ from typing import NamedTuple
 from archgen.diagnostic import Diagnostic, Label
 from archgen.source import Span
 
+HALF = re.compile("[\ud800-\udfff]")
+"""Half of a character beyond U+FFFF, which no text may hold alone; libyaml refuses it itself."""
 QUOTE = 'put the text in quotes: "..."'
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
 
@@ -54,6 +56,19 @@ def explain(file: str, text: str, problem: Problem) -> Diagnostic:
     return Diagnostic("syntax-error", words.message, _span(file, lines, at), labels=labels, help=words.help)
 
 
+def duplicate(key: str, at: Span, first: Span) -> Diagnostic:
+    """Phrase a key that one mapping has twice."""
+    labels = (Label(first, "first written here"),)
+    return Diagnostic("duplicate-key", f"the key `{key}` is written twice", at, labels=labels, help="keep one of them")
+
+
+def recursive(anchor: str, at: Span, begun: Span) -> Diagnostic:
+    """Phrase an alias inside of its own anchor."""
+    label = Label(Span(begun.file, begun.line, begun.column, begun.line, begun.column + 1), "begins here")
+    message = f"`*{anchor}` stands inside of what it stands for"
+    return Diagnostic("recursive-alias", message, at, labels=(label,), help="write out what is meant")
+
+
 def _clamp(lines: list[str], line: int, column: int) -> tuple[int, int]:
     """Move a place at the end of the file onto the end of its last line that is not blank."""
     last = len(lines) - 1
@@ -75,16 +90,12 @@ def _words(line: str, column: int, problem: Problem) -> _Words:
         return _second_colon(line, column)
     if "cannot start any token" in found:
         return _bad_start(line[column : column + 1])
-    if "tab character" in found:
-        return _TAB
     if "expected key" in found or "expected <block end>" in found or "'-' indicator" in found:
         return _out_of_place(line, column)
     if "',' or ']'" in found or "',' or '}'" in found:
         return _unclosed(found, problem)
-    for needle, words in _FIXED:
-        if needle in found or needle in problem.context:
-            return words
-    return _Words("this is not YAML", "compare it with the lines around it, or put text in quotes")
+    fixed = (words for needle, words in _FIXED if needle in found or needle in problem.context)
+    return next(fixed, _Words("this is not YAML", "compare it with the lines around it, or put text in quotes"))
 
 
 _TAB = _Words("a tab cannot stand in the indentation", "indent with blanks")
@@ -123,6 +134,7 @@ def _unclosed(found: str, problem: Problem) -> _Words:
 
 
 _FIXED: tuple[tuple[str, _Words], ...] = (
+    ("tab character", _TAB),
     (
         "sequence entries are not allowed",
         _Words("a list cannot begin on the line of its key", "begin it on the next line"),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from archgen.diagnostic import Diagnostic, Label
+from archgen.diagnostic import Diagnostic
 from archgen.source import Span
 from archgen.syntax import comments, mistakes
 from archgen.syntax.scalars import STARTS, resolve
@@ -23,19 +23,16 @@ if TYPE_CHECKING:
     from archgen.syntax.tree import Value
 
 MAX_VALUES = 1_000_000
-"""How many values a file may hold, anchors expanded. 10,000 components have about 400,000."""
+"""How many values a file may hold. 10,000 components have about 400,000."""
+MAX_EXPANDED = 100_000
+"""How many of them may come from aliases."""
 MAX_DEPTH = 64
 """How deep values may nest. The language itself needs 9; the rest is for parameters."""
 _LINE_BREAKS = "\x85\u2028\u2029"
 """Line breaks for libyaml, but not for YAML 1.2, editors or us: they are hidden from it."""
 
-try:
-    from yaml._yaml import CParser as _Parser
-
-    FAST = True
-except ImportError:  # PyYAML was built without libyaml
-    _Parser = yaml.Loader
-    FAST = False
+FAST = yaml.__with_libyaml__
+"""Whether PyYAML was built with libyaml; without it the same events come from Python, thirty times slower."""
 
 
 @dataclass(slots=True)
@@ -49,7 +46,7 @@ class _Walk:
     root: Value | None = None
     broken: bool = False
 
-    def fault(self, message: str, at: Span, help_line: str | None = None, rule: str = "syntax-error") -> None:
+    def fault(self, message: str, help_line: str | None, at: Span, rule: str = "syntax-error") -> None:
         """Note a mistake after which nothing of the file is used."""
         self.diagnostics.append(Diagnostic(rule, message, at, help=help_line))
         self.broken = True
@@ -60,7 +57,7 @@ def parse(file: str, text: str) -> tuple[Document | None, tuple[Diagnostic, ...]
     conflicts = comments.conflicts(file, text)
     if conflicts:
         return None, conflicts
-    wrong = None if text.isascii() and text.isprintable() else mistakes.forbidden_character(file, text)
+    wrong = mistakes.forbidden_character(file, text)
     if wrong is not None:
         return None, (wrong,)
     hidden = _hide_line_breaks(text)
@@ -79,7 +76,7 @@ def _root(walk: _Walk) -> Table | None:
         return root
     if root is None or (isinstance(root, Scalar) and root.value is None):
         return Table({}, Span.of_file(walk.file))
-    kind = "a list" if isinstance(root, Listing) else "a text"
+    kind = "a list" if isinstance(root, Listing) else "text"
     help_line = "write sections: `groups:`, `nodes:`, `types:`, ..."
     walk.diagnostics.append(Diagnostic("wrong-type", f"the file is {kind}, not a mapping", root.at, help=help_line))
     return None
@@ -92,13 +89,23 @@ def _hide_line_breaks(text: str) -> tuple[str, dict[int, int]]:
         return text, {}
     spare = (chr(code) for code in range(0xE000, 0xF8FF) if chr(code) not in text)
     pairs = dict(zip(odd, spare, strict=False))
-    return text.translate(str.maketrans(pairs)), {ord(new): ord(old) for old, new in pairs.items()}
+    return text.translate({ord(old): new for old, new in pairs.items()}), {
+        ord(new): ord(old) for old, new in pairs.items()
+    }
+
+
+def _parser(text: str) -> Any:  # noqa: ANN401 - two classes that share nothing but their methods
+    if FAST:
+        from yaml.cyaml import CParser  # type: ignore[attr-defined]
+
+        return CParser(text)
+    return yaml.Loader(text)
 
 
 def _run(walk: _Walk, restore: dict[int, int]) -> None:
     """Walk, and turn what the parser raises into a diagnostic."""
     try:
-        _walk(walk, _Parser(walk.text), restore)
+        _walk(walk, _parser(walk.text), restore)
     except yaml.MarkedYAMLError as error:
         mark, begun = error.problem_mark or error.context_mark, error.context_mark
         problem = mistakes.Problem(
@@ -111,156 +118,156 @@ def _run(walk: _Walk, restore: dict[int, int]) -> None:
         walk.diagnostics.append(mistakes.explain(walk.file, walk.text, problem))
         walk.broken = True
     except (yaml.YAMLError, ValueError, OverflowError):  # the slow parser's, for escapes that name no character
-        walk.fault("a character or an escape that YAML does not know", Span.of_file(walk.file))
+        walk.fault("a character or an escape that YAML does not know", None, Span.of_file(walk.file))
 
 
-def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: ANN401, C901, PLR0912, PLR0915
+def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: ANN401, C901, PLR0911, PLR0912, PLR0915
+    """Build the tree, event by event. One long loop on purpose: calls for each event would double its time."""
     get: Callable[[], Any] = parser.get_event
     file, source, fault = walk.file, walk.text, walk.fault
     scalar_event, mapping_start, mapping_end = yaml.ScalarEvent, yaml.MappingStartEvent, yaml.MappingEndEvent
     sequence_start, sequence_end, alias_event = yaml.SequenceStartEvent, yaml.SequenceEndEvent, yaml.AliasEvent
-    new, starts, note = tuple.__new__, STARTS, walk.quoted if comments.may_hold_ignores(source) else None
+    new, starts, quoted = tuple.__new__, STARTS, walk.quoted
     hashes = comments.lines_with_hashes(source)
+    note = bool(hashes) or comments.may_hold_ignores(source)
+    rare = not FAST or bool(restore) or "!" in source or "&" in source
     anchors: dict[str, tuple[Value, int | None]] = {}
     stack: list[tuple[Any, ...]] = []
     entries: dict[str, Entry] | None = None
     items: list[Value] | None = None
-    key: str | None = None
-    key_at = Span.of_file(file)
-    key_end = count = documents = line = column = 0
+    key, key_at, key_end, wants_key = "", Span.of_file(file), None, False
+    count = expanded = documents = line = column = 0
     value: Value
     while True:
         event = get()
         kind = type(event)
         if kind is scalar_event:
-            text, start, end = event.value, event.start_mark, event.end_mark
+            start, end, text = event.start_mark, event.end_mark, event.value
             line, column = end.line + 1, end.column + 1
             at = new(Span, (file, start.line + 1, start.column + 1, line, column))  # twice as fast as Span(...)
             style = event.style
-            if restore:
-                text = text.translate(restore)
-            if style:
-                if note is not None:
-                    note.append((start.index, end.index))
-            elif hashes and end.line in hashes:
-                stop = comments.swallowed(source, end.index, empty=not text)
-                if stop is not None and (not text or not (entries is not None and key is None)):
-                    walk.diagnostics.append(_swallowed(at, stop - end.index, source[end.index : stop]))
-            if event.tag is not None:
-                fault(f"the tag `{event.tag}` is not read", at, f"take it out; if it is text, {mistakes.QUOTE}")
-            if entries is not None and key is None:
-                key, key_at, key_end = intern(text), at, end.index
-                if not style:
-                    if not text:
-                        fault("a key is missing before this `:`", at)
-                    elif text == "<<":
-                        fault(
-                            "merge keys (`<<`) are not read",
-                            at,
-                            "write the keys out, or share whole values with `*name`",
-                        )
-                if event.anchor is not None:
+            if rare:
+                text = _rare(walk, event, at, restore)
+            if note:
+                if style:
+                    quoted.append((start.index, end.index))
+                elif end.line in hashes and (not wants_key or not text):
+                    walk.diagnostics.extend(comments.swallowed(source, at, end.index, empty=not text))
+            if wants_key:
+                key, key_at, key_end, wants_key = intern(text), at, end, False
+                if not style and (not text or text == "<<"):
+                    fault(*_BAD_KEYS[text], at)
+                if rare and event.anchor is not None:
                     anchors[event.anchor] = (Scalar(text, text, at), 1)
                 continue
             if style:
                 value = Scalar(text, text, at, False)  # noqa: FBT003
-            elif not text:
-                if entries is not None and ":" not in source[key_end : start.index]:
-                    fault(
-                        f"the key `{key}` has no `:`", key_at, "write `key: value`; a list stands in brackets: [a, b]"
-                    )
-                value = Scalar(None, text, at)
-            else:
+            elif text:
                 value = Scalar(resolve(text) if text[0] in starts else text, text, at)
+            else:
+                value = Scalar(None, text, at)
+                if key_end is not None and items is None and ":" not in source[key_end.index : start.index]:
+                    fault(
+                        f"the key `{key}` has no `:`", "write `key: value`; a list stands in brackets: [a, b]", key_at
+                    )
             count += 1
-            if event.anchor is not None:
+            if rare and event.anchor is not None:
                 anchors[event.anchor] = (value, 1)
         elif kind is mapping_end or kind is sequence_end:
-            if kind is mapping_end and event.end_mark.index > event.start_mark.index:  # a closing brace
-                line, column = event.end_mark.line + 1, event.end_mark.column + 1
-            elif kind is sequence_end and event.end_mark.index > event.start_mark.index:
-                line, column = event.end_mark.line + 1, event.end_mark.column + 1
+            start, end = event.start_mark, event.end_mark
+            if end.index > start.index:  # a closing brace or bracket; without one it ends with what is last in it
+                line, column = end.line + 1, end.column + 1
             entries, items, key, key_at, key_end, value, anchor, before = stack.pop()
-            value.at = new(Span, (file, value.at.line, value.at.column, line, column))
+            begun = value.at
+            value.at = new(Span, (file, begun.line, begun.column, line, column))
             if anchor is not None:
                 anchors[anchor] = (value, count - before + 1)
         elif kind is mapping_start or kind is sequence_start:
             start = event.start_mark
-            at = new(Span, (file, start.line + 1, start.column + 1, start.line + 1, start.column + 1))
+            at = new(Span, (file, start.line + 1, start.column + 1, start.line + 1, start.column + 2))
             if event.tag is not None:
-                fault(f"the tag `{event.tag}` is not read", at, "take it out")
-            if entries is not None and key is None:
-                fault("a key is a word, not a list or a mapping", at, "text in braces or brackets must be quoted")
+                fault(f"the tag `{event.tag}` is not read", "take it out", at)
+            if wants_key:
+                fault("a key is a word, not a list or a mapping", "text in braces or brackets must be quoted", at)
                 return
             if len(stack) >= MAX_DEPTH:
-                fault(f"values are nested deeper than {MAX_DEPTH}", at, None, "too-large")
+                fault(f"values are nested deeper than {MAX_DEPTH}", None, at, "too-large")
                 return
             count += 1
-            value = Table({}, at) if kind is mapping_start else Listing([], at)
-            stack.append((entries, items, key, key_at, key_end, value, event.anchor, count))
-            if event.anchor is not None:
-                anchors[event.anchor] = (value, None)
-            if isinstance(value, Table):
-                entries, items, key = value.entries, None, None
+            anchor = event.anchor
+            if kind is mapping_start:
+                below: dict[str, Entry] = {}
+                value = Table(below, at)
+                stack.append((entries, items, key, key_at, key_end, value, anchor, count))
+                entries, items, wants_key = below, None, True
             else:
-                entries, items = None, value.items
+                several: list[Value] = []
+                value = Listing(several, at)
+                stack.append((entries, items, key, key_at, key_end, value, anchor, count))
+                entries, items, wants_key = None, several, False
+            if anchor is not None:
+                anchors[anchor] = (value, None)
             continue
         elif kind is alias_event:
             start, end = event.start_mark, event.end_mark
             line, column = end.line + 1, end.column + 1
             at = new(Span, (file, start.line + 1, start.column + 1, line, column))
-            if entries is not None and key is None:
-                fault("an alias cannot be a key", at, "write the key out")
+            if wants_key:
+                fault("an alias cannot be a key", "write the key out", at)
                 return
             held, size = anchors.get(event.anchor, (None, 0))
             if held is None:
-                fault(f"no anchor `&{event.anchor}` stands above", at, f"if it is text, {mistakes.QUOTE}")
+                fault(f"no anchor `&{event.anchor}` stands above", f"if it is text, {mistakes.QUOTE}", at)
                 return
             if size is None:
-                label = Label(Span(file, held.at.line, held.at.column, held.at.line, held.at.column + 1), "begins here")
-                message = f"`*{event.anchor}` stands inside of what it stands for"
-                walk.diagnostics.append(Diagnostic("recursive-alias", message, at, labels=(label,)))
-                if entries is not None:
-                    key = None
+                walk.diagnostics.append(mistakes.recursive(event.anchor, at, held.at))
+                wants_key = entries is not None
                 continue
-            if count + size > MAX_VALUES:
-                fault(
-                    f"with its aliases expanded the file holds more than {MAX_VALUES:,} values", at, None, "too-large"
-                )
+            count, expanded = count + size, expanded + size
+            if expanded > MAX_EXPANDED:
+                fault(f"the file's aliases stand for more than {MAX_EXPANDED:,} values", None, at, "too-large")
                 return
-            count += size
             value = copy_of(held, at)
         elif kind is yaml.DocumentStartEvent:
             documents += 1
             if documents > 1:
                 mark = event.start_mark
-                at = Span(file, mark.line + 1, mark.column + 1, event.end_mark.line + 1, event.end_mark.column + 1)
-                fault(
-                    "a second YAML document begins here",
-                    at,
-                    "a file is one document: put the second into a file of its own",
-                )
+                at = Span(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 4)
+                fault("a second YAML document begins here", "a file is one document: put the second into its own", at)
                 return
             continue
         elif kind is yaml.StreamEndEvent:
             return
         else:
             continue
-        if count > MAX_VALUES:
-            fault(f"the file holds more than {MAX_VALUES:,} values", value.at, "split it", "too-large")
-            return
         if entries is not None:
-            if key in entries:
-                label = Label(entries[key].at, "first written here")
-                message = f"the key `{key}` is written twice"
-                walk.diagnostics.append(Diagnostic("duplicate-key", message, key_at, labels=(label,)))
-            elif key is not None:
-                entries[key] = Entry(key, key_at, value)
-            key = None
+            entry = Entry(key, key_at, value)
+            if entries.setdefault(key, entry) is not entry:
+                walk.diagnostics.append(mistakes.duplicate(key, key_at, entries[key].at))
+            wants_key = True
         elif items is not None:
             items.append(value)
         else:
             walk.root = value
+        if count > MAX_VALUES:
+            fault(f"the file holds more than {MAX_VALUES:,} values", "split it", value.at, "too-large")
+            return
+
+
+_BAD_KEYS = {
+    "": ("a key is missing before this `:`", "write `key: value`"),
+    "<<": ("merge keys (`<<`) are not read", "write the keys out, or share a whole value with `*name`"),
+}
+
+
+def _rare(walk: _Walk, event: Any, at: Span, restore: dict[int, int]) -> str:  # noqa: ANN401
+    """Refuse a scalar's tag, and give its text as it was in the file."""
+    if event.tag is not None:
+        walk.fault(f"the tag `{event.tag}` is not read", f"take it out; if it is text, {mistakes.QUOTE}", at)
+    text: str = event.value
+    if not FAST and mistakes.HALF.search(text):
+        walk.fault("an escape that names half a character", "write the whole character", at)
+    return text.translate(restore) if restore else text
 
 
 def copy_of(value: Value, at: Span) -> Value:
@@ -270,11 +277,3 @@ def copy_of(value: Value, at: Span) -> Value:
     if isinstance(value, Listing):
         return Listing([copy_of(item, item.at) for item in value.items], at)
     return Table({e.key: Entry(e.key, e.at, copy_of(e.value, e.value.at)) for e in value}, at)
-
-
-def _swallowed(at: Span, length: int, comment: str) -> Diagnostic:
-    blanks = len(comment) - len(comment.lstrip())
-    span = Span(at.file, at.end_line, at.end_column + blanks, at.end_line, at.end_column + length)
-    message = f"`{comment.strip()}` is a comment, not part of the text"
-    help_line = "quote the whole text if it belongs to it; write `# ` with a blank if it is a comment"
-    return Diagnostic("swallowed-text", message, span, help=help_line)

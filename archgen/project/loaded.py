@@ -1,0 +1,116 @@
+"""Load a project: everything that later stages want to know of its files."""
+
+from __future__ import annotations
+
+import gc
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Severity
+from archgen.project.find import MARKER, find
+from archgen.project.reading import Reading, matches, read_sources, take
+from archgen.source import Sources, Span
+from archgen.syntax.tree import Document, Ignore, Listing, Scalar, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.syntax.tree import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A project, read. `documents` are in normal form, in the order in which they are merged.
+
+    `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
+    stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to `root`.
+    `chapters` are the entries of `report.chapters`, None where nobody wrote them.
+    Nothing is used of the files in `broken`; `lost` are the keys in them, so that nobody complains of what they declare.
+    """
+
+    root: Path
+    id: str
+    title: str
+    documents: tuple[Document, ...]
+    sources: Sources
+    diagnostics: tuple[Diagnostic, ...]
+    ignores: Mapping[str, tuple[Ignore, ...]] = field(default_factory=dict)
+    rules: Mapping[str, Severity] = field(default_factory=dict)
+    rule_places: Mapping[str, Span] = field(default_factory=dict)
+    distro: str | None = None
+    interfaces: tuple[str, ...] = ()
+    chapters: tuple[Scalar, ...] | None = None
+    layout: Table | None = None
+    broken: tuple[str, ...] = ()
+    lost: frozenset[str] = frozenset()
+
+
+def load(path: Path | None = None) -> Loaded:
+    """Read the project in a folder, in a file, or (with nothing given) around the current folder."""
+    root, first = find(path)
+    reading = Reading(root)
+    collecting = gc.isenabled()
+    gc.disable()  # trees hold no circles, and looking for them while they grow takes as long again as reading
+    try:
+        take(reading, first)
+        if first == MARKER:
+            read_sources(reading)
+        return _finish(reading, first)
+    finally:
+        if collecting:
+            gc.enable()
+
+
+_KEY = re.compile(r"([A-Za-z][A-Za-z0-9_.-]*)[\"']?[ \t]*:")
+
+
+def _finish(reading: Reading, first: str) -> Loaded:
+    stem = reading.root.name if first == MARKER else Path(first).stem
+    words = re.findall(r"[a-z0-9]+", stem.lower())
+    slug = "_".join(words) if words and words[0][0].isalpha() else "_".join(["project", *words])
+    interfaces = [
+        file
+        for listing in _values(reading, "ros", "interfaces")
+        if isinstance(listing, Listing)
+        for pattern in listing.items
+        for file in matches(reading, pattern)
+    ]
+    settings = dict(_settings(reading))
+    distro = next((value.text for value in _values(reading, "ros", "distro") if isinstance(value, Scalar)), None)
+    chapters = next((value for value in _values(reading, "report", "chapters") if isinstance(value, Listing)), None)
+    return Loaded(
+        root=reading.root,
+        id=slug,
+        title=" ".join(words).capitalize() or "Project",
+        documents=tuple(reading.documents),
+        sources=reading.sources,
+        diagnostics=tuple(reading.diagnostics),
+        ignores={document.file: document.ignores for document in reading.documents if document.ignores},
+        rules={name: severity for name, (severity, _) in settings.items()},
+        rule_places={name: place for name, (_, place) in settings.items()},
+        distro=distro,
+        interfaces=tuple(dict.fromkeys(interfaces)),
+        chapters=tuple(item for item in chapters.items if isinstance(item, Scalar)) if chapters else None,
+        broken=tuple(reading.broken),
+        lost=frozenset(key for file in reading.broken for key in _KEY.findall(reading.sources.text(file) or "")),
+        layout=next((value for value in _values(reading, "layout") if isinstance(value, Table)), None),
+    )
+
+
+def _settings(reading: Reading) -> Iterator[tuple[str, tuple[Severity, Span]]]:
+    for table in _values(reading, "rules"):
+        for entry in table if isinstance(table, Table) else ():
+            if isinstance(entry.value, Scalar):
+                yield entry.key, (Severity(entry.value.text), entry.at)
+
+
+def _values(reading: Reading, *path: str) -> Iterator[Value]:
+    """Give what the documents hold at a path, in their order."""
+    for document in reading.documents:
+        value: Value | None = document.root
+        for key in path:
+            value = value.get(key) if isinstance(value, Table) else None
+        if value is not None:
+            yield value
