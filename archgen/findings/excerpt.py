@@ -76,8 +76,5 @@ def _window(total: int, start: int, stop: int, limit: int) -> tuple[int, int]:
     room = max(limit - 2, 1)
     if stop <= room:
         return 0, room
-    if stop - start > room * 3 // 4:
-        left = start - room // 4
-    else:
-        left = min((start + stop) // 2 - room // 2, total - room)
+    left = start - room // 4 if stop - start > room * 3 // 4 else min((start + stop) // 2 - room // 2, total - room)
     return max(left, 0), max(left, 0) + room

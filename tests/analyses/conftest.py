@@ -73,12 +73,14 @@ class _Sketch:
         component, _, name = words[0].rpartition(".")
         self.component(component, at)["outputs_known"] = True
         external = "somebody" if "external" in options else None
-        output = Output(words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at)
+        output = Output(
+            words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at
+        )
         self.outputs[words[0]] = output
 
     def add_type(self, words: list[str], options: Words, at: Span) -> None:
-        inner = {key: options.get(key) for key in ("request", "response", "feedback")}
-        self.types[words[0]] = Type(words[0], words[1], **inner, at=at)
+        request, response = options.get("request"), options.get("response")
+        self.types[words[0]] = Type(words[0], words[1], request=request, response=response, at=at)
 
     def add_node(self, words: list[str], options: Words, at: Span) -> None:
         implements = tuple(filter(None, options.get("implements", "").split(",")))

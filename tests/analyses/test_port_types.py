@@ -50,8 +50,10 @@ def test_a_reference_to_a_component_reports_its_outputs_together(found: Found) -
         in a.screen.image from=a.camera type=Picture
     """
     assert found(type_mismatch, text) == [
-        "5: the input `image` of `a.screen` expects `Picture`, but `a.camera.depth` sends `Depth`"
-        " and `a.camera.info` sends `Info` (and 1 more)"
+        (
+            "5: the input `image` of `a.screen` expects `Picture`, but `a.camera.depth` sends `Depth`"
+            " and `a.camera.info` sends `Info` (and 1 more)"
+        )
     ]
 
 
