@@ -44,9 +44,8 @@ def quote(line: str, marks: Iterable[Mark], limit: int) -> Iterator[tuple[str, M
     tail = _CUT if end < len(cells) else ""
     yield (head + "".join(cells[begin:end]) + tail).rstrip(), None
     for mark, start, stop in placed:
-        low, high = max(start, columns[begin]), min(stop, columns[end])
-        if high <= low and not columns[begin] <= start <= columns[end]:
-            continue
+        low = min(max(start, columns[begin]), columns[end])
+        high = min(stop, columns[end])
         blank = " " * (low - columns[begin] + len(head))
         yield f"{blank}{mark.sign * max(1, high - low)}{' ' + visible(mark.text) if mark.text else ''}", mark
 

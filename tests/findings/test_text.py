@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import io
+import re
+import unicodedata
 from collections.abc import Mapping
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.findings.text import render, render_one, summary, wants_colour
@@ -116,8 +120,6 @@ def test_findings_end_with_a_summary() -> None:
 
 
 def test_colour_changes_nothing_but_colour() -> None:
-    import re
-
     sources = _sources(a="left: 1\n")
     diagnostic = Diagnostic("r", "m", _at(1, 1, 5), Severity.ERROR, (Label(_at(1, 7, 8), "here"),), "do")
     plain = list(render([diagnostic], sources))
@@ -147,3 +149,18 @@ class _Terminal(io.StringIO):
 )
 def test_who_wants_colour(stream: io.StringIO, environment: Mapping[str, str], colour: bool) -> None:  # noqa: FBT001
     assert wants_colour(stream, environment) is colour
+
+
+@given(
+    text=st.text(max_size=300),
+    spans=st.lists(st.tuples(*[st.integers(1, 400)] * 4), min_size=1, max_size=4),
+    width=st.integers(1, 200),
+)
+def test_any_text_with_any_spans_prints(text: str, spans: list[tuple[int, int, int, int]], width: int) -> None:
+    places = [Span("a.yaml", min(line % 4 + 1, end), column, end, last) for line, column, end, last in spans]
+    diagnostic = Diagnostic(
+        "r", text, places[0], Severity.NOTE, tuple(Label(place, text) for place in places[1:]), text
+    )
+    for line in render([diagnostic], _sources(a=text), width=width):
+        joined = line.replace("\u200c", "").replace("\u200d", "")
+        assert {unicodedata.category(c) for c in joined}.isdisjoint({"Cc", "Cf", "Cs", "Zl", "Zp"})
