@@ -52,7 +52,7 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     nodes = nodes_of_components(architecture)
     for component in architecture.components.values():
-        if component.id in nodes or _purely_physical(component):
+        if component.id in nodes or component.id in architecture.suspects or _purely_physical(component):
             continue
         yield Diagnostic(
             "unmapped-component",
@@ -191,7 +191,7 @@ def _shared_components(architecture: Architecture) -> Iterator[tuple[Component, 
     endpoints = {e.port for e in architecture.endpoints if e.component in several and e.port}
     for component, nodes in several.items():
         named = {use.port for node in nodes for use in node.uses if use.port}
-        yield architecture.components[component], nodes, frozenset(named | endpoints)
+        yield architecture.components[component], nodes, frozenset(named | endpoints) | architecture.suspects
 
 
 def _brings_messages(architecture: Architecture, entry: Input) -> bool:

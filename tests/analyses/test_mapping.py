@@ -67,3 +67,15 @@ def test_one_node_has_all_ports_of_its_component(found: Found) -> None:
     text = f"{_SHARED}\nnode driver implements=a.camera\nnode view implements=a.screen"
     assert found(unpublished_output, text) == []
     assert found(unsubscribed_input, text) == []
+
+
+def test_what_an_unresolved_reference_meant_is_not_reported_again(found: Found) -> None:
+    assert found(unmapped_component, "suspect a.camera\nout a.camera.image") == []
+    text = f"""{_SHARED}
+        suspect a.camera.info
+        node driver implements=a.camera
+        node calibration implements=a.camera
+        use driver publishes image port=a.camera.image
+        use driver serves check port=a.camera.check
+    """
+    assert found(unpublished_output, text) == []

@@ -23,7 +23,12 @@ def test_an_undeclared_requirement_is_unknown_and_free_text_is_not(found: Found)
 
 
 def test_a_requirement_that_nobody_serves_is_uncovered(found: Found) -> None:
-    assert found(uncovered_requirement, _TEXT) == ["2: no component serves the requirement `R-2` (R-2)"]
+    text = f"{_TEXT}\nrequirement S-100"
+    assert found(uncovered_requirement, text) == ["8: no component serves the requirement `S-100` (S-100)"]
+
+
+def test_a_slip_in_an_id_leaves_no_requirement_uncovered(found: Found) -> None:
+    assert found(uncovered_requirement, "requirement Q-10\ncomponent a.one requirements=Q-1O") == []
 
 
 def test_a_component_without_requirement_is_unjustified_once_there_are_any(found: Found) -> None:
