@@ -93,3 +93,9 @@ def test_planned_nodes_and_ros_1_have_nothing_to_agree_on() -> None:
     assert _judge(_SENSOR, Qos(), planned="mapper") == []
     assert _judge(_SENSOR, _RELIABLE, distro="noetic") == []
     assert len(_judge(_SENSOR, _RELIABLE, distro=None)) == 1
+
+
+def test_a_side_left_to_the_middleware_makes_it_a_warning() -> None:
+    (diagnostic,) = _judge(_SENSOR, Qos("system_default", written=True))
+    assert diagnostic.severity is Severity.WARNING
+    assert diagnostic.message.endswith("(`mapper` leaves it to the middleware, whose usual values count)")
