@@ -67,12 +67,14 @@ def test_all_names_that_a_node_writes_are_checked(found: Found) -> None:
         use b publishes image topic=/front-camera
         use b calls reset topic=/reset/
         node c name=not-ours planned
+        use b subscribes all topic=/
     """
     assert found(invalid_ros_name, text) == [
         "1: `/rob/` cannot be the name of a namespace: it ends with `/`",
         f"1: `my-node` cannot be the name of a node: it holds `-`, {_LETTERS}",
         f"3: `/front-camera` cannot be the name of a topic: it holds `-`, {_LETTERS}",
         "4: `/reset/` cannot be the name of a service or action: it ends with `/`",
+        "6: `/` cannot be the name of a topic: it is only a `/`",
     ]
 
 

@@ -93,6 +93,7 @@ def test_internal_topics_connect_the_nodes_of_one_component(found: Found) -> Non
         end joystick publishes /joy port=a.joystick.command
         end base subscribes /joy internal
         end base calls /base/reset internal
+        end base calls /planner/get_parameters internal
     """
     assert found(unaccounted_topic, text) == [
         "12: `base` uses the internal topic `/base/missing`, and no node of its component publishes it",
