@@ -67,6 +67,10 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     for component in architecture.components.values():
         if component.id in linked or _touches_the_world(component) or _has_open_reference(component):
             continue
+        if not architecture.suspects.isdisjoint(
+            (component.group, component.id, *(o.id for o in component.outputs.values()))
+        ):
+            continue  # a reference that could not be resolved meant it
         stub = not (component.inputs or component.outputs or (component.inputs_known and component.outputs_known))
         if stub and not architecture.connections:
             continue
@@ -207,9 +211,10 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     shared = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
     whole = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
-        if output.id in read or output.external or output.id in shared:
-            continue
         group = architecture.components[output.component].group
+        meant = not architecture.suspects.isdisjoint((group, output.component, output.id))
+        if output.id in read or output.external or output.id in shared or meant:
+            continue
         yield Diagnostic(
             "unread-output",
             f"nobody {_verb(architecture, output)} `{output.name}` of `{output.component}`",

@@ -52,7 +52,7 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     nodes = nodes_of_components(architecture)
     for component in architecture.components.values():
-        if component.id in nodes or _purely_physical(component):
+        if component.id in nodes or component.id in architecture.suspects or _purely_physical(component):
             continue
         yield Diagnostic(
             "unmapped-component",
@@ -187,13 +187,11 @@ def unsubscribed_input(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _shared_components(architecture: Architecture) -> Iterator[tuple[Component, tuple[Node, ...], frozenset[str]]]:
     """Give each component that several nodes implement, with them and the ports that they carry."""
-    endpoints = {e.port for e in architecture.endpoints if e.port}
-    nodes_of = nodes_of_components(architecture)
-    for component in architecture.components.values():
-        nodes = nodes_of.get(component.id, ())
-        if len(nodes) > 1:
-            named = {use.port for node in nodes for use in node.uses if use.port}
-            yield component, nodes, frozenset(named | endpoints)
+    several = {component: nodes for component, nodes in nodes_of_components(architecture).items() if len(nodes) > 1}
+    endpoints = {e.port for e in architecture.endpoints if e.component in several and e.port}
+    for component, nodes in several.items():
+        named = {use.port for node in nodes for use in node.uses if use.port}
+        yield architecture.components[component], nodes, frozenset(named | endpoints) | architecture.suspects
 
 
 def _brings_messages(architecture: Architecture, entry: Input) -> bool:

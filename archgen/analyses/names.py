@@ -103,7 +103,7 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
             sort = "a topic" if use.use in {"publishes", "subscribes"} else "a service or action"
             places = use.topic_places or (use.at,) * len(use.topics)
             for topic, place in zip(use.topics, places, strict=True):
-                fault = name_fault(topic, ros_1=ros_1)
+                fault = "it is only a `/`" if topic == "/" else name_fault(topic, ros_1=ros_1)
                 if fault:
                     yield _invalid(node, sort, topic, place, fault)
 

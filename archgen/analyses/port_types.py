@@ -1,4 +1,4 @@
-"""Do the types that inputs expect agree with what their sources send?"""
+"""Do the types and media that inputs expect agree with what their sources send?"""
 
 from __future__ import annotations
 
@@ -89,6 +89,49 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
+def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An input is said to be physical, but its source sends messages.
+
+    Why: What can be touched, seen or heard has no topic. The node would not subscribe to the data that is meant for it.
+
+    Bad:
+        groups:
+          speech:
+            components:
+              synthesis: {outputs: {words: std_msgs/msg/String}}
+              loudspeaker:
+                inputs: {words: {from: synthesis.words, medium: physical}}
+                outputs: {sound: {type: Speech, medium: physical, external: The user hears the robot}}
+        nodes:
+          synthesis: {implements: synthesis}
+          loudspeaker: {implements: loudspeaker}
+
+    Good:
+        groups:
+          speech:
+            components:
+              synthesis: {outputs: {words: std_msgs/msg/String}}
+              loudspeaker:
+                inputs: {words: synthesis.words}
+                outputs: {sound: {type: Speech, medium: physical, external: The user hears the robot}}
+        nodes:
+          synthesis: {implements: synthesis}
+          loudspeaker: {implements: loudspeaker}
+    """
+    for connection in architecture.connections:
+        entry = architecture.inputs[connection.input]
+        digital = next((o for o in connection.outputs if not architecture.outputs[o].physical), None)
+        if entry.physical and digital:
+            yield Diagnostic(
+                "medium-mismatch",
+                f"the input `{entry.name}` of `{entry.component}` is physical, but `{digital}` sends messages",
+                connection.at,
+                labels=(Label(architecture.outputs[digital].at, "not physical"),),
+                help="leave `medium: physical` out at the input, or write it at the output too",
+                element=entry.component,
+            )
+
+
 def _help(architecture: Architecture, expected: str, output: Output) -> str | None:
     messages = {_message(architecture, expected), architecture.message(output)}
     if len(messages) == 1 and None not in messages:
@@ -101,4 +144,7 @@ def _message(architecture: Architecture, name: str) -> str | None:
     return (mapped.message if mapped else None) or full_message(name)
 
 
-RULES = ((type_mismatch, Severity.ERROR),)
+RULES = (
+    (type_mismatch, Severity.ERROR),
+    (medium_mismatch, Severity.WARNING),
+)

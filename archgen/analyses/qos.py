@@ -74,8 +74,8 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
     """A subscriber asks for a quality of service that a publisher on its topic does not offer.
 
     Why: The two are not connected at all: the subscriber receives no message from this publisher, and both go on running as
-    if nothing were wrong. It is an error where both sides wrote their settings, and a warning where one side left them out,
-    so that ROS's default counts for it.
+    if nothing were wrong. It is an error where both sides wrote their settings, and a warning where one side left them out
+    (ROS's default counts for it then) or to the middleware (`system_default`).
 
     Bad:
         groups:
@@ -115,17 +115,25 @@ def _judge(topic: Topic, writer: Endpoint, reader: Endpoint) -> Iterator[Diagnos
         return
     wants = " and ".join(clash.requested for clash in found)
     gets = " and ".join(clash.offered for clash in found)
-    silent = next((e for e in (writer, reader) if not e.qos.written), None)
-    assumed = f" (`{silent.node}` leaves `qos` out, so the profile `default` counts)" if silent else ""
+    assumed = next(filter(None, map(_assumption, (writer, reader))), "")
     yield Diagnostic(
         "incompatible-qos",
         f"`{reader.node}` receives nothing from `{writer.node}` on `{topic.name}`: it asks for {wants}, and is offered {gets}{assumed}",
         _place(reader),
-        severity=Severity.WARNING if silent else None,
+        severity=Severity.WARNING if assumed else None,
         labels=(Label(_place(writer), "offered here"),),
         help=f"needed: {'; '.join(clash.cure for clash in found)}",
         element=reader.node,
     )
+
+
+def _assumption(endpoint: Endpoint) -> str:
+    """Say what is not certain about one side's settings."""
+    if not endpoint.qos.written:
+        return f" (`{endpoint.node}` leaves `qos` out, so the profile `default` counts)"
+    if endpoint.qos.profile == "system_default":
+        return f" (`{endpoint.node}` leaves it to the middleware, whose usual values count)"
+    return ""
 
 
 def _place(endpoint: Endpoint) -> Span:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Severity
-from archgen.suggest import did_you_mean
+from archgen.suggest import closest, did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -91,10 +91,12 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera}
           screen: {implements: screen}
     """
-    served = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
-    served.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
+    named = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
+    named.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
+    # A slip in an id is reported as such, and not once more as a requirement that nobody serves.
+    meant = {closest(text, architecture.requirements) for text in named if text not in architecture.requirements}
     for requirement in architecture.requirements.values():
-        if requirement.id not in served:
+        if requirement.id not in named and requirement.id not in meant:
             yield Diagnostic(
                 "uncovered-requirement",
                 f"no component serves the requirement `{requirement.id}` ({requirement.title})",

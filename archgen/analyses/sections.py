@@ -45,8 +45,9 @@ def wrong_section(architecture: Architecture) -> Iterator[Diagnostic]:
           planner: {implements: planner, serves: {stop: /stop}}
           button: {implements: button}
     """
-    flows = _flows_of_ports(architecture)
-    for node in architecture.nodes.values():
+    nodes = [node for node in architecture.nodes.values() if node.uses]
+    flows = _flows_of_ports(architecture) if nodes else {}
+    for node in nodes:
         for use in node.uses:
             fault = _fault(architecture, flows, use)
             if fault:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -15,6 +16,14 @@ if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.model.node import Endpoint, Flow
     from archgen.source import Span
+
+
+_EVERY_NODE = re.compile(
+    r".*/((describe|list|get|set)_parameters|get_parameter_types|set_parameters_atomically|get_type_description"
+    r"|change_state|get_(state|available_states|available_transitions|transition_graph)"
+    r"|get_logger_levels|set_logger_levels|(un)?load_node|list_nodes)"
+)
+"""Services that nodes and containers bring along by themselves: nobody writes them in a design."""
 
 
 @dataclass(slots=True)
@@ -155,7 +164,7 @@ def _foreign(architecture: Architecture, traffic: _Traffic, reader: Endpoint) ->
         message = f"the internal {what} `{reader.name}` comes from `{other.node}`, which is no node of `{min(own)}`"
         cure = f"name `{other.port}` in an input" if other.port else "make it an output there and an input here"
         return _unaccounted(architecture, reader, message, cure, strangers)
-    if writers:
+    if writers or (reader.flow == "service" and _EVERY_NODE.fullmatch(reader.name)):
         return None
     verb = "publishes" if reader.flow == "topic" else "serves"
     message = f"`{reader.node}` uses the internal {what} `{reader.name}`, and no node of its component {verb} it"

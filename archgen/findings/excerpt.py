@@ -44,9 +44,8 @@ def quote(line: str, marks: Iterable[Mark], limit: int) -> Iterator[tuple[str, M
     tail = _CUT if end < len(cells) else ""
     yield (head + "".join(cells[begin:end]) + tail).rstrip(), None
     for mark, start, stop in placed:
-        low, high = max(start, columns[begin]), min(stop, columns[end])
-        if high <= low and not columns[begin] <= start <= columns[end]:
-            continue
+        low = min(max(start, columns[begin]), columns[end])
+        high = min(stop, columns[end])
         blank = " " * (low - columns[begin] + len(head))
         yield f"{blank}{mark.sign * max(1, high - low)}{' ' + visible(mark.text) if mark.text else ''}", mark
 
@@ -76,8 +75,5 @@ def _window(total: int, start: int, stop: int, limit: int) -> tuple[int, int]:
     room = max(limit - 2, 1)
     if stop <= room:
         return 0, room
-    if stop - start > room * 3 // 4:
-        left = start - room // 4
-    else:
-        left = min((start + stop) // 2 - room // 2, total - room)
+    left = start - room // 4 if stop - start > room * 3 // 4 else min((start + stop) // 2 - room // 2, total - room)
     return max(left, 0), max(left, 0) + room

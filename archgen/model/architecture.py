@@ -152,6 +152,9 @@ class Architecture:
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     interfaces: Interfaces = field(default_factory=Interfaces)
+    suspects: frozenset[str] = frozenset()
+    """Complete ids of what references that could not be resolved most likely meant (the guess, or the candidates). No rule
+    says of these that nobody uses them: the reference is reported already."""
 
     def message(self, output: Output) -> str | None:
         """Give the message of an output by its type, None while unknown (physical outputs have none)."""

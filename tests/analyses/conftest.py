@@ -9,6 +9,7 @@ Each line is one element, and its line number is its place:
     node ID [implements=ID,ID] [name=NAME] [namespace=NAME] [planned] [timed=ID]
     use NODE publishes|subscribes|serves|calls KEY [port=ID] [topic=NAME] [message=NAME]
     end NODE publishes|subscribes|serves|calls TOPIC [port=ID] [internal] [written] [shared]
+    suspect ID                                              (a reference that could not be resolved most likely meant it)
     requirement ID / partner ID / chain ID REFERENCE REFERENCE
 
 A component counts as having known inputs (outputs) once it has one, or says `inputs` (`outputs`). References are complete.
@@ -45,6 +46,7 @@ class _Sketch:
     requirements: dict[str, Requirement] = field(default_factory=dict)
     partners: dict[str, Partner] = field(default_factory=dict)
     chains: dict[str, tuple[list[str], Span]] = field(default_factory=dict)
+    suspects: set[str] = field(default_factory=set)
 
     def component(self, name: str, at: Span) -> dict[str, Any]:
         group, _, short = name.partition(".")
@@ -79,8 +81,8 @@ class _Sketch:
         self.outputs[words[0]] = output
 
     def add_type(self, words: list[str], options: Words, at: Span) -> None:
-        inner = {key: options.get(key) for key in ("request", "response", "feedback")}
-        self.types[words[0]] = Type(words[0], words[1], **inner, at=at)
+        request, response = options.get("request"), options.get("response")
+        self.types[words[0]] = Type(words[0], words[1], request=request, response=response, at=at)
 
     def add_node(self, words: list[str], options: Words, at: Span) -> None:
         implements = tuple(filter(None, options.get("implements", "").split(",")))
@@ -135,6 +137,9 @@ class _Sketch:
 
     def add_partner(self, words: list[str], _: Words, at: Span) -> None:
         self.partners[words[0]] = Partner(words[0], words[0], at=at)
+
+    def add_suspect(self, words: list[str], _: Words, __: Span) -> None:
+        self.suspects.add(words[0])
 
     def add_chain(self, words: list[str], _: Words, at: Span) -> None:
         self.chains[words[0]] = (words[1:], at)
@@ -210,6 +215,7 @@ class _Sketch:
                 for name, (through, at) in self.chains.items()
             },
             endpoints=tuple(end for end, _ in self.ends),
+            suspects=frozenset(self.suspects),
             topics={topic.name: topic for topic in self.topics()},
         )
 

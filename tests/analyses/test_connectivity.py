@@ -152,3 +152,14 @@ def test_the_help_says_why_a_whole_reference_does_not_take_a_service(sketch: Cal
     assert diagnostic.help == (
         "a reference to the whole component does not take it, being a service: name `a.camera.check`"
     )
+
+
+def test_what_an_unresolved_reference_meant_is_not_reported_again(found: Found) -> None:
+    text = """
+        suspect a.camera.image
+        out a.camera.image
+        out a.camera.depth
+        in a.screen.image from=?
+    """
+    assert found(unread_output, text) == ["3: nobody reads `depth` of `a.camera`"]
+    assert found(disconnected_component, text) == []

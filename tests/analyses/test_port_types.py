@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from archgen.analyses.port_types import type_mismatch
+from archgen.analyses.port_types import medium_mismatch, type_mismatch
 
 Found = Callable[..., list[str]]
 
@@ -50,8 +50,10 @@ def test_a_reference_to_a_component_reports_its_outputs_together(found: Found) -
         in a.screen.image from=a.camera type=Picture
     """
     assert found(type_mismatch, text) == [
-        "5: the input `image` of `a.screen` expects `Picture`, but `a.camera.depth` sends `Depth`"
-        " and `a.camera.info` sends `Info` (and 1 more)"
+        (
+            "5: the input `image` of `a.screen` expects `Picture`, but `a.camera.depth` sends `Depth`"
+            " and `a.camera.info` sends `Info` (and 1 more)"
+        )
     ]
 
 
@@ -65,4 +67,17 @@ def test_a_caller_may_expect_what_a_service_answers(found: Found) -> None:
     """
     assert found(type_mismatch, text) == [
         "5: the input `plan` of `a.base` expects `Path`, but `a.planner.plan` sends `Plan on request`"
+    ]
+
+
+def test_a_physical_input_is_not_fed_by_messages(found: Found) -> None:
+    text = """
+        out a.voice.words
+        out a.voice.sound physical
+        in a.ear.words from=a.voice.words physical
+        in a.ear.sound from=a.voice.sound physical
+        in a.ear.plain from=a.voice.sound
+    """
+    assert found(medium_mismatch, text) == [
+        "3: the input `words` of `a.ear` is physical, but `a.voice.words` sends messages"
     ]

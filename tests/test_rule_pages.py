@@ -1,0 +1,44 @@
+"""Every rule's page: its examples run, and what stands in docs/rules is what the docstrings say."""
+
+from __future__ import annotations
+
+import pytest
+from archgen.pipeline import ALL_RULES, check_text
+
+from archgen import resources
+from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.findings import explain
+from archgen.findings.rules import by_name
+
+_LOUD = {Severity.ERROR, Severity.WARNING}
+
+
+def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
+    return [f"{d.severity}[{d.rule}] {d.span}: {d.message}" for d in diagnostics]
+
+
+@pytest.mark.parametrize("rule", ALL_RULES, ids=lambda rule: rule.name)
+def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule) -> None:
+    parts = explain.page(rule)
+    assert parts.summary
+    assert parts.why
+    assert parts.bad
+    assert parts.good
+    bad, good = check_text(f"{parts.bad}\n"), check_text(f"{parts.good}\n")
+    assert rule.name in {d.rule for d in bad}, _shown(bad)
+    assert {d.rule for d in bad if d.severity in _LOUD} <= {rule.name}, _shown(bad)
+    assert rule.name not in {d.rule for d in good}, _shown(good)
+    assert not [d for d in good if d.severity in _LOUD], _shown(good)
+
+
+def test_the_pages_are_fresh() -> None:
+    rules = by_name(ALL_RULES)
+    folder = resources.path("docs", "rules")
+    wanted = {
+        "README.md": explain.index(rules),
+        **{f"{name}.md": explain.markdown(rule) for name, rule in rules.items()},
+    }
+    written = {page.name: page.read_text(encoding="utf-8") for page in folder.glob("*.md")}
+    assert sorted(written) == sorted(wanted), "run tools/make_rule_pages.py"
+    stale = [name for name, text in wanted.items() if written[name] != text]
+    assert stale == [], "run tools/make_rule_pages.py"

@@ -1,0 +1,38 @@
+"""Write docs/rules/NAME.md for every rule, and their index. The rules' docstrings are the source."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from archgen.pipeline import ALL_RULES
+
+from archgen.findings import explain
+from archgen.findings.rules import by_name
+
+FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
+
+
+def pages() -> Mapping[str, str]:
+    """Give the text of every page by its file name."""
+    rules = by_name(ALL_RULES)
+    return {"README.md": explain.index(rules), **{f"{name}.md": explain.markdown(rule) for name, rule in rules.items()}}
+
+
+def main() -> int:
+    """Write the pages, and take away those of rules that are gone."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    wanted = pages()
+    for old in sorted(FOLDER.glob("*.md")):
+        if old.name not in wanted:
+            old.unlink()
+            print(f"removed {old.name}")
+    for name, text in wanted.items():
+        (FOLDER / name).write_text(text, encoding="utf-8", newline="\n")
+    print(f"{len(wanted)} pages in {FOLDER}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
