@@ -34,35 +34,55 @@ class Draft:
         name = self.names[item.id]
         return f"{name} [{written(self.boxes[name])}];"
 
-    def edge(self, at: int, item: Arrow, extra: str = "", *, ports: bool = True) -> str:
+    def edge(self, at: int, item: Arrow, extra: str = "") -> str:
         """Write an arrow as DOT, with its text for the layout to find room for."""
-        tail, head = self.names[item.tail], self.names[item.head]
-        if ports:
-            tail, head = tail + self._port(item.tail, item.tail_port, "o"), head + self._port(item.head, item.head_port, "i")
+        ends = [self.names[item.tail] + self._port(item.tail, item.tail_port)]
+        ends.append(self.names[item.head] + self._port(item.head, item.head_port))
         attributes = self.arrows[f"e{at}"][1]
+        if "dir" in attributes:
+            ends.reverse()
         label = f" label={self.labels[f'e{at}']['label']}" if f"e{at}" in self.labels else ""
-        kept = {name: attributes[name] for name in ("arrowsize", "penwidth", "arrowhead", "dir") if name in attributes}
-        return f'{tail} -> {head} [id="e{at}"{label} {written(kept)} {extra}];'
+        kept = {name: attributes[name] for name in _SIZES if name in attributes}
+        return f'{" -> ".join(ends)} [id="e{at}"{label} {written(kept)} {extra}];'
 
-    def _port(self, box: str, port: str | None, side: str) -> str:
+    def _port(self, box: str, port: str | None) -> str:
+        """Write where at a box with ports an arrow ends: inputs at its left, outputs at its right."""
         item = next((each for each in self.graph.boxes if each.id == box), None)
-        rows = (item.ports_out if side == "o" else item.ports_in) if item else ()
-        row = next((at for at, (name, _) in enumerate(rows) if name == port), None)
-        return "" if row is None else f":{side}{row}:{'e' if side == 'o' else 'w'}"
+        if item is None or port is None:
+            return ""
+        rows = [(name, f":i{at}:w") for at, (name, _) in enumerate(item.ports_in)]
+        rows += [(name, f":o{at}:e") for at, (name, _) in enumerate(item.ports_out)]
+        return dict(rows).get(port, "")
+
+
+_SIZES = ("arrowsize", "penwidth", "arrowhead", "arrowtail", "dir")
+"""What of an arrow's look changes its line."""
 
 
 def draft(graph: Graph, link: Link, *, merged: bool = False) -> Draft:
     """Name everything and choose its look."""
     names = {item.id: f"n{at}" for at, item in enumerate(graph.boxes)}
     texts = {f"e{at}": strokes.label(item, link, merged=merged) for at, item in enumerate(graph.arrows)}
+    sides = {item.id: item.side for item in graph.boxes}
+    looks = [strokes.arrow(item, link, merged=merged) for item in graph.arrows]
+    arrows = [
+        (item.id, _turned(look) if sides.get(item.head) == "left" or sides.get(item.tail) == "right" else look)
+        for item, look in zip(graph.arrows, looks, strict=True)
+    ]
     return Draft(
         graph,
         link,
         names,
         {names[item.id]: marks.box(item, link) for item in graph.boxes},
-        {f"e{at}": (item.id, strokes.arrow(item, link, merged=merged)) for at, item in enumerate(graph.arrows)},
+        {f"e{at}": arrow for at, arrow in enumerate(arrows)},
         {edge: attributes for edge, attributes in texts.items() if attributes},
     )
+
+
+def _turned(look: Attributes) -> Attributes:
+    """Lay an arrow out against its direction: a client may stand right of its server."""
+    turned = {name: value for name, value in look.items() if name != "arrowhead"}
+    return {**turned, "dir": '"back"', "arrowtail": look.get("arrowhead", '"normal"')}
 
 
 def document(settings: str, statements: Iterable[str]) -> str:

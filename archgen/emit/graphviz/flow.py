@@ -10,9 +10,11 @@ import math
 from archgen.emit.graphviz import engine
 from archgen.emit.graphviz.draft import Draft, document, frame, measure, read, title
 from archgen.emit.graphviz.engine import written
-from archgen.emit.graphviz.labels import declutter, settle_title
+from archgen.emit.graphviz.labels import along, declutter
 from archgen.emit.graphviz.scene import Frame, Part, Scene
 from archgen.views.shapes import Box, Cluster
+
+_MARGIN = 12.0
 
 
 def flow(drafted: Draft) -> Scene:
@@ -25,20 +27,18 @@ def flow(drafted: Draft) -> Scene:
 
 
 def group(drafted: Draft) -> Scene:
-    """Lay out one frame in the middle, with the neighbours that feed it at the left, its readers at the right."""
+    """Lay out one frame in the middle, with the neighbours that feed it at the left, its readers at the right.
+
+    The frame is drawn round its boxes after the layout. As a cluster of dot's it would keep out every line that has
+    not arrived yet: those would run round the frame and enter it from above.
+    """
     graph = drafted.graph
     inner = graph.clusters[0]
     inside = [item for item in graph.boxes if item.cluster == inner.id]
-    outside = [item for item in graph.boxes if item.cluster != inner.id]
-    heading = title(inner)
-    lines = [drafted.node(item) for item in outside if item.side != "right"]
-    lines.append(f'subgraph cluster_0 {{ graph [margin="14" label={heading["label"]} fontsize="11" fontname={heading["fontname"]}];')
-    lines += [*(drafted.node(item) for item in inside), "}"]
-    lines += [drafted.node(item) for item in outside if item.side == "right"]
-    lines += _sides(drafted) + _held_right(drafted, inside)
+    lines = [drafted.node(item) for item in graph.boxes] + _sides(drafted) + _held_between(drafted, inside)
     lines += [drafted.edge(at, item) for at, item in enumerate(graph.arrows)]
-    layout = engine.layout(document(_settings(drafted, 0.18) + ' newrank="true"', lines))
-    return _framed(drafted, inner, read(drafted, layout), layout)
+    scene = read(drafted, engine.layout(document(_settings(drafted, 0.16), lines)))
+    return declutter(_framed(drafted, inner, scene, {drafted.names[item.id] for item in inside}))
 
 
 def _settings(drafted: Draft, nodesep: float) -> str:
@@ -59,25 +59,31 @@ def _sides(drafted: Draft) -> list[str]:
     return ranks
 
 
-def _held_right(drafted: Draft, inside: list[Box]) -> list[str]:
-    """Keep the neighbours at the right behind the frame's last rank."""
-    right = [item for item in drafted.graph.boxes if item.side == "right"]
-    left = [item for item in drafted.graph.boxes if item.side == "left"]
+def _held_between(drafted: Draft, inside: list[Box]) -> list[str]:
+    """Keep the neighbours out of the ranks of the frame."""
     names = drafted.names
-    held = [f'{names[item.id]} -> {names[right[0].id]} [style="invis" weight="0"];' for item in inside if right]
-    return held + [f'{names[left[0].id]} -> {names[item.id]} [style="invis" weight="0"];' for item in inside if left]
+    left = next((item for item in drafted.graph.boxes if item.side == "left"), None)
+    right = next((item for item in drafted.graph.boxes if item.side == "right"), None)
+    held = [f'{names[item.id]} -> {names[right.id]} [style="invis" weight="0"];' for item in inside if right]
+    return held + [f'{names[left.id]} -> {names[item.id]} [style="invis" weight="0"];' for item in inside if left]
 
 
-def _framed(drafted: Draft, inner: Cluster, scene: Scene, layout: dict[str, object]) -> Scene:
-    found = next(item for item in layout["objects"] if item["name"] == "cluster_0")  # type: ignore[attr-defined]
-    left, bottom, right, top = (float(number) for number in found["bb"].split(","))
+def _framed(drafted: Draft, inner: Cluster, scene: Scene, inside: set[str]) -> Scene:
+    """Draw the frame round its boxes and all lines that pass between them, the title above."""
+    boxes = [part.rectangle for part in scene.parts if part.name in inside]
     heading = title(inner)
     ((width, height),) = measure([heading])
-    x, y = (float(number) for number in found["lp"].split(","))
-    rim = Frame("c0", frame(inner, drafted.link), (left, bottom, right, top))
-    part = Part("t0", heading, x, y, width, height, kind="title")
+    left, right = min((box[0] for box in boxes), default=0.0), max((box[2] for box in boxes), default=width)
+    within = [y for line in scene.lines for x, y in along(line) if left <= x <= right]
+    within += [part.y + side * part.height / 2 for part in scene.parts if left <= part.x <= right for side in (-1, 1)]
+    if drafted.graph.direction == "top-bottom":
+        within = [y for box in boxes for y in (box[1], box[3])]
+    bottom, top = min(within, default=0.0) - _MARGIN, max(within, default=0.0) + _MARGIN + height
+    spare = max(width + 2 * _MARGIN - (right - left), 2 * _MARGIN) / 2
+    rim = Frame("c0", frame(inner, drafted.link), (left - spare, bottom, right + spare, top))
+    part = Part("t0", heading, left - spare + 8 + width / 2, top - 5 - height / 2, width, height, kind="title")
     framed = scene.joined(Scene(frames=(rim,), parts=(part,)))
-    return declutter(settle_title(framed, part, rim))
+    return framed
 
 
 def simple(drafted: Draft) -> Scene:

@@ -124,7 +124,7 @@ class Scene:
             f'{quoted(part.name)} [{_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];' for part in self.parts
         ]
         lines += [
-            f'{quoted(line.tail)} -> {quoted(line.head)} [{_pairs(line.attributes)} pos="{line.spline}"];'
+            f'{quoted(line.tail)} -> {quoted(line.head)} [id="e{line.edge}" {_pairs(line.attributes)} pos="{line.spline}"];'
             for line in self.lines
         ]
         return "\n".join([*lines, "}", ""])

@@ -63,6 +63,7 @@ def neighbour(view: Index, item: Component, side: Literal["left", "right"] | Non
     return replace(
         component(view, item, lines=(view.architecture.groups[item.group].title,)),
         id=item.id + suffix,
+        style="component",
         emphasis="neighbour",
         cluster=None,
         side=side,

@@ -87,9 +87,9 @@ def merged(
             tail,
             head,
             label=_label(bundle) if labels else "",
-            style=style if by_style or len({flow.style for flow in bundle}) > 1 else bundle[0].style,
+            style=style,
             count=len(bundle),
-            optional=all(flow.optional for flow in bundle),
+            optional=by_style and all(flow.optional for flow in bundle),
             flows=tuple(flow.sentence for flow in bundle),
         )
         for (tail, head, style), bundle in bundles.items()

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from archgen.views.graphs import boxes
 from archgen.views.graphs.flows import Flow, flows, merged
+from archgen.views.graphs.legend import with_legend
 from archgen.views.index import Index
 from archgen.views.shapes import Arrow, Graph
 from archgen.views.words import plural
@@ -14,17 +17,17 @@ def overview(view: Index) -> Graph:
     architecture = view.architecture
     between = _between(view)
     arrows = _coloured(view, merged(between, _groups, labels=False, by_style=False))
-    return Graph(
+    graph = Graph(
         "overview",
         f"{architecture.project.title}: groups",
         "overview",
         tuple(boxes.whole_group(view, group) for group in architecture.groups),
         arrows,
         direction=architecture.layout.direction or "left-right",
-        legend=("width", "count"),
         alt=_alt(view, f"{plural(len(architecture.groups), 'group')} of components", arrows),
         asked=len(between),
     )
+    return with_legend(graph)
 
 
 def components(view: Index) -> Graph:
@@ -35,7 +38,7 @@ def components(view: Index) -> Graph:
     arrows = merged(inside, lambda flow: (flow.tail, flow.head), labels=False)
     arrows += _coloured(view, merged(between, _groups, labels=False, by_style=False))
     counted = f"{plural(len(architecture.components), 'component')} in {plural(len(architecture.groups), 'group')}"
-    return Graph(
+    graph = Graph(
         "components",
         f"{architecture.project.title}: all components",
         "two-step",
@@ -43,10 +46,10 @@ def components(view: Index) -> Graph:
         arrows,
         tuple(boxes.frame(view, group) for group in architecture.groups),
         direction=architecture.layout.direction or "left-right",
-        legend=("roles", "width", "count"),
         alt=_alt(view, counted, arrows),
         asked=len(inside) + len(between),
     )
+    return with_legend(graph)
 
 
 def _between(view: Index) -> list[Flow]:
@@ -68,8 +71,6 @@ def _groups(flow: Flow) -> tuple[str, str]:
 
 def _coloured(view: Index, arrows: tuple[Arrow, ...]) -> tuple[Arrow, ...]:
     """Give each arrow the hue of the group that it comes from."""
-    from dataclasses import replace
-
     return tuple(replace(arrow, colour=boxes.hue(view, arrow.tail)) for arrow in arrows)
 
 
