@@ -56,16 +56,6 @@ def _no_date(found: re.Match[bytes]) -> bytes:
     return found[1] + digits.replace(b"00000000", b"20000101", 1)
 
 
-def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
-    """Give the width and height in points that nodes with these attributes take."""
-    if not labels:
-        return ()
-    lines = (f'm{at} [{written(each)} pos="0,0"];' for at, each in enumerate(labels))
-    placed = layout("digraph m {" + "".join(lines) + "}", "nop2")
-    sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in placed["objects"]}
-    return tuple(sizes[f"m{at}"] for at in range(len(labels)))
-
-
 def written(attributes: Attributes) -> str:
     """Write attributes as DOT does."""
     return " ".join(f"{name}={value}" for name, value in attributes.items())

@@ -29,7 +29,6 @@ _SHAPES = {
     "node": "ellipse",
     "service": "hexagon",
     "action": "hexagon",
-    "source": "box",
 }
 _ROUNDED = {"component", "source", "sink", "physical", "container"}
 _DASHED = {"external", "physical", "partner"}
@@ -50,7 +49,7 @@ def box(item: Box, link: Link) -> Attributes:
         "fillcolor": f'"{fill}"',
         "penwidth": _pen(item),
         "peripheries": "2" if item.style in {"action", "fold"} else "1",
-        "margin": '"0.03,0.02"' if item.style in _SHAPES and item.style != "source" else '"0.08,0.04"',
+        "margin": _margin(item),
         "width": "0.3",
         "height": "0.22",
         "label": f"<{_lines(item)}>",
@@ -72,6 +71,12 @@ def colours(item: Box) -> tuple[str, str]:
     if item.style in {"group", "fold"} and item.colour is not None:
         fill = palette.tint(palette.hue(item.colour))
     return (palette.SUBJECT if item.emphasis == "subject" else frame), fill
+
+
+def _margin(item: Box) -> str:
+    if item.style in _SHAPES:
+        return '"0.03,0.02"'
+    return '"0.13,0.04"' if item.style in {"source", "sink"} else '"0.08,0.04"'
 
 
 def _pen(item: Box) -> str:

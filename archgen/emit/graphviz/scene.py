@@ -19,6 +19,7 @@ Point = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
 """Left, bottom, right, top."""
 
+DEFAULTS = 'node [fontname="DejaVu Sans" fontsize="9"]; edge [fontname="DejaVu Sans" fontsize="8"];'
 _POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 
@@ -47,8 +48,9 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """An edge with its spline, as Graphviz writes it; `arrow` is the id of the arrow that was asked for."""
+    """An edge with its spline, as Graphviz writes it; `edge` numbers it, `arrow` is the id of what was asked for."""
 
+    edge: str
     arrow: str
     tail: str
     head: str
@@ -56,13 +58,15 @@ class Line:
     spline: str
 
     @property
+    def curve(self) -> tuple[Point, ...]:
+        """The points of the Bézier curves, without the tips of the arrow heads."""
+        found = (each for each in _POINT.finditer(self.spline) if not each["mark"])
+        return tuple((float(each["x"]), float(each["y"])) for each in found)
+
+    @property
     def points(self) -> tuple[Point, ...]:
-        """The points of the spline, its ends at the arrow heads included."""
-        first, last, inner = [], [], []
-        for found in _POINT.finditer(self.spline):
-            point = (float(found["x"]), float(found["y"]))
-            {"s,": first, "e,": last, None: inner}[found["mark"]].append(point)
-        return (*first, *inner, *last)
+        """The points of the spline and the tips of its arrow heads, in no order."""
+        return tuple((float(found["x"]), float(found["y"])) for found in _POINT.finditer(self.spline))
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +115,7 @@ class Scene:
     def dot(self, name: str, attributes: Attributes, dpi: int | None = None) -> str:
         """Write the drawing as DOT with positions (`neato -n2` draws it as well)."""
         extra = {**attributes, **({"dpi": str(dpi)} if dpi else {})}
-        lines = [f"digraph {quoted(name)} {{", f'graph [outputorder="edgesfirst" {_pairs(extra)}];']
+        lines = [f"digraph {quoted(name)} {{", f'graph [outputorder="edgesfirst" {_pairs(extra)}];', DEFAULTS]
         lines += [
             f'subgraph "cluster_{frame.name}" {{ graph [{_pairs(frame.attributes)} bb="{_numbers(*frame.rectangle)}"]; }}'
             for frame in self.frames
@@ -120,7 +124,7 @@ class Scene:
             f'{quoted(part.name)} [{_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];' for part in self.parts
         ]
         lines += [
-            f'{quoted(line.tail)} -> {quoted(line.head)} [{_pairs(line.attributes)} pos="{line.spline}"];'
+            f'{quoted(line.tail)} -> {quoted(line.head)} [id="e{line.edge}" {_pairs(line.attributes)} pos="{line.spline}"];'
             for line in self.lines
         ]
         return "\n".join([*lines, "}", ""])
@@ -135,7 +139,7 @@ def placed(layout: dict[str, Any], boxes: dict[str, Attributes], arrows: dict[st
     names = {item["_gvid"]: item["name"] for item in objects}
     parts = tuple(_part(item, boxes[item["name"]]) for item in objects if item["name"] in boxes)
     lines = tuple(
-        Line(arrows[item["id"]][0], names[item["tail"]], names[item["head"]], arrows[item["id"]][1], item["pos"])
+        Line(item["id"][1:], arrows[item["id"]][0], names[item["tail"]], names[item["head"]], arrows[item["id"]][1], item["pos"])
         for item in layout.get("edges", [])
         if item.get("id") in arrows and "pos" in item
     )

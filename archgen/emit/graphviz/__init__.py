@@ -1,0 +1,76 @@
+"""Graphviz: draws the shape Graph as svg, png and pdf.
+
+`draw` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what was drawn
+before comes from the cache. No picture is taken on trust: after each layout every arrow is looked for, and no box,
+title or text meets another. Pictures are light; see `svg` and `dark_rules` for how a page turns them dark.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+from archgen.emit.graphviz import cache as store
+from archgen.emit.graphviz.palette import dark_rules
+from archgen.emit.graphviz.pool import MissingGraphviz, Progress
+from archgen.emit.graphviz.pool import draw as draw_all
+from archgen.emit.graphviz.worker import Task
+from archgen.emit.picture import Picture
+from archgen.views.shapes import Graph
+
+__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw"]
+
+FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
+"""The formats that can be asked for, by Picture's fields; `dot` is always there."""
+
+
+def draw(
+    graphs: Sequence[Graph],
+    formats: Sequence[str],
+    *,
+    link: Callable[[str], str | None],
+    cache: Path | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Picture]:
+    """Draw graphs in some formats. `link` gives the address for a ref, None where its target is not in the output.
+
+    `cache` is a folder that archgen may fill. Raises MissingGraphviz where nothing can be drawn and not all is cached.
+    """
+    wanted = tuple(form for form in FORMATS if form in formats)
+    linked = [dict(_links(graph, link)) for graph in graphs]
+    keys = [store.key(graph, links) for graph, links in zip(graphs, linked, strict=True)]
+    found = {at: hit for at, name in enumerate(keys) if cache and (hit := store.load(cache, name, wanted))}
+    missing = [at for at in range(len(graphs)) if at not in found]
+    if missing:
+        tasks = [Task(graphs[at], linked[at], wanted) for at in missing]
+        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, progress)
+        found.update(zip(missing, drawn, strict=True))
+        if cache:
+            _keep(cache, {keys[at]: found[at] for at in missing}, wanted, len(graphs))
+    return {graph.id: found[at] for at, graph in enumerate(graphs)}
+
+
+def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, progress: Progress | None) -> tuple[Picture, ...]:
+    if cache:
+        return draw_all(tasks, cache, workers=workers, progress=progress)
+    with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
+        return draw_all(tasks, Path(folder), workers=workers, progress=progress)
+
+
+def _keep(cache: Path, drawn: dict[str, Picture], formats: Sequence[str], count: int) -> None:
+    for name, picture in drawn.items():
+        if picture.warning is None:
+            store.store(cache, name, picture, formats)
+    store.prune(cache, count)
+
+
+def _links(graph: Graph, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
+    """Give the address of each ref in a graph that has one."""
+    for item in (*graph.boxes, *graph.arrows, *graph.clusters):
+        href = link(item.ref) if item.ref else None
+        if item.ref and href:
+            yield item.ref, href

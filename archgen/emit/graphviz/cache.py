@@ -1,0 +1,94 @@
+"""Pictures drawn before: a file for each, named by what the picture depends on, so that nothing old is ever taken.
+
+A file is a line of JSON (sizes, warning, and where each format stands) and then the formats' bytes. Reading takes only
+the formats that are asked for. What is damaged is drawn anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+from archgen.emit.picture import Picture
+from archgen.views.shapes import Graph
+
+_SURPLUS = 4
+"""So many times the pictures of one run are kept; the oldest beyond that are removed."""
+
+
+def key(graph: Graph, links: Mapping[str, str]) -> str:
+    """Name what a picture depends on: the graph, its addresses, and this program."""
+    text = f"{_version()}\n{graph!r}\n{sorted(links.items())!r}"
+    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
+
+
+@cache
+def _version() -> str:
+    """Stamp the code that draws, and the library that it draws with."""
+    digest = hashlib.blake2b(digest_size=16)
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(file.read_bytes())
+    try:
+        library = metadata.version("pygraphviz")
+    except metadata.PackageNotFoundError:
+        library = ""
+    return f"{digest.hexdigest()} {library}"
+
+
+def load(folder: Path, name: str, formats: Sequence[str]) -> Picture | None:
+    """Give a picture if all the formats are there."""
+    try:
+        with (folder / f"{name}.picture").open("rb") as file:
+            head = json.loads(file.readline())
+            start = file.tell()
+            parts = {form: _part(file.read, file.seek, start, head["parts"][form]) for form in (*formats, "dot")}
+        return Picture(
+            head["id"],
+            float(head["width"]),
+            float(head["height"]),
+            dot=(parts.pop("dot") or b"").decode(),
+            warning=head["warning"],
+            **parts,  # type: ignore[arg-type]
+        )
+    except (OSError, ValueError, KeyError, TypeError, IndexError):
+        return None
+
+
+def _part(read, seek, start: int, place: Sequence[int]) -> bytes:  # type: ignore[no-untyped-def] # noqa: ANN001
+    offset, length, check = place
+    seek(start + offset)
+    data: bytes = read(length)
+    if len(data) != length or zlib.crc32(data) != check:
+        raise ValueError
+    return data
+
+
+def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> None:
+    """Keep a picture; written aside and moved, so that nobody reads half of it."""
+    parts, offset, blobs = {}, 0, []
+    for form in (*formats, "dot"):
+        data = getattr(picture, form)
+        blob = data.encode() if isinstance(data, str) else data
+        if blob is None:
+            return
+        parts[form] = (offset, len(blob), zlib.crc32(blob))
+        blobs.append(blob)
+        offset += len(blob)
+    head = {"id": picture.id, "width": picture.width, "height": picture.height, "warning": picture.warning, "parts": parts}
+    with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:
+        file.write(json.dumps(head).encode() + b"\n" + b"".join(blobs))
+    os.replace(file.name, folder / f"{name}.picture")  # noqa: PTH105 - as atomic as the system can
+
+
+def prune(folder: Path, count: int) -> None:
+    """Remove the oldest pictures beyond a multiple of those in use."""
+    files = sorted(folder.glob("*.picture"), key=lambda file: file.stat().st_mtime, reverse=True)
+    for file in files[_SURPLUS * count + 100 :]:
+        file.unlink(missing_ok=True)

@@ -1,0 +1,42 @@
+"""Count where arrows cross, and measure how far they run: what layouts are chosen by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+from archgen.emit.graphviz.labels import along
+from archgen.emit.graphviz.scene import Line, Point
+
+Segment = tuple[Point, Point]
+
+
+def crossings(lines: Sequence[Line]) -> int:
+    """Count the crossings of all pairs of lines."""
+    paths = [_segments(line) for line in lines]
+    return sum(
+        _cross(one, other) for at, first in enumerate(paths) for second in paths[at + 1 :] for one in first for other in second
+    )
+
+
+def length(line: Line) -> float:
+    """Measure a line in points."""
+    return sum(math.dist(one, other) for one, other in _segments(line))
+
+
+def _segments(line: Line) -> list[Segment]:
+    return list(pairwise(along(line, 4)))
+
+
+def _cross(one: Segment, other: Segment) -> bool:
+    (a, b), (c, d) = one, other
+    if max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0]):
+        return False
+    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
+        return False
+    return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
+
+
+def _side(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

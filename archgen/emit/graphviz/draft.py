@@ -1,0 +1,157 @@
+"""A graph ready for layout: DOT names for its boxes and arrows, and how each of them looks.
+
+Ids of the model never get into DOT text: boxes are `n0`, `n1`, arrows `e0`, `e1`, in the graph's order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from archgen.emit.graphviz import engine, marks, palette, strokes
+from archgen.emit.graphviz.engine import written
+from archgen.emit.graphviz.marks import FONT, Link
+from archgen.emit.graphviz.scene import DEFAULTS, Part, Scene, placed
+from archgen.emit.graphviz.text import html, quoted, wrapped
+from archgen.views.shapes import Arrow, Box, Cluster, Graph
+
+Attributes = dict[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A graph with the DOT names and attributes of its boxes, arrows and the arrows' texts."""
+
+    graph: Graph
+    link: Link
+    names: dict[str, str]
+    boxes: dict[str, Attributes]
+    arrows: dict[str, tuple[str, Attributes]]
+    labels: dict[str, Attributes]
+
+    def node(self, item: Box) -> str:
+        """Write a box as DOT."""
+        name = self.names[item.id]
+        return f"{name} [{written(self.boxes[name])}];"
+
+    def edge(self, at: int, item: Arrow, extra: str = "") -> str:
+        """Write an arrow as DOT, with its text for the layout to find room for."""
+        ends = [self.names[item.tail] + self._port(item.tail, item.tail_port)]
+        ends.append(self.names[item.head] + self._port(item.head, item.head_port))
+        attributes = self.arrows[f"e{at}"][1]
+        if "dir" in attributes:
+            ends.reverse()
+        label = f" label={self.labels[f'e{at}']['label']}" if f"e{at}" in self.labels else ""
+        kept = {name: attributes[name] for name in _SIZES if name in attributes}
+        return f'{" -> ".join(ends)} [id="e{at}"{label} {written(kept)} {extra}];'
+
+    def _port(self, box: str, port: str | None) -> str:
+        """Write where at a box with ports an arrow ends: inputs at its left, outputs at its right."""
+        item = next((each for each in self.graph.boxes if each.id == box), None)
+        if item is None or port is None:
+            return ""
+        rows = [(name, f":i{at}:w") for at, (name, _) in enumerate(item.ports_in)]
+        rows += [(name, f":o{at}:e") for at, (name, _) in enumerate(item.ports_out)]
+        return dict(rows).get(port, "")
+
+
+_SIZES = ("arrowsize", "penwidth", "arrowhead", "arrowtail", "dir")
+"""What of an arrow's look changes its line."""
+
+
+def draft(graph: Graph, link: Link, *, merged: bool = False) -> Draft:
+    """Name everything and choose its look."""
+    names = {item.id: f"n{at}" for at, item in enumerate(graph.boxes)}
+    texts = {f"e{at}": strokes.label(item, link, merged=merged) for at, item in enumerate(graph.arrows)}
+    sides = {item.id: item.side for item in graph.boxes}
+    looks = [strokes.arrow(item, link, merged=merged) for item in graph.arrows]
+    arrows = [
+        (item.id, _turned(look) if sides.get(item.head) == "left" or sides.get(item.tail) == "right" else look)
+        for item, look in zip(graph.arrows, looks, strict=True)
+    ]
+    return Draft(
+        graph,
+        link,
+        names,
+        {names[item.id]: marks.box(item, link) for item in graph.boxes},
+        {f"e{at}": arrow for at, arrow in enumerate(arrows)},
+        {edge: attributes for edge, attributes in texts.items() if attributes},
+    )
+
+
+def _turned(look: Attributes) -> Attributes:
+    """Lay an arrow out against its direction: a client may stand right of its server."""
+    turned = {name: value for name, value in look.items() if name != "arrowhead"}
+    return {**turned, "dir": '"back"', "arrowtail": look.get("arrowhead", '"normal"')}
+
+
+def document(settings: str, statements: Iterable[str]) -> str:
+    """Write a graph for layout."""
+    return "\n".join(["digraph g {", f"graph [{settings}];", DEFAULTS, *statements, "}"])
+
+
+def read(drafted: Draft, layout: dict[str, object]) -> Scene:
+    """Read a layout back, the arrows' texts as parts of their own where the layout put them."""
+    scene = placed(layout, drafted.boxes, drafted.arrows)
+    spots = {
+        str(item["id"]): str(item["lp"])
+        for item in layout.get("edges", [])  # type: ignore[attr-defined]
+        if "lp" in item and item.get("id") in drafted.labels
+    }
+    sizes = measure([drafted.labels[edge] for edge in spots])
+    labels = tuple(
+        Part(f"l{edge[1:]}", drafted.labels[edge], *(float(n) for n in spot.split(",")), *size, kind="label")
+        for (edge, spot), size in zip(spots.items(), sizes, strict=True)
+    )
+    return scene.joined(Scene(parts=labels))
+
+
+def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
+    """Give the width and height in points that nodes with these attributes take."""
+    if not labels:
+        return ()
+    nodes = (f'm{at} [{written(each)} pos="0,0"];' for at, each in enumerate(labels))
+    objects = engine.layout(document("", nodes), "nop2")["objects"]
+    sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in objects}
+    return tuple(sizes[f"m{at}"] for at in range(len(labels)))
+
+
+def title(item: Cluster) -> Attributes:
+    """Give the look of a frame's title, a text on the frame's own ground."""
+    ink = palette.MUTED if item.emphasis == "neighbour" else palette.hue(item.colour)
+    rows = "<BR/>".join(f"<B>{html(row)}</B>" for row in wrapped(item.title, 40, 2))
+    small = "".join(f'<BR/><FONT POINT-SIZE="7.5" COLOR="{palette.MUTED}">{html(line)}</FONT>' for line in item.lines)
+    return {
+        "shape": '"box"',
+        "style": '"filled"',
+        "class": '"title"',
+        "color": f'"{palette.PAPER}00"',
+        "fillcolor": f'"{frame_fill(item)}"',
+        "penwidth": "0",
+        "margin": '"0.03,0.01"',
+        "width": "0.1",
+        "height": "0.1",
+        "fontname": f'"{FONT}"',
+        "fontsize": "11",
+        "label": f'<<FONT COLOR="{ink}">{rows}</FONT>{small}>',
+    }
+
+
+def frame_fill(item: Cluster) -> str:
+    """Choose the ground of a frame."""
+    return palette.tint(palette.hue(item.colour)) if item.emphasis != "neighbour" else "#f7f7f7"
+
+
+def frame(item: Cluster, link: Link) -> Attributes:
+    """Give the look of a frame."""
+    grey = item.emphasis == "neighbour"
+    colour = palette.NEIGHBOUR_FRAME if grey else palette.hue(item.colour)
+    classes = f"frame {item.emphasis}" + (f" hue{item.colour}" if item.colour is not None else "")
+    return {
+        "style": '"filled,rounded"',
+        "class": quoted(classes),
+        "color": f'"{colour}"',
+        "fillcolor": f'"{frame_fill(item)}"',
+        "penwidth": "2" if item.emphasis == "subject" else "1.2",
+        **marks.linked(item.ref, item.tooltip or "\n".join((item.title, *item.lines)), link),
+    }

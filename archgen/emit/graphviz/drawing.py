@@ -1,0 +1,59 @@
+"""Draw one graph: choose its layout, check that every arrow is there, render it. Runs in a worker process."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.emit.graphviz import engine, flow, twostep
+from archgen.emit.graphviz.decorations import decorated
+from archgen.emit.graphviz.draft import Draft, draft
+from archgen.emit.graphviz.legend import below
+from archgen.emit.graphviz.scene import Scene
+from archgen.emit.graphviz.svg import drawn_edges, finished
+from archgen.emit.picture import Picture
+from archgen.views.shapes import Graph
+
+_LAYOUTS = {"flow": flow.flow, "group": flow.group, "two-step": twostep.two_step, "overview": twostep.two_step}
+_FORMATS = {"svg_outlines": "svg:cairo", "pdf": "pdf"}
+_LOOK = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
+_DPI = 150
+
+
+def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tuple[Draft, Scene]:
+    """Lay out a graph; all that was asked for is in it."""
+    drafted = draft(graph, links.get, merged=graph.layout in {"two-step", "overview"})
+    laid_out = flow.simple(drafted) if simple else _LAYOUTS[graph.layout](drafted)
+    drawn = {line.arrow for line in laid_out.lines}
+    wanted = {arrow.id for arrow in graph.arrows}
+    if wanted - drawn:
+        message = f"{len(wanted - drawn)} of {len(wanted)} arrows were lost"
+        raise engine.LayoutError(message)
+    boxes = {drafted.names[box.id]: box for box in graph.boxes}
+    return drafted, below(decorated(laid_out, boxes), graph)
+
+
+def picture(
+    graph: Graph, links: Mapping[str, str], formats: Sequence[str], *, simple: bool = False, warning: str | None = None
+) -> Picture:
+    """Draw a graph in the formats asked for (names of Picture's fields)."""
+    _, laid_out = scene(graph, links, simple=simple)
+    left, bottom, right, top = laid_out.bounds()
+    dot = laid_out.dot(graph.id, {**_LOOK, "tooltip": '" "'})
+    wanted = [form for form in _FORMATS if form in formats]
+    svg, *others = engine.render(dot, ["svg", *(_FORMATS[form] for form in wanted)])
+    text = svg.decode()
+    lost = {line.edge for line in laid_out.lines if line.arrow} - {edge[1:] for edge in drawn_edges(text)}
+    if lost:
+        message = f"{len(lost)} arrows were not drawn"
+        raise engine.LayoutError(message)
+    png = engine.render(laid_out.dot(graph.id, _LOOK, _DPI), ["png:cairo"])[0] if "png" in formats else None
+    return Picture(
+        graph.id,
+        right - left,
+        top - bottom,
+        svg=finished(text, graph) if "svg" in formats else None,
+        png=png,
+        dot=dot,
+        warning=warning,
+        **dict(zip(wanted, others, strict=True)),
+    )

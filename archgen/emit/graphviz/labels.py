@@ -1,0 +1,81 @@
+"""Find places for texts: no box, title or text may meet another, and a title should not lie on an arrow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from archgen.emit.graphviz.scene import Frame, Line, Part, Point, Rectangle, Scene, meet
+
+_GAP = 1.0
+
+
+def declutter(scene: Scene) -> Scene:
+    """Move each text that meets something along its arrow, to the nearest free place.
+
+    A text that finds none is taken out of the picture; the arrow's tooltip and the tables still have it.
+    """
+    taken = [part.rectangle for part in scene.parts if part.kind in {"box", "title"}]
+    lines = {f"l{edge}": line for edge, line in _by_edge(scene)}
+    kept = []
+    for part in scene.parts:
+        if part.kind != "label":
+            kept.append(part)
+            continue
+        spot = next((at for at in _spots(part, lines.get(part.name)) if _free(at, taken)), None)
+        if spot is not None:
+            kept.append(spot)
+            taken.append(spot.rectangle)
+    return replace(scene, parts=tuple(kept))
+
+
+def _by_edge(scene: Scene) -> Iterator[tuple[str, Line]]:
+    for line in scene.lines:
+        yield line.edge, line
+
+
+def _free(part: Part, taken: list[Rectangle]) -> bool:
+    return not any(meet(part.rectangle, other, _GAP) for other in taken)
+
+
+def _spots(part: Part, line: Line | None) -> Iterator[Part]:
+    """Give the text where it is, then all places on and beside its arrow, the nearest first."""
+    yield part
+    if line is None:
+        return
+    sides = (0.0, part.height * 0.6, -part.height * 0.6, part.height * 1.4, -part.height * 1.4)
+    points = list(along(line))
+    spots = [(x, y + side) for x, y in points for side in sides]
+    spots.sort(key=lambda spot: (abs(spot[0] - part.x) + abs(spot[1] - part.y), spot))
+    for x, y in spots:
+        yield replace(part, x=x, y=y)
+
+
+def along(line: Line, steps: int = 8) -> Iterator[Point]:
+    """Walk along a spline: points on its Bézier curves."""
+    points = line.curve
+    for at in range(0, len(points) - 3, 3):
+        one, two, three, four = points[at : at + 4]
+        for step in range(steps):
+            t = step / steps
+            a, b, c, d = (1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3
+            yield (
+                a * one[0] + b * two[0] + c * three[0] + d * four[0],
+                a * one[1] + b * two[1] + c * three[1] + d * four[1],
+            )
+    if points:
+        yield points[-1]
+
+
+def settle_title(scene: Scene, part: Part, frame: Frame) -> Scene:
+    """Put a frame's title where the fewest arrows pass: in the middle, at the left or at the right of its strip."""
+    left, _, right, _ = frame.rectangle
+    places = [part.x, left + part.width / 2 + 8, right - part.width / 2 - 8]
+    passing = [point for line in scene.lines for point in along(line)]
+    moved = [replace(part, x=x) for x in places]
+    best = min(moved, key=lambda spot: sum(_inside(point, spot.rectangle) for point in passing))
+    return replace(scene, parts=tuple(best if each is part else each for each in scene.parts))
+
+
+def _inside(point: Point, rectangle: Rectangle) -> bool:
+    return rectangle[0] < point[0] < rectangle[2] and rectangle[1] < point[1] < rectangle[3]

@@ -1,0 +1,182 @@
+"""Worker processes that draw, several at once, each under a time limit.
+
+A picture whose drawing crashes, fails or takes too long is drawn once more in a simpler way, and says so; if that
+fails as well it comes without any format. The other pictures are not touched.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from archgen.emit.graphviz import fonts
+from archgen.emit.graphviz.worker import Failure, Task, receive, send
+from archgen.emit.picture import Picture
+
+TIMEOUT = 30.0
+"""Seconds that one drawing may take."""
+
+Progress = Callable[[int, int], None]
+Command = Sequence[str]
+
+_START = "import sys; sys.path.append({root!r}); from archgen.emit.graphviz.worker import main; main()"
+_PACKAGES = {
+    "libglib-2": "libglib2.0-0",
+    "libgobject-2": "libglib2.0-0",
+    "libX11": "libx11-6",
+    "libXext": "libxext6",
+    "libXrender": "libxrender1",
+    "libexpat": "libexpat1",
+}
+
+
+class MissingGraphviz(Exception):  # noqa: N818 - it says what is missing
+    """Pictures cannot be drawn on this machine: a system library, or pygraphviz itself, is not there.
+
+    The message says which package to install; everything else can still be made.
+    """
+
+
+def explain(message: str) -> str:
+    """Say which package is missing, from what the import said."""
+    package = next((package for library, package in _PACKAGES.items() if library in message), None)
+    if package:
+        everything = " ".join(dict.fromkeys(_PACKAGES.values()))
+        return (
+            f"pictures need the system package {package} (or what it is called here): {message}. "
+            f"On Debian and Ubuntu: apt-get install {everything}"
+        )
+    return f"pictures need pygraphviz, which cannot be imported: {message}"
+
+
+def command() -> Command:
+    """Give the command line of a worker. `-P` keeps the current folder, which may be anybody's, out of its path."""
+    root = str(Path(__file__).resolve().parents[3])
+    return (sys.executable, "-P", "-c", _START.format(root=root))
+
+
+def draw(
+    tasks: Sequence[Task],
+    folder: Path,
+    *,
+    workers: int,
+    progress: Progress | None = None,
+    timeout: float = TIMEOUT,
+    start: Command | None = None,
+) -> tuple[Picture, ...]:
+    """Draw all tasks, the largest first; gives the pictures in the order of the tasks."""
+    environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder))}
+    run = _Run(tasks, progress, timeout, start or command(), environment)
+    threads = [threading.Thread(target=run.work) for _ in range(max(1, min(workers, len(tasks))))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    if run.missing:
+        raise MissingGraphviz(explain(run.missing))
+    return tuple(run.done[at] for at in range(len(tasks)))
+
+
+class _Run:
+    """What the threads share: each holds one worker process and takes the next task when its last one is done."""
+
+    def __init__(
+        self, tasks: Sequence[Task], progress: Progress | None, timeout: float, start: Command, environment: dict[str, str]
+    ) -> None:
+        self.done: dict[int, Picture] = {}
+        self.missing = ""
+        self._progress, self._timeout, self._start, self._environment = progress, timeout, start, environment
+        self._lock = threading.Lock()
+        self._total = len(tasks)
+        self._waiting: queue.SimpleQueue[tuple[int, Task]] = queue.SimpleQueue()
+        for at, task in sorted(enumerate(tasks), key=lambda each: -len(each[1].graph.boxes)):
+            self._waiting.put((at, task))
+
+    def work(self) -> None:
+        """Take tasks until there are none."""
+        process = _Worker(self._start, self._environment)
+        try:
+            while not self.missing:
+                at, task = self._waiting.get_nowait()
+                self._finish(at, self._drawn(process, task))
+        except queue.Empty:
+            pass
+        finally:
+            process.stop()
+
+    def _finish(self, at: int, picture: Picture) -> None:
+        with self._lock:
+            self.done[at] = picture
+            if self._progress:
+                self._progress(len(self.done), self._total)
+
+    def _drawn(self, process: _Worker, task: Task) -> Picture:
+        answer = process.ask(task, self._timeout)
+        if isinstance(answer, Failure) and answer.kind == "missing":
+            self.missing = answer.message
+        if isinstance(answer, Failure) and not self.missing:
+            warning = f"the picture {task.graph.id} is drawn in a simpler way: {answer.message}"
+            answer = process.ask(replace(task, simple=True, warning=warning), self._timeout)
+        if isinstance(answer, Failure):
+            return Picture(task.graph.id, 0, 0, warning=f"the picture {task.graph.id} is missing: {answer.message}")
+        return answer
+
+
+class _Worker:
+    """One worker process, started when it is first needed, and again after it broke."""
+
+    def __init__(self, start: Command, environment: dict[str, str]) -> None:
+        self._start, self._environment = start, environment
+        self._process: subprocess.Popen[bytes] | None = None
+        self._late = False
+
+    def ask(self, task: Task, timeout: float) -> Picture | Failure:
+        """Have one picture drawn."""
+        self._late = False
+        alarm = threading.Timer(timeout, self._kill)
+        alarm.start()
+        try:
+            return self._asked(task)
+        except (EOFError, OSError):
+            self.stop()
+            return Failure("layout", f"it took longer than {timeout:g} s" if self._late else "Graphviz broke down")
+        finally:
+            alarm.cancel()
+
+    def _asked(self, task: Task) -> Picture | Failure:
+        process = self._process
+        if process is None:
+            pipe = subprocess.PIPE
+            process = self._process = subprocess.Popen(  # noqa: S603 - our own interpreter
+                self._start, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, env=self._environment
+            )
+            hello = receive(process.stdout)  # type: ignore[arg-type]
+            if isinstance(hello, Failure):
+                return hello
+        send(process.stdin, task)  # type: ignore[arg-type]
+        answer: Picture | Failure = receive(process.stdout)  # type: ignore[arg-type]
+        return answer
+
+    def _kill(self) -> None:
+        self._late = True
+        if self._process:
+            self._process.kill()
+
+    def stop(self) -> None:
+        """End the process."""
+        process, self._process = self._process, None
+        if process:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe:
+                    try:
+                        pipe.close()
+                    except OSError:  # what was still to be written has no reader any more
+                        continue

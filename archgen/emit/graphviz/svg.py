@@ -1,0 +1,49 @@
+"""Graphviz's svg, made fit to stand in a page: no prologue, real titles, ids of its own, a name and a description.
+
+Hooks for a page's style: the root has the class `archgen`; its parts are `.box`, `.frame`, `.arrow`, `.label`,
+`.title`, `.legend`, `.badge`, `.bar`, with the style, emphasis, status and hue (`hue0` to `hue9`) as further classes.
+Colours are presentation attributes, so that any rule of the page wins over them; `palette.dark_rules` writes the rules
+that turn them dark. Tooltips are `title` elements. Ids begin with the picture's id, so that several fit in one page.
+"""
+
+from __future__ import annotations
+
+import re
+from html import escape
+
+from archgen.emit.graphviz.text import clean
+from archgen.views.shapes import Graph
+
+_HEAD = re.compile(r"^.*?<svg ([^>]*)>", re.DOTALL)
+_COMMENT = re.compile(r"<!--.*?-->\n?", re.DOTALL)
+_ID = re.compile(r'(<g id=")([^"]*)(")')
+_GROUP = re.compile(r'(<g id="[^"]*" class="(?:node|edge|cluster)[^"]*">\n)<title>[^<]*</title>\n')
+_LINK = re.compile(r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL)
+_DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
+
+
+def drawn_edges(svg: str) -> set[str]:
+    """Name the edges that have a line."""
+    return set(_DRAWN.findall(svg))
+
+
+def finished(svg: str, graph: Graph) -> bytes:
+    """Give the svg as an element of its own."""
+    head = _HEAD.match(svg)
+    if head is None:
+        return svg.encode()
+    prefix = re.sub(r"[^A-Za-z0-9_]+", "-", graph.id)
+    body = _COMMENT.sub("", svg[head.end() :])
+    body = _LINK.sub(_titled, _GROUP.sub(r"\1", body))
+    body = re.sub(r"(<g id=\"graph0\"[^>]*>\n)<title>.*?</title>\n", r"\1", body, count=1)
+    body = _ID.sub(lambda found: f"{found[1]}{prefix}-{found[2]}{found[3]}", body)
+    name = f"<title>{escape(clean(graph.title))}</title>\n"
+    description = f"<desc>{escape(clean(graph.alt, 4000))}</desc>\n" if graph.alt else ""
+    return f'<svg class="archgen" role="group" {head[1]}>\n{name}{description}{body.lstrip()}'.encode()
+
+
+def _titled(found: re.Match[str]) -> str:
+    """Write a tooltip as a title element, and keep the link where there is an address."""
+    href, tooltip, rest, inner = found.groups()
+    title = f"<title>{tooltip}</title>\n" if tooltip.strip() else ""
+    return f"<a {href}{rest.strip()}>\n{title}{inner}</a>\n" if href else f"{title}{inner}"

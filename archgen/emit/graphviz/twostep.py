@@ -1,0 +1,169 @@
+"""The layouts `two-step` and `overview`: frames as boxes of fixed size in an outer graph, their insides set into them.
+
+No graph that dot sees has frames and texts at once, which it cannot lay out. The outer graph is tried in several
+ways: as dot likes it, downwards and to the right, and folded into two to six rows or columns in the order in which
+least flows backwards. The drawing that is best to read on a page is taken: large text, few crossings, short arrows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from archgen.emit.graphviz import engine
+from archgen.emit.graphviz.crossings import crossings, length
+from archgen.emit.graphviz.draft import Draft, document, frame, measure, title
+from archgen.emit.graphviz.engine import written
+from archgen.emit.graphviz.inner import inside
+from archgen.emit.graphviz.labels import along, declutter
+from archgen.emit.graphviz.order import folded, forward
+from archgen.emit.graphviz.scene import Frame, Part, Scene, placed
+from archgen.views.shapes import Arrow
+
+_PAGE = (1105.0, 728.0)
+"""A landscape A3 page without its margins, in points: what a drawing's text size is judged on."""
+_MARGIN = 12.0
+_UNSEEN = {"style": '"invis"', "label": '""', "shape": '"point"'}
+"""The ends of arrows between frames: lines need nodes to end at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """A frame with its inside, or a box without frame: what the outer graph places. The lower left corner is 0, 0."""
+
+    name: str
+    scene: Scene
+    width: float
+    height: float
+
+
+def two_step(drafted: Draft) -> Scene:
+    """Lay out each frame by itself, then the frames."""
+    home = _homes(drafted)
+    numbered = list(enumerate(drafted.graph.arrows))
+    outer = [(at, arrow) for at, arrow in numbered if home[arrow.tail] != home[arrow.head]]
+    inner = [(at, arrow) for at, arrow in numbered if home[arrow.tail] == home[arrow.head]]
+    tiles = {tile.name: tile for tile in _tiles(drafted, home, inner)}
+    ends = [(at, replace(arrow, tail=home[arrow.tail], head=home[arrow.head])) for at, arrow in outer]
+    tries = [_composed(drafted, tiles, ends, statements) for statements in _candidates(drafted, tiles, ends)]
+    best = min(tries, key=lambda scene: _cost(scene, ends))
+    return declutter(best.joined(_labels(drafted, best)))
+
+
+def _homes(drafted: Draft) -> dict[str, str]:
+    """Give for each box and frame the outermost frame that it stands in, else itself."""
+    parents = {cluster.id: cluster.parent for cluster in drafted.graph.clusters}
+
+    def top(name: str) -> str:
+        while parents.get(name):
+            name = str(parents[name])
+        return name
+
+    homes = {cluster.id: top(cluster.id) for cluster in drafted.graph.clusters}
+    return {**homes, **{box.id: top(box.cluster) if box.cluster else box.id for box in drafted.graph.boxes}}
+
+
+def _tiles(drafted: Draft, home: dict[str, str], arrows: Sequence[tuple[int, Arrow]]) -> Iterator[Tile]:
+    graph = drafted.graph
+    headings = [title(cluster) for cluster in graph.clusters]
+    sizes = measure(headings)
+    for at, cluster in enumerate(graph.clusters):
+        scene = inside(drafted, [box for box in graph.boxes if home[box.id] == cluster.id], arrows)
+        _, _, right, top = scene.bounds()
+        heading, (width, height) = headings[at], sizes[at]
+        wide, high = max(right, width) + 2 * _MARGIN, top + height + 2.2 * _MARGIN
+        text = Part(f"t{at}", heading, _MARGIN + width / 2, high - 7 - height / 2, width, height, "title")
+        rim = Frame(f"c{at}", frame(cluster, drafted.link), (0, 0, wide, high))
+        filled = scene.moved((wide - right) / 2, _MARGIN)
+        yield Tile(cluster.id, filled.joined(Scene(frames=(rim,), parts=(text,))), wide, high)
+    for box in graph.boxes:
+        if home[box.id] == box.id:
+            scene = inside(drafted, [box], ())
+            _, _, right, top = scene.bounds()
+            yield Tile(box.id, scene, right, top)
+
+
+def _candidates(
+    drafted: Draft, tiles: dict[str, Tile], arrows: Sequence[tuple[int, Arrow]]
+) -> Iterator[tuple[str, list[str]]]:
+    """Give the ways to lay out the outer graph that are worth a try: settings, and statements."""
+    weights: dict[tuple[str, str], int] = {}
+    for _, arrow in arrows:
+        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
+    order = forward(tuple(tiles), weights)
+    place = {name: at for at, name in enumerate(order)}
+    names = {name: f"o{at}" for at, name in enumerate(tiles)}
+    plain = [f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_pen(drafted, at)}];' for at, a in arrows]
+    onward = [
+        f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_pen(drafted, at)}'
+        f"{' constraint=false' if place[a.tail] > place[a.head] else ''}];"
+        for at, a in arrows
+    ]
+    for direction in ("TB", "LR"):
+        settings = f'rankdir="{direction}" nodesep="0.35" ranksep="0.5" splines="spline"'
+        yield settings, plain
+        yield settings, onward
+        lengths = {name: tile.width if direction == "TB" else tile.height for name, tile in tiles.items()}
+        for rows in range(2, min(7, len(tiles))):
+            runs = folded(order, lengths, rows, 28.0)
+            yield settings, [*_rows(runs, names), *onward]
+
+
+def _rows(runs: Sequence[Sequence[str]], names: dict[str, str]) -> list[str]:
+    ranks = [f"{{ rank=same; {'; '.join(names[item] for item in run)}; }}" for run in runs]
+    chain = " -> ".join(names[run[0]] for run in runs)
+    return [*ranks, f'{chain} [style="invis" weight="0"];'] if len(runs) > 1 else ranks
+
+
+def _pen(drafted: Draft, at: int) -> str:
+    attributes = drafted.arrows[f"e{at}"][1]
+    return written({name: attributes[name] for name in ("arrowsize", "penwidth", "arrowhead") if name in attributes})
+
+
+def _composed(
+    drafted: Draft, tiles: dict[str, Tile], arrows: Sequence[tuple[int, Arrow]], candidate: tuple[str, list[str]]
+) -> Scene:
+    """Lay out the outer graph and set the insides into its boxes."""
+    settings, statements = candidate
+    names = {f"o{at}": tile for at, tile in enumerate(tiles.values())}
+    boxes = {
+        name: {
+            "shape": '"box"',
+            "fixedsize": '"true"',
+            "label": '""',
+            "width": f"{tile.width / 72:.4f}",
+            "height": f"{tile.height / 72:.4f}",
+        }
+        for name, tile in names.items()
+    }
+    nodes = [f"{name} [{written(each)}];" for name, each in boxes.items()]
+    wanted = {f"e{at}": drafted.arrows[f"e{at}"] for at, _ in arrows}
+    outer = placed(engine.layout(document(settings, [*nodes, *statements])), boxes, wanted)
+    scenes = [
+        names[part.name].scene.moved(part.x - part.width / 2, part.y - part.height / 2) for part in outer.parts
+    ]
+    anchors = tuple(replace(part, attributes=_UNSEEN, kind="mark") for part in outer.parts)
+    return Scene(lines=outer.lines, parts=anchors).joined(*scenes)
+
+
+def _cost(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
+    """Judge a drawing: how small it must be made for the page, how many arrows cross, how far they run."""
+    left, bottom, right, top = scene.bounds()
+    wide, high = (right - left) / _PAGE[0], (top - bottom) / _PAGE[1]
+    edges = {f"{at}" for at, _ in arrows}
+    outer = [line for line in scene.lines if line.edge in edges]
+    missing = len(arrows) - len(outer)
+    run = sum(length(line) for line in outer) / (sum(_PAGE) * max(len(outer), 1))
+    return max(wide, high) * (1 + 0.02 * crossings(outer) + 0.5 * run) + 10 * missing
+
+
+def _labels(drafted: Draft, scene: Scene) -> Scene:
+    """Set each arrow's text on the middle of the arrow."""
+    lines = [line for line in scene.lines if f"e{line.edge}" in drafted.labels]
+    sizes = measure([drafted.labels[f"e{line.edge}"] for line in lines])
+    parts = []
+    for line, size in zip(lines, sizes, strict=True):
+        points = list(along(line))
+        x, y = points[len(points) // 2]
+        parts.append(Part(f"l{line.edge}", drafted.labels[f"e{line.edge}"], x, y, *size, kind="label"))
+    return Scene(parts=tuple(parts))

@@ -1,0 +1,81 @@
+"""A worker process: reads graphs from its standard input, one after the other, and writes pictures to its output.
+
+Messages are pickles with their length before them. Graphviz may write to the standard output or end the process: the
+output is kept apart, and who waits at the other end sees that it closed.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import struct
+import sys
+from dataclasses import dataclass
+from typing import IO, Any
+
+from archgen.emit.picture import Picture
+from archgen.views.shapes import Graph
+
+_LENGTH = struct.Struct("<Q")
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One graph to draw: with the addresses of its links, the formats, and how."""
+
+    graph: Graph
+    links: dict[str, str]
+    formats: tuple[str, ...]
+    simple: bool = False
+    warning: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """What went wrong: `missing` if pygraphviz cannot be imported, `layout` if this graph cannot be drawn so."""
+
+    kind: str
+    message: str
+
+
+def send(stream: IO[bytes], message: object) -> None:
+    """Write one message."""
+    data = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
+    stream.write(_LENGTH.pack(len(data)) + data)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> Any:  # noqa: ANN401 - whatever was sent
+    """Read one message; EOFError where the other end is gone."""
+    head = stream.read(_LENGTH.size)
+    if len(head) < _LENGTH.size:
+        raise EOFError
+    data = stream.read(_LENGTH.unpack(head)[0])
+    return pickle.loads(data)  # noqa: S301 - from our own process, over a pipe
+
+
+def main() -> None:
+    """Serve until the input ends."""
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    try:
+        import archgen.emit.graphviz.drawing  # noqa: F401 - to see whether it can be
+    except ImportError as error:
+        send(out, Failure("missing", str(error)))
+        return
+    send(out, "ready")
+    while True:
+        try:
+            task = receive(sys.stdin.buffer)
+        except EOFError:
+            return
+        send(out, _done(task))
+
+
+def _done(task: Task) -> Picture | Failure:
+    from archgen.emit.graphviz.drawing import picture
+
+    try:
+        return picture(task.graph, task.links, task.formats, simple=task.simple, warning=task.warning)
+    except Exception as error:  # noqa: BLE001 - whatever it is costs this picture, not the others
+        return Failure("layout", f"{type(error).__name__}: {error}")

@@ -1,0 +1,35 @@
+"""Which forms a picture uses, so that its legend explains these and no others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from archgen.views.shapes import Arrow, Box, Graph
+
+_BOXES = ("source", "sink", "reactive", "external", "node", "topic", "fold")
+_BOX_OF_FLOW = {"service": "service-box", "action": "action-box"}
+_STATUSES = ("planned", "adapted")
+_ARROWS = ("optional", "physical", "service", "action", "internal", "link")
+
+
+def with_legend(graph: Graph, *extra: str) -> Graph:
+    """Add the keys of the legend that a picture needs."""
+    return replace(graph, legend=tuple(dict.fromkeys((*_keys(graph), *extra))))
+
+
+def _keys(graph: Graph) -> list[str]:
+    kinds = {kind for box in graph.boxes for kind in _kinds(box)}
+    strokes = {kind for arrow in graph.arrows for kind in _strokes(arrow)}
+    keys = [key for key in ("subject", "neighbour", *_BOXES, *_BOX_OF_FLOW.values(), *_STATUSES) if key in kinds]
+    keys += [key for key in _ARROWS if key in strokes]
+    wide = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
+    return [*keys, "width", "count"] if wide else keys
+
+
+def _kinds(box: Box) -> set[str]:
+    kinds = {_BOX_OF_FLOW.get(box.style, "external" if box.style in {"physical", "partner"} else box.style)}
+    return kinds | {box.emphasis} | ({box.status} if box.status else set())
+
+
+def _strokes(arrow: Arrow) -> set[str]:
+    return {str(arrow.style)} | ({"optional"} if arrow.optional else set())
