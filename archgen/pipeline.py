@@ -9,7 +9,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from archgen import analyses, findings, link, project, schema, syntax, transform
+from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import rules, suppress
 from archgen.link import chapters, interfaces, merge, shipped
@@ -20,10 +20,11 @@ from archgen.model.interfaces import Interfaces
 from archgen.project import Loaded
 from archgen.source import Sources
 from archgen.syntax import files
+from archgen.syntax import interfaces as interface_files
 from archgen.syntax.tree import Scalar, Table
 
 ALL_RULES: tuple[Rule, ...] = (
-    *syntax.RULES,
+    *interface_files.RULES,
     *schema.RULES,
     *project.RULES,
     *link.RULES,

@@ -8,6 +8,7 @@ from archgen.analyses import (
     chains,
     connectivity,
     mapping,
+    messages,
     names,
     port_types,
     progress,
@@ -16,6 +17,7 @@ from archgen.analyses import (
     roles,
     sections,
     topics,
+    type_mapping,
 )
 from archgen.diagnostic import Rule
 
@@ -35,6 +37,8 @@ _JUDGES = (
     *names.RULES,
     *qos.RULES,
     *requirements.RULES,
+    *messages.RULES,
+    *type_mapping.RULES,
     *chains.RULES,
     *progress.RULES,
 )
