@@ -1,0 +1,111 @@
+"""Groups and components as model objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from archgen.link import reading
+from archgen.link.declare_timing import declare_timing
+from archgen.link.outline import Outline
+from archgen.link.references import References, ports_of
+from archgen.link.resolve import Wiring
+from archgen.model.component import Component, Group, Indicator, RequirementUse, Role
+from archgen.model.timing import Timing
+from archgen.syntax.tree import Entry, Table
+
+_ROLES = frozenset({"source", "filter", "sink", "reactive"})
+
+
+@dataclass(slots=True)
+class HighLevel:
+    """Groups with their components, made one after the other."""
+
+    outline: Outline
+    references: References
+    wiring: Wiring
+    groups: dict[str, Group] = field(default_factory=dict)
+    components: dict[str, Component] = field(default_factory=dict)
+
+    def declare(self) -> None:
+        """Declare every group."""
+        for name, entry in self.outline.groups.items():
+            self.groups[name] = self._group(name, entry)
+
+    def _group(self, name: str, entry: Entry) -> Group:
+        below = reading.body(entry)
+        owner = self.references.plain(reading.scalar(below, "owner"), "partner", name)
+        components = {part.key: self._component(name, part, owner) for part in reading.table(below, "components")}
+        self.components.update((component.id, component) for component in components.values())
+        return Group(
+            id=name,
+            title=reading.title(below, name),
+            description=reading.text(below, "description"),
+            owner=owner,
+            tags=reading.texts(below, "tags"),
+            urls=reading.words(below, "urls"),
+            layout=reading.layout(below),
+            components=components,
+            at=entry.at,
+        )
+
+    def _component(self, group: str, entry: Entry, owner: str | None) -> Component:
+        below, complete = reading.body(entry), f"{group}.{entry.key}"
+        own = reading.scalar(below, "owner")
+        inputs = self.outline.inputs[complete]
+        return Component(
+            id=complete,
+            name=entry.key,
+            group=group,
+            title=reading.title(below, entry.key),
+            functionality=reading.text(below, "functionality"),
+            description=reading.text(below, "description"),
+            owner=self.references.plain(own, "partner", complete) if own else owner,
+            role=_role(below),
+            requirements=tuple(_requirements(below)),
+            requirements_known=below.get("requirements") is not None,
+            performance=tuple(_performance(below)),
+            inputs={name: self.wiring.input(complete, port) for name, port in inputs.items()},
+            inputs_known=below.get("inputs") is not None,
+            outputs=self.outline.outputs[complete],
+            outputs_known=below.get("outputs") is not None,
+            timing=self._timing(complete, entry, inputs),
+            tags=reading.texts(below, "tags"),
+            urls=reading.words(below, "urls"),
+            layout=reading.layout(below),
+            title_written=reading.text(below, "title") is not None,
+            at=entry.at,
+            role_at=reading.place(below, "role"),
+        )
+
+    def _timing(self, complete: str, entry: Entry, inputs: Mapping[str, Entry]) -> Timing | None:
+        if reading.body(entry).get("timing") is None:
+            return None
+        names: dict[str, Mapping[str, Iterable[str]]] = {
+            "input": {complete: inputs},
+            "output": {complete: self.outline.outputs[complete]},
+        }
+        return declare_timing(entry, ports_of(self.references, complete, (complete,), names), self.references.found)
+
+
+def _role(below: Table) -> Role | None:
+    written = reading.text(below, "role")
+    return written if written in _ROLES else None  # type: ignore[return-value]
+
+
+def _requirements(below: Table) -> Iterator[RequirementUse]:
+    """Give the entries of `requirements`: one with a blank is free text, one without is an id."""
+    for written in reading.scalars(below, "requirements"):
+        text = written.text.strip()
+        yield RequirementUse(text, not any(letter.isspace() for letter in text), written.at)
+
+
+def _performance(below: Table) -> Iterator[Indicator]:
+    for name, entry, parts in reading.elements(below, "performance"):
+        yield Indicator(
+            id=name,
+            title=reading.title(parts, name),
+            accuracy=reading.text(parts, "accuracy"),
+            execution_time=reading.measure(parts, "execution_time", "duration"),
+            at=entry.at,
+        )

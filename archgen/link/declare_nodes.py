@@ -1,0 +1,148 @@
+"""ROS nodes: what was written about them, with the components and ports that they name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from archgen.link import reading
+from archgen.link.activities import Activities
+from archgen.link.declare_timing import declare_timing
+from archgen.link.outline import Outline
+from archgen.link.references import Ports, References, ports_of
+from archgen.model.component import Component
+from archgen.model.deployment import Container
+from archgen.model.node import Node, NodeStatus, PortUse, Qos, Use
+from archgen.model.qos import profile
+from archgen.syntax.tree import Entry, Table, plain
+
+USES: tuple[Use, ...] = ("publishes", "subscribes", "serves", "calls")
+_SIDES: Mapping[Use, str] = {"publishes": "output", "serves": "output", "subscribes": "input", "calls": "input"}
+_KINDS = frozenset({"node", "lifecycle", "composable", "driver", "nodelet"})
+_DURATIONS = ("deadline", "lifespan", "lease_duration")
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a node may name."""
+
+    outline: Outline
+    references: References
+    components: Mapping[str, Component]
+    containers: Mapping[str, Container]
+    activities: Activities
+
+
+def implemented(root: Table, references: References) -> dict[str, tuple[str, ...]]:
+    """Resolve what each node implements."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name, _, below in reading.elements(root, "nodes"):
+        targets = [references.follow(w, ("component",), name) for w in reading.scalars(below, "implements")]
+        found[name] = tuple(dict.fromkeys(target.id for target in targets if target))
+    return found
+
+
+def declare_nodes(root: Table, around: Surroundings, implements: Mapping[str, tuple[str, ...]]) -> dict[str, Node]:
+    """Declare every node that is written."""
+    return {name: _node(name, entry, around, implements[name]) for name, entry, _ in reading.elements(root, "nodes")}
+
+
+def _node(name: str, entry: Entry, around: Surroundings, implements: tuple[str, ...]) -> Node:
+    below, references = reading.body(entry), around.references
+    kinds = tuple(dict.fromkeys(kind for kind in reading.texts(below, "kind") if kind in _KINDS))
+    container = references.plain(reading.scalar(below, "container"), "container", name)
+    host = references.plain(reading.scalar(below, "host"), "host", name)
+    owner = references.plain(reading.scalar(below, "owner"), "partner", name)
+    if reading.scalar(below, "owner") is None and implements:
+        owner = around.components[implements[0]].owner
+    ports = _ports(name, below, around, implements)
+    return Node(
+        id=name,
+        title=reading.title(below, name),
+        implements=implements,
+        description=reading.text(below, "description"),
+        owner=owner,
+        name=reading.text(below, "name") or name,
+        namespace=_namespace(reading.text(below, "namespace")),
+        kinds=kinds or ("node",),  # type: ignore[arg-type]
+        package=reading.text(below, "package"),
+        executable=reading.text(below, "executable"),
+        plugin=reading.text(below, "plugin"),
+        container=container,
+        host=host or (around.containers[container].host if container else None),
+        status=_status(below),
+        uses=tuple(_uses(below, ports)),
+        uses_known=tuple(use for use in USES if below.get(use) is not None),
+        timing=around.activities.of(name, declare_timing(entry, ports, references.found), implements),
+        parameters=_parameters(below),
+        parameter_files=reading.texts(below, "parameter_files"),
+        tags=reading.texts(below, "tags"),
+        urls=reading.words(below, "urls"),
+        implements_written=below.get("implements") is not None,
+        at=entry.at,
+        name_at=reading.place(below, "name"),
+    )
+
+
+def _namespace(written: str | None) -> str:
+    """Make a namespace absolute, as ROS does."""
+    return "/" + (written or "").removeprefix("/")
+
+
+def _status(below: Table) -> NodeStatus | None:
+    written = reading.text(below, "status")
+    return written if written in {"existing", "adapted", "planned"} else None  # type: ignore[return-value]
+
+
+def _parameters(below: Table) -> Mapping[str, object]:
+    found = plain(reading.table(below, "parameters"))
+    return found if isinstance(found, dict) else {}
+
+
+def _ports(name: str, below: Table, around: Surroundings, implements: tuple[str, ...]) -> Ports:
+    names: dict[str, Mapping[str, Iterable[str]]] = {"input": around.outline.inputs, "output": around.outline.outputs}
+    return ports_of(around.references, name, implements, names, free=below.get("implements") is None)
+
+
+def _uses(below: Table, ports: Ports) -> Iterator[PortUse]:
+    for use in USES:
+        for key, entry, parts in reading.elements(below, use):
+            port = ports.follow(key, entry.at, _SIDES[use]) if ports.components else None
+            yield _use(use, port, entry, parts)
+    inside = reading.table(below, "internal")
+    for use in USES:
+        for _, entry, parts in reading.elements(inside, use):
+            yield _use(use, None, entry, parts, internal=True)
+
+
+def _use(use: Use, port: str | None, entry: Entry, parts: Table, *, internal: bool = False) -> PortUse:
+    named = reading.scalars(parts, "topic" if use in {"publishes", "subscribes"} else "name")
+    return PortUse(
+        use=use,
+        key=entry.key,
+        port=port,
+        topics=tuple(written.text for written in named),
+        message=reading.message(parts),
+        qos=_qos(use, parts),
+        internal=internal,
+        at=entry.at,
+        message_at=reading.place(parts, "message"),
+        topic_places=tuple(written.at for written in named),
+    )
+
+
+def _qos(use: Use, parts: Table) -> Qos | None:
+    """Lay the values that are written over those of the profile."""
+    below = reading.table(parts, "qos")
+    if not below.entries:
+        return None
+    values: dict[str, object] = {
+        key: reading.text(below, key)
+        for key in ("reliability", "durability", "history", "liveliness")
+        if reading.scalar(below, key)
+    }
+    values |= {key: reading.measure(below, key, "duration") for key in _DURATIONS if reading.scalar(below, key)}
+    if reading.scalar(below, "depth"):
+        values["depth"] = reading.whole(below, "depth")
+    base = profile(reading.text(below, "profile") or "default", use)
+    return replace(base, **values, written=True, at=reading.place(parts, "qos"))  # type: ignore[arg-type]

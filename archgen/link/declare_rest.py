@@ -1,0 +1,183 @@
+"""What stands around groups and nodes: partners, requirements, hosts, links, chains, views, policies, the project."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.diagnostic import Diagnostic
+from archgen.link import reading
+from archgen.link.references import References
+from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
+from archgen.model.deployment import Container, Host, Link
+from archgen.syntax.tree import Entry, Table
+
+_WAY = ("node", "component", "output")
+
+
+def project(root: Table, default_id: str, default_title: str) -> ProjectInfo:
+    """Say what the project says of itself."""
+    below = reading.table(root, "project")
+    entry = root.entries.get("project")
+    return ProjectInfo(
+        id=reading.text(below, "id") or default_id,
+        title=reading.text(below, "title") or default_title,
+        version=reading.text(below, "version"),
+        description=reading.text(below, "description"),
+        **({"at": entry.at} if entry else {}),
+    )
+
+
+def partners(root: Table) -> dict[str, Partner]:
+    """Declare the partners."""
+    return {
+        name: Partner(name, reading.title(below, name), reading.text(below, "description"), at=entry.at)
+        for name, entry, below in reading.elements(root, "partners")
+    }
+
+
+def use_cases(root: Table) -> dict[str, UseCase]:
+    """Declare the use cases. Their ids are their titles where none is written."""
+    return {
+        name: UseCase(name, reading.text(below, "title") or name, reading.text(below, "description"), entry.at)
+        for name, entry, below in reading.elements(root, "use_cases")
+    }
+
+
+def requirements(root: Table, references: References) -> dict[str, Requirement]:
+    """Declare the requirements."""
+    return {
+        name: Requirement(
+            id=name,
+            title=reading.text(below, "title") or name,
+            description=reading.text(below, "description"),
+            use_cases=tuple(_known(below, "use_cases", "use case", references, name)),
+            tags=reading.texts(below, "tags"),
+            urls=reading.words(below, "urls"),
+            at=entry.at,
+        )
+        for name, entry, below in reading.elements(root, "requirements")
+    }
+
+
+def _known(below: Table, key: str, kind: str, references: References, element: str) -> Iterator[str]:
+    """Give the plain ids of a list that are declared, each once."""
+    named = (references.plain(written, kind, element) for written in reading.scalars(below, key))
+    return iter(dict.fromkeys(name for name in named if name))
+
+
+def hosts(root: Table) -> dict[str, Host]:
+    """Declare the hosts."""
+    return {
+        name: Host(
+            id=name,
+            title=reading.title(below, name),
+            cores=reading.whole(below, "cores"),
+            description=reading.text(below, "description"),
+            tags=reading.texts(below, "tags"),
+            at=entry.at,
+        )
+        for name, entry, below in reading.elements(root, "hosts")
+    }
+
+
+def containers(root: Table, references: References) -> dict[str, Container]:
+    """Declare the containers."""
+    return {
+        name: Container(
+            id=name,
+            title=reading.title(below, name),
+            host=references.plain(reading.scalar(below, "host"), "host", name),
+            threads=reading.whole(below, "threads"),
+            at=entry.at,
+        )
+        for name, entry, below in reading.elements(root, "containers")
+    }
+
+
+def links(root: Table, references: References) -> dict[str, Link]:
+    """Declare the links between hosts."""
+    found: dict[str, Link] = {}
+    for name, entry, below in reading.elements(root, "links"):
+        latency = reading.table(below, "latency")
+        _needs(below, entry, "link", references)
+        found[name] = Link(
+            id=name,
+            title=reading.title(below, name),
+            connects=tuple(_known(below, "connects", "host", references, name)),
+            bandwidth=reading.measure(below, "bandwidth", "bandwidth"),
+            best=reading.measure(latency, "best", "duration"),
+            worst=reading.measure(latency, "worst", "duration"),
+            at=entry.at,
+        )
+    return found
+
+
+def chains(root: Table, references: References) -> dict[str, Chain]:
+    """Declare the chains of effect."""
+    found: dict[str, Chain] = {}
+    for name, entry, below in reading.elements(root, "chains"):
+        _needs(below, entry, "chain", references)
+        through = (
+            (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
+        )
+        found[name] = Chain(
+            id=name,
+            title=reading.title(below, name),
+            through=tuple(Waypoint(e.kind, e.id, at) for e, at in through if e),  # type: ignore[arg-type]
+            deadline=reading.measure(below, "deadline", "duration"),
+            requirements=reading.texts(below, "requirements"),
+            at=entry.at,
+        )
+    return found
+
+
+def views(root: Table, references: References) -> dict[str, View]:
+    """Declare the views; merging has reported one that does not say what it shows."""
+    found: dict[str, View] = {}
+    for name, entry, below in reading.elements(root, "views"):
+        if below.get("show") is None:
+            continue
+        level = reading.text(below, "level")
+        found[name] = View(
+            id=name,
+            title=reading.title(below, name),
+            show=reading.text(below, "show") or "",
+            colour=reading.text(below, "colour"),
+            level="implementation" if level == "implementation" else "functional",
+            layout=reading.layout(below),
+            at=entry.at,
+            show_at=reading.place(below, "show"),
+        )
+    return found
+
+
+def policies(root: Table, references: References) -> dict[str, Policy]:
+    """Declare the policies; merging has reported one that does not say what it forbids."""
+    found: dict[str, Policy] = {}
+    for name, entry, below in reading.elements(root, "policies"):
+        forbid = reading.table(below, "forbid")
+        if forbid.get("from") is not None and forbid.get("to") is not None:
+            found[name] = Policy(
+                id=name,
+                title=reading.title(below, name),
+                forbid_from=reading.text(forbid, "from") or "",
+                forbid_to=reading.text(forbid, "to") or "",
+                at=entry.at,
+                from_at=reading.place(forbid, "from"),
+                to_at=reading.place(forbid, "to"),
+            )
+    return found
+
+
+_NEEDS = {
+    "link": ("connects", "write the hosts that it joins, such as `connects: [onboard_pc, arm_pc]`"),
+    "chain": ("through", "write its elements in order, such as `through: [camera, planner, drive]`"),
+}
+"""What an element of each kind cannot do without, once all slices are together."""
+
+
+def _needs(below: Table, entry: Entry, kind: str, references: References) -> None:
+    key, cure = _NEEDS[kind]
+    if below.get(key) is None:
+        message = f"the {kind} `{entry.key}` has no `{key}`"
+        references.found.append(Diagnostic("missing-key", message, entry.at, help=cure, element=entry.key))

@@ -1,0 +1,78 @@
+"""Conceptual types: the project's, and those that its ports use beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from archgen.diagnostic import Diagnostic, Label
+from archgen.link import reading
+from archgen.model.mapping import Type, full_message
+from archgen.syntax.tree import Entry, Table
+
+
+def declare_types(
+    root: Table, used: Iterable[str], shipped: Mapping[str, Type], found: list[Diagnostic]
+) -> dict[str, Type]:
+    """Give every type that is declared or used, by its name: the project's, else the shipped one, else the name's own."""
+    types: dict[str, Type] = {}
+    for _, entry, below in reading.elements(root, "types"):
+        declared = _declared(entry, below)
+        earlier = types.setdefault(declared.name, declared)
+        if earlier is not declared:
+            found.append(_twice(declared, earlier))
+    waiting = [*reversed([name for one in types.values() for name in _inside(one)])]
+    names = iter(used)
+    while True:
+        name = waiting.pop() if waiting else next(names, None)
+        if name is None:
+            return types
+        if name not in types:
+            types[name] = _from_outside(name, shipped)
+            waiting += _inside(types[name])
+
+
+def _declared(entry: Entry, below: Table) -> Type:
+    name = reading.type_name(entry.key)
+    status = reading.text(below, "status")
+    return Type(
+        name=name,
+        message=reading.message(below) or full_message(name),
+        comment=reading.text(below, "comment"),
+        size=reading.measure(below, "size", "size"),
+        status=status if status in {"existing", "planned"} else None,  # type: ignore[arg-type]
+        request=_other(below, "request"),
+        response=_other(below, "response"),
+        feedback=_other(below, "feedback"),
+        at=entry.at,
+        message_at=reading.place(below, "message"),
+    )
+
+
+def _other(below: Table, key: str) -> str | None:
+    written = reading.text(below, key)
+    return reading.type_name(written) if written else None
+
+
+def _inside(one: Type) -> Iterator[str]:
+    """Name the types that a service or action carries: they count as used."""
+    return (name for name in (one.request, one.response, one.feedback) if name)
+
+
+def _from_outside(name: str, shipped: Mapping[str, Type]) -> Type:
+    message = full_message(name)
+    if message:
+        return Type(name, message, origin="message")
+    known = shipped.get(name)
+    return replace(known, name=name, origin="shipped") if known else Type(name)
+
+
+def _twice(second: Type, first: Type) -> Diagnostic:
+    return Diagnostic(
+        "conflicting-values",
+        f"the type `{second.name}` is declared twice: blanks and the way letters are composed do not count",
+        second.at,
+        labels=(Label(first.at, "declared here"),),
+        help="keep one of them",
+        element=second.name,
+    )

@@ -1,0 +1,248 @@
+"""Follow references: what a dotted path means, and what to say where it means nothing, or several things."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from archgen.diagnostic import Diagnostic, Label
+from archgen.model.names import Found, Named, Names
+from archgen.source import NOWHERE, Span
+from archgen.suggest import closest
+from archgen.syntax.tree import Scalar
+
+_DEPTH = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
+_GUESSES = 300_000
+"""How many names are compared with mistyped ones in one run: some dozen guesses among the names of 10,000 components, as
+many as anybody needs in a project of usual size. What comes later is reported without a guess.
+"""
+
+
+@dataclass(slots=True)
+class References:
+    """All that can be referred to, where it was declared, and what is wrong with the references followed so far."""
+
+    places: Mapping[str, Mapping[str, Span]]
+    """By kind and complete id: what dotted paths name."""
+    plain_places: Mapping[str, Mapping[str, Span]]
+    """By kind and id: what is named by its id alone (`partner`, `host`, `container`, `use case`)."""
+    found: list[Diagnostic]
+    lost: frozenset[str] = frozenset()
+    """The keys in files that could not be read: nobody is told that what they declare does not exist."""
+    implements: Mapping[str, Collection[str]] = field(default_factory=dict)
+    """The components of each node, once they are known."""
+    names: Names = field(init=False)
+    _left: int = _GUESSES
+    _pools: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.names = Names(self.places)
+
+    def follow(self, written: Scalar, kinds: Sequence[str], element: str, component: str | None = None) -> Named | None:
+        """Give what a reference means; None, and a finding, where that is not clear. `component` is who writes it."""
+        words = written.text
+        result = self.names.find(words, kinds, component=component)
+        one = result.one
+        if result.count > 1:
+            self.found.append(self._ambiguous(written, result, element))
+        elif one is None and not self.is_lost(words):
+            self.found.append(self._unknown(written, kinds, element, component))
+        elif one and result.hidden:
+            self._warn_hidden(written, one, result.hidden, element)
+        return one
+
+    def plain(self, written: Scalar | None, kind: str, element: str) -> str | None:
+        """Give a plain id (of a partner, a host, ...); None, and a finding, where there is no such element."""
+        known = self.plain_places[kind]
+        if written is None or written.text in known:
+            return written.text if written else None
+        if self.is_lost(written.text):
+            return None
+        guess = self.guess(written.text, known)
+        self.found.append(unknown(written, kind, guess, known.get(guess or "", NOWHERE), element))
+        return None
+
+    def is_lost(self, words: str) -> bool:
+        """Tell whether a file that could not be read may declare what a path names."""
+        return words.rpartition(".")[2] in self.lost
+
+    def guess(self, word: str, pool: Collection[str]) -> str | None:
+        """Guess what a word stands for, as long as guessing is cheap enough."""
+        if len(pool) > self._left:
+            return None
+        self._left -= len(pool)
+        return closest(word, pool)
+
+    def _ambiguous(self, written: Scalar, result: Found, element: str) -> Diagnostic:
+        listed = [f"`{name.id}`" for name in result.elements]
+        more = result.count - len(listed)
+        last = f"{more} more" if more else listed.pop()
+        return Diagnostic(
+            "ambiguous-reference",
+            f"`{written.text}` can mean {', '.join(listed)} or {last}",
+            written.at,
+            labels=tuple(Label(self._place(name), f"`{name.id}`") for name in result.elements),
+            help=f"write more of the path, such as `{result.elements[0].id}`",
+            element=element,
+        )
+
+    def _unknown(self, written: Scalar, kinds: Sequence[str], element: str, component: str | None) -> Diagnostic:
+        words = written.text
+        what = _possible(kinds, words.count(".") + 1)
+        own = f"{component}.{words}"
+        if component and (own in self.places["output"] or component.endswith(f".{words}")):
+            path = ".".join(own.split(".")[1:]) if own in self.places["output"] else component
+            help_line = (
+                f"one word never means the component that writes it or its own output: write `{path}` for a loop"
+            )
+            return Diagnostic(
+                "unknown-reference", f"no other {what} named `{words}`", written.at, help=help_line, element=element
+            )
+        inputs = self.names.ending("input", words)
+        if "output" in kinds and inputs:
+            label = (Label(self.places["input"][inputs[0]], "an input"),)
+            message = f"no {what} named `{words}`: `{inputs[0]}` is an input"
+            help_line = "name the output that the data comes from"
+            return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
+        guess = self._guess_path(words, kinds)
+        meant = self.names.find(guess, kinds, component=component).one if guess else None
+        return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
+
+    def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
+        others = [name for name in hidden if name.id not in self.implements.get(one.id, ())]
+        if others:
+            self.found.append(
+                Diagnostic(
+                    "hidden-reference",
+                    f"`{written.text}` is the {one.kind} `{one.id}`, which hides the {others[0].kind} `{others[0].id}`",
+                    written.at,
+                    labels=tuple(Label(self._place(name), "hidden") for name in others),
+                    help=f"write `{others[0].id}` if that is meant",
+                    element=element,
+                )
+            )
+
+    def _guess_path(self, words: str, kinds: Sequence[str]) -> str | None:
+        """Guess first among paths with the same last word, then among all of this length, then elsewhere by its end."""
+        length = words.count(".") + 1
+        fitting = [kind for kind in kinds if _DEPTH[kind] >= length]
+        last = words.rpartition(".")[2]
+        near = {_end(path, length) for kind in fitting for path in self.names.ending(kind, last)}
+        guess = self.guess(words, near) if length > 1 and near else None
+        if guess is None:
+            pool = set().union(*(self._pool(kind, length) for kind in fitting)) if fitting else ()
+            guess = self.guess(words, pool)
+        while guess is None and "." in words:
+            words = words.partition(".")[2]
+            moved = self.names.find(words, kinds).one
+            guess = moved.id if moved else None
+        return guess
+
+    def _pool(self, kind: str, length: int) -> tuple[str, ...]:
+        key = (kind, length)
+        if key not in self._pools:
+            self._pools[key] = tuple(path for path in self.names.ends(kind) if path.count(".") == length - 1)
+        return self._pools[key]
+
+    def _place(self, name: Named) -> Span:
+        return self.places[name.kind][name.id]
+
+
+def unknown(written: Scalar, what: str, guess: str | None, declared: Span, element: str) -> Diagnostic:
+    """Say that there is no such element, and what may have been meant."""
+    return Diagnostic(
+        "unknown-reference",
+        f"no {what} named `{written.text}`",
+        written.at,
+        labels=(Label(declared, "declared here"),) if guess and declared != NOWHERE else (),
+        help=f"did you mean `{guess}`?" if guess else None,
+        element=element,
+    )
+
+
+def _possible(kinds: Sequence[str], length: int) -> str:
+    """Name the kinds that a path of this length can mean."""
+    possible = [kind for kind in kinds if _DEPTH[kind] >= length] or [kinds[-1]]
+    return " or ".join(filter(None, (", ".join(possible[:-1]), possible[-1])))
+
+
+def _end(path: str, length: int) -> str:
+    return ".".join(path.split(".")[-length:])
+
+
+@dataclass(slots=True)
+class Ports:
+    """The ports of one component, or of all components that a node implements, for the keys that name them."""
+
+    references: References
+    owner: str
+    """The element whose keys they are, for findings."""
+    components: tuple[str, ...]
+    names: Names
+    free: bool = False
+    """The node implements nothing: its keys are names of its own."""
+
+    def follow(self, words: str, at: Span, kind: str) -> str | None:
+        """Give the complete id of the port (`input` or `output`) that a key means."""
+        if not self.components:  # what it implements is not known: that is reported already
+            return words if self.free else None
+        result = self.names.find(words, (kind,))
+        if result.count == 1:
+            return result.elements[0].id
+        if result.count:
+            self.references.found.append(self._ambiguous(words, at, result))
+        elif not self.references.is_lost(words):
+            self.references.found.append(self._unknown(words, at, kind))
+        return None
+
+    def _ambiguous(self, words: str, at: Span, result: Found) -> Diagnostic:
+        listed = " or ".join(f"`{_end(name.id, 2)}`" for name in result.elements)
+        return Diagnostic(
+            "ambiguous-reference",
+            f"`{words}` can mean {listed}",
+            at,
+            labels=tuple(Label(self._place(name), f"`{name.id}`") for name in result.elements),
+            help="write `component.port` where several components of a node have a port of this name",
+            element=self.owner,
+        )
+
+    def _unknown(self, words: str, at: Span, kind: str) -> Diagnostic:
+        other = "input" if kind == "output" else "output"
+        wrong_way = self.names.find(words, (other,)).elements
+        message = f"no {kind} named `{words}` in {' or '.join(f'`{c}`' for c in self.components[:3])}"
+        if wrong_way:
+            label = Label(self._place(wrong_way[0]), f"an {other}")
+            return Diagnostic(
+                "unknown-reference", message, at, labels=(label,), help=f"`{words}` is an {other}", element=self.owner
+            )
+        guess = self.references.guess(words, tuple(self.names.ends(kind)))
+        meant = self.names.find(guess, (kind,)).one if guess else None
+        labels = (Label(self._place(meant), "declared here"),) if meant else self._declared()
+        help_line = f"did you mean `{guess}`?" if guess else None
+        return Diagnostic("unknown-reference", message, at, labels=labels, help=help_line, element=self.owner)
+
+    def _declared(self) -> tuple[Label, ...]:
+        places = self.references.places["component"]
+        return tuple(Label(places[component], "declared here") for component in self.components[:3])
+
+    def _place(self, name: Named) -> Span:
+        return self.references.places[name.kind][name.id]
+
+
+def ports_of(
+    references: References,
+    owner: str,
+    components: Iterable[str],
+    ports: Mapping[str, Mapping[str, Iterable[str]]],
+    *,
+    free: bool = False,
+) -> Ports:
+    """Gather the ports of some components. `ports` has the names of the inputs and outputs of each, by kind."""
+    members = tuple(components)
+    ids = {kind: list(_complete(members, names)) for kind, names in ports.items()}
+    return Ports(references, owner, members, Names(ids), free)
+
+
+def _complete(components: Iterable[str], names: Mapping[str, Iterable[str]]) -> Iterator[str]:
+    for component in components:
+        yield from (f"{component}.{name}" for name in names.get(component, ()))

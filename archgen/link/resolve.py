@@ -1,0 +1,84 @@
+"""What a reference in `from` brings: the outputs that it stands for, as connections and edges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from archgen.link import reading
+from archgen.link.outline import Outline
+from archgen.link.references import References
+from archgen.model.architecture import Edge
+from archgen.model.component import Connection, Input, Output
+from archgen.model.mapping import Type, flow_of
+from archgen.model.names import Named
+from archgen.syntax.tree import Entry, Scalar
+
+_SOURCES = ("group", "component", "output")
+
+
+@dataclass(slots=True)
+class Wiring:
+    """Connections as they are made."""
+
+    outline: Outline
+    references: References
+    types: Mapping[str, Type]
+    connections: list[Connection] = field(default_factory=list)
+    edges: list[Edge] = field(default_factory=list)
+    _brought: dict[str, tuple[Output, ...]] = field(default_factory=dict)
+
+    def input(self, component: str, entry: Entry) -> Input:
+        """Declare an input and connect it."""
+        below = reading.body(entry)
+        complete = f"{component}.{entry.key}"
+        made = tuple(self._connect(component, complete, written) for written in reading.scalars(below, "from"))
+        connections = tuple(connection for connection in made if connection)
+        self.connections += connections
+        pairs = {output: connection.at for connection in reversed(connections) for output in connection.outputs}
+        order = dict.fromkeys(output for connection in connections for output in connection.outputs)
+        self.edges += [Edge(output, complete, pairs[output]) for output in order]
+        written_type = reading.text(below, "type")
+        return Input(
+            id=complete,
+            name=entry.key,
+            component=component,
+            connections=connections,
+            external=reading.text(below, "external"),
+            physical=reading.text(below, "medium") == "physical",
+            type=reading.type_name(written_type) if written_type else None,
+            optional=reading.flag(below, "optional"),
+            description=reading.text(below, "description"),
+            from_written=below.get("from") is not None,
+            at=entry.at,
+            type_at=reading.place(below, "type"),
+        )
+
+    def _connect(self, component: str, complete: str, written: Scalar) -> Connection | None:
+        target = self.references.follow(written, _SOURCES, component, component)
+        if target is None:
+            return None
+        outputs = tuple(self._outputs(target, component))
+        return Connection(complete, written.text, target.kind, target.id, outputs, written.at)  # type: ignore[arg-type]
+
+    def _outputs(self, target: Named, reader: str) -> Iterator[str]:
+        """Name what a reference stands for: one output, or all that carry messages, except the reader's own."""
+        if target.kind == "output":
+            yield target.id
+            return
+        if target.id not in self._brought:
+            self._brought[target.id] = tuple(self._carrying_messages(target))
+        yield from (output.id for output in self._brought[target.id] if output.component != reader)
+
+    def _carrying_messages(self, target: Named) -> Iterator[Output]:
+        members = (
+            reading.table(reading.body(self.outline.groups[target.id]), "components")
+            if target.kind == "group"
+            else None
+        )
+        components = [target.id] if members is None else [f"{target.id}.{name}" for name in members.entries]
+        for component in components:
+            for output in self.outline.outputs[component].values():
+                mapped = self.types.get(output.type or "")
+                if not output.physical and flow_of(mapped.message if mapped else None) == "topic":
+                    yield output
