@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from archgen.link import merge, rules
+from archgen.link.chapters import MISSING_CHAPTER
 from archgen.link.declare import link
-from archgen.link.rules import RULES
+
+RULES = (*merge.RULES, *rules.RULES, MISSING_CHAPTER)
 
 __all__ = ["RULES", "link"]

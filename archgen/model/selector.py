@@ -16,9 +16,10 @@ from fnmatch import translate
 from functools import cache
 from typing import Literal
 
+from archgen.model import graph
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.graph import Flow, flow, reach
+from archgen.model.graph import Graph, reach
 from archgen.model.mapping import full_message
 from archgen.suggest import closest
 
@@ -188,12 +189,12 @@ class _Run:
         self.findings = findings
         self.problems: list[Problem] = []
         self.refused: set[str] = set()
-        self._flow: Flow | None = None
+        self._flow: Graph | None = None
 
     @property
-    def flow(self) -> Flow:
+    def flow(self) -> Graph:
         """Read the flow off the architecture once, when a word first asks for it."""
-        self._flow = self._flow or flow(self.architecture)
+        self._flow = self._flow or graph.components(self.architecture)
         return self._flow
 
     def term(self, term: _Term) -> tuple[frozenset[str], frozenset[str]]:
@@ -201,14 +202,14 @@ class _Run:
         components, nodes = self.atom(term.atom)
         if term.to is not None:
             ends, _ = self.atom(term.to)
-            components = reach(components, self.flow.feeds) & reach(ends, self.flow.fed_by)
+            components = frozenset(reach(self.flow.after, components)) & frozenset(reach(self.flow.before, ends))
             nodes = frozenset()
         else:
             found = set(components)
             if term.up is not None:
-                found |= reach(components, self.flow.fed_by, None if term.up < 0 else term.up)
+                found |= reach(self.flow.before, components, None if term.up < 0 else term.up).keys()
             if term.down is not None:
-                found |= reach(components, self.flow.feeds, None if term.down < 0 else term.down)
+                found |= reach(self.flow.after, components, None if term.down < 0 else term.down).keys()
             components = frozenset(found)
         if term.negative:
             self.refused |= nodes

@@ -16,7 +16,11 @@ def crossings(lines: Sequence[Line]) -> int:
     """Count the crossings of all pairs of lines."""
     paths = [_segments(line) for line in lines]
     return sum(
-        _cross(one, other) for at, first in enumerate(paths) for second in paths[at + 1 :] for one in first for other in second
+        _cross(one, other)
+        for at, first in enumerate(paths)
+        for second in paths[at + 1 :]
+        for one in first
+        for other in second
     )
 
 

@@ -87,7 +87,12 @@ class _Run:
     """What the threads share: each holds one worker process and takes the next task when its last one is done."""
 
     def __init__(
-        self, tasks: Sequence[Task], progress: Progress | None, timeout: float, start: Command, environment: dict[str, str]
+        self,
+        tasks: Sequence[Task],
+        progress: Progress | None,
+        timeout: float,
+        start: Command,
+        environment: dict[str, str],
     ) -> None:
         self.done: dict[int, Picture] = {}
         self.missing = ""

@@ -139,7 +139,14 @@ def placed(layout: dict[str, Any], boxes: dict[str, Attributes], arrows: dict[st
     names = {item["_gvid"]: item["name"] for item in objects}
     parts = tuple(_part(item, boxes[item["name"]]) for item in objects if item["name"] in boxes)
     lines = tuple(
-        Line(item["id"][1:], arrows[item["id"]][0], names[item["tail"]], names[item["head"]], arrows[item["id"]][1], item["pos"])
+        Line(
+            item["id"][1:],
+            arrows[item["id"]][0],
+            names[item["tail"]],
+            names[item["head"]],
+            arrows[item["id"]][1],
+            item["pos"],
+        )
         for item in layout.get("edges", [])
         if item.get("id") in arrows and "pos" in item
     )

@@ -57,9 +57,7 @@ def _outer(component: str, side: str, *, fold: bool) -> str:
     return side + (component.split(".", 1)[0] if fold else component)
 
 
-def _neighbours(
-    view: Index, placed: Sequence[tuple[Flow, str, str]], mine: set[str], *, fold: bool
-) -> Iterable[Box]:
+def _neighbours(view: Index, placed: Sequence[tuple[Flow, str, str]], mine: set[str], *, fold: bool) -> Iterable[Box]:
     names = dict.fromkeys(end for _, tail, head in placed for end in (tail, head) if end not in mine)
     for name in names:
         side = "left" if name[0] == "<" else "right"
