@@ -22,8 +22,8 @@ from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
 from archgen.views.shapes import Graph
 
-Progress = Callable[[str, int, int], None]
-"""Told what is being done, how many are done, of how many."""
+Progress = Callable[[int, int], None]
+"""Told how many pictures are drawn, of how many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Ask:
 
     selection: Selection | None = None
     words: str = ""
-    level: Level = "implementation"
+    level: Level | None = None
     revision: str | None = None
     progress: Progress | None = None
     warn: Callable[[str], None] = lambda _text: None
@@ -174,7 +174,7 @@ def _make(checked: Checked, ask: Ask) -> _Made:
         drawn = {name: graph for name, graph in drawn.items() if not _is_low(name)}
     edition = Edition(
         revision=revision(checked.root, checked.all_files) if ask.revision is None else ask.revision,
-        level=ask.level,
+        level=ask.level or "implementation",
         chapters=checked.chapters.order,
         texts=checked.chapters.texts,
         graphs=drawn,

@@ -136,7 +136,8 @@ def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagno
     texts, diagnostics = definitions(loaded)
     ros = merged.get("ros")
     inline = ros.get("definitions") if isinstance(ros, Table) else None
-    written = {e.key: (e.value.text, e.value.at) for e in inline or () if isinstance(e.value, Scalar)}
+    entries = inline if isinstance(inline, Table) else ()
+    written = {e.key: (e.value.text, e.value.at) for e in entries if isinstance(e.value, Scalar)}
     known, found = interfaces.load(loaded.distro, tuple(texts.items()), written)
     return known, (*diagnostics, *found)
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import options, run
+
+if TYPE_CHECKING:
+    from archgen.views.report import Level
 
 
 @click.command("build")
@@ -34,7 +38,7 @@ def command(  # noqa: PLR0913 - one for each option
     backend: tuple[str, ...],
     template: Path | None,
     select: str | None,
-    level: str | None,
+    level: Level | None,
     revision: str | None,
     keep_going: bool,
 ) -> None:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import options, run
+
+if TYPE_CHECKING:
+    from archgen.views.report import Level
 
 FORMATS = ("svg", "png", "pdf", "dot")
 
@@ -38,7 +42,7 @@ def command(  # noqa: PLR0913 - one for each option
     forms: str,
     only: tuple[str, ...],
     select: str | None,
-    level: str | None,
+    level: Level | None,
     keep_going: bool,
 ) -> None:
     """Draw the architecture of PROJECT: overview, groups, components, ROS graph, hosts, views.

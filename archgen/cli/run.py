@@ -76,7 +76,7 @@ def selected(checked: Checked, words: str | None) -> Selection | None:
     selection, problems = outputs.select(checked, words)
     for problem in problems:
         click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
-    if any(problem.severity == Severity.ERROR for problem in problems):
+    if any(problem.severity == "error" for problem in problems):
         msg = f"the selector '{visible(words)}' cannot be used"
         raise click.UsageError(msg)
     return selection
@@ -125,19 +125,19 @@ def wrote(path: Path, detail: str = "") -> None:
     click.echo(f"wrote {shown}{f' ({detail})' if detail else ''}")
 
 
-def progress() -> Callable[[str, int, int], None] | None:
-    """Give a function that shows progress on a terminal (what, done, of how many), or None in a pipe."""
+def progress() -> Callable[[int, int], None] | None:
+    """Give a function that shows on a terminal how many pictures are drawn, of how many; None in a pipe."""
     if not sys.stderr.isatty():
         return None
     last = [0.0]
 
-    def show(what: str, done: int, total: int) -> None:
+    def show(done: int, total: int) -> None:
         now = time.monotonic()
         if done < total and now - last[0] < 0.1:  # noqa: PLR2004 - ten times a second is enough for the eye
             return
         last[0] = now
         end = "\r\x1b[K" if done >= total else ""
-        sys.stderr.write(f"\r\x1b[K{what}: {done} of {total}{end}")
+        sys.stderr.write(f"\r\x1b[Kdrawing: {done} of {total}{end}")
         sys.stderr.flush()
 
     return show

@@ -18,7 +18,7 @@ from typing import Literal
 
 from archgen.model import graph
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component
+from archgen.model.component import Component, Input, Output
 from archgen.model.graph import Graph, reach
 from archgen.model.mapping import full_message
 from archgen.suggest import closest
@@ -111,10 +111,9 @@ def select(
 
 def parse(text: str) -> tuple[tuple[_Term, ...], tuple[Problem, ...]]:
     """Take a selector apart, without looking anything up."""
-    terms, problems = [], []
-    for match in _WORD.finditer(text):
-        word = _word(match[0], match.start())
-        (problems if isinstance(word, Problem) else terms).append(word)  # type: ignore[arg-type]
+    words = [_word(match[0], match.start()) for match in _WORD.finditer(text)]
+    problems = [word for word in words if isinstance(word, Problem)]
+    terms = [word for word in words if isinstance(word, _Term)]
     if not terms and not problems:
         problems.append(Problem("the selector is empty", 0, len(text)))
     return tuple(terms), tuple(problems)
@@ -321,13 +320,13 @@ def _type(run: _Run, value: str) -> Found:
     a = run.architecture
     message = full_message(value)
     names = {t.name for t in a.types.values() if t.name == value or (message and t.message == message)}
-    ports = [*a.outputs.values(), *(port for port in a.inputs.values() if port.type)]
+    ports: list[Input | Output] = [*a.outputs.values(), *(port for port in a.inputs.values() if port.type)]
     readers = [edge.input for edge in a.edges if a.outputs[edge.output].type in names]
     return {p.component for p in ports if p.type in names} | {a.inputs[name].component for name in readers}, ()
 
 
 def _medium(component: Component, value: str) -> bool:
-    ports = (*component.inputs.values(), *component.outputs.values())
+    ports: tuple[Input | Output, ...] = (*component.inputs.values(), *component.outputs.values())
     return any(("physical" if port.physical else "digital") == value for port in ports)
 
 

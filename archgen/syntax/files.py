@@ -48,6 +48,16 @@ def read(root: Path, file: str) -> Text:
     return _decode(file, data)
 
 
+def read_bytes(root: Path, file: str) -> bytes | None:
+    """Read a picture or the like from inside `root`; None where no regular file of a sane size lies there."""
+    path = root / file
+    try:
+        data = _bytes(path) if _inside(root, path) else ""
+    except (OSError, ValueError):
+        return None
+    return data if isinstance(data, bytes) and len(data) <= MAX_BYTES else None
+
+
 def _inside(root: Path, path: Path) -> bool:
     return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(root))
 
