@@ -5,7 +5,19 @@ from __future__ import annotations
 from archgen.model.component import Component, Group, Input, Output
 from archgen.views import words
 from archgen.views.index import Index
-from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Facts,
+    Figure,
+    Inlines,
+    Markdown,
+    Paragraph,
+    Table,
+    Text,
+    without_empty_columns,
+)
 
 
 def group_blocks(view: Index, group: Group) -> tuple[Block, ...]:
@@ -140,7 +152,8 @@ def _inputs(view: Index, component: Component) -> list[Block]:
         for port in component.inputs.values()
     )
     columns = (Column("Input"), Column("From", 1.9), Column("Type", 1.2), Column("Medium", 0.8), Column("Remarks", 1.3))
-    return [Table(f"table:inputs/{component.id}", f"{component.title}: inputs", columns, rows)]
+    table = Table(f"table:inputs/{component.id}", f"{component.title}: inputs", columns, rows)
+    return [without_empty_columns(table)]
 
 
 def _outputs(view: Index, component: Component) -> list[Block]:
@@ -152,7 +165,8 @@ def _outputs(view: Index, component: Component) -> list[Block]:
         for port in component.outputs.values()
     )
     columns = (Column("Output"), Column("Type", 1.2), Column("To", 1.9), Column("Medium", 0.8), Column("Remarks", 1.3))
-    return [Table(f"table:outputs/{component.id}", f"{component.title}: outputs", columns, rows)]
+    table = Table(f"table:outputs/{component.id}", f"{component.title}: outputs", columns, rows)
+    return [without_empty_columns(table)]
 
 
 def _name(port: Input | Output) -> Inlines:
@@ -206,5 +220,6 @@ def _medium(port: Input | Output) -> Inlines:
 
 
 def _remarks(port: Input | Output) -> Inlines:
-    remarks = ["optional"] if isinstance(port, Input) and port.optional else []
-    return words.text("; ".join([*remarks, port.description] if port.description else remarks))
+    optional = "optional" if isinstance(port, Input) and port.optional else ""
+    remarks = "; ".join(part for part in (optional, port.description) if part)
+    return words.text(remarks) if remarks else ()

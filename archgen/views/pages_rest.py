@@ -13,7 +13,20 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.views import tables, words
 from archgen.views.functional import component_table
 from archgen.views.index import Index
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Page, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Facts,
+    Inlines,
+    Markdown,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    without_empty_columns,
+)
 
 Drawn = Callable[[Iterable[Block]], tuple[Block, ...]]
 _HOME = ("Overview", "page:index")
@@ -107,28 +120,33 @@ def node_table(view: Index, nodes: list[Node], component: Component | None = Non
     """List nodes with what they implement, their package, status and place."""
     if not nodes:
         return []
-    found = view.architecture
+    found, own = view.architecture, component.id if component else None
     rows = tuple(
         (
             words.text(words.node_link(node)),
-            words.joined((words.component_link(found.components[c]),) for c in node.implements),
+            words.joined((words.component_link(found.components[c]),) for c in node.implements if c != own),
             words.maybe(node.package),
             words.maybe(node.status),
             words.text(Text(node.host, ref=f"host:{node.host}")) if node.host else words.UNKNOWN,
-            words.text("; ".join(filter(None, (words.short_timing(t) for t in node.timing.values())))),
+            _timing(node),
         )
         for node in nodes
     )
     columns = (
         Column("Node", 1.2),
-        Column("Implements", 1.5),
+        Column("Implements too" if component else "Implements", 1.5),
         Column("Package", 1.3),
         Column("Status", 0.7),
         Column("Host", 0.8),
         Column("Timing"),
     )
-    name, caption = (component.id, f"Nodes of {component.title}") if component else ("all", "All nodes")
-    return [Table(f"table:nodes/{name}", caption, columns, rows)]
+    name, caption = (component.id, f"Nodes of {component.title}") if component else ("all", "Nodes")
+    return [without_empty_columns(Table(f"table:nodes/{name}", caption, columns, rows))]
+
+
+def _timing(node: Node) -> Inlines:
+    said = "; ".join(short for timing in node.timing.values() if (short := words.short_timing(timing)))
+    return words.text(said) if said else ()
 
 
 def _type(view: Index, mapped: Type) -> Page:

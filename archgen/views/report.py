@@ -56,7 +56,7 @@ def title_facts(view: Index, edition: Edition) -> Iterator[tuple[str, Inlines]]:
     if view.architecture.distro:
         yield "ROS distribution", words.text(view.architecture.distro)
     if view.architecture.partners:
-        yield "Partners", words.joined(words.text(partner.title) for partner in view.architecture.partners.values())
+        yield "Partners", words.lines(words.text(partner.title) for partner in view.architecture.partners.values())
 
 
 def notices(view: Index, edition: Edition) -> tuple[Paragraph, ...]:

@@ -62,6 +62,16 @@ class Table:
     """It has a caption with a number and stands in the list of tables."""
 
 
+def without_empty_columns(table: Table) -> Table:
+    """Drop the columns in which no row says anything; the first one stays."""
+    kept = [place for place in range(len(table.columns)) if place == 0 or any(row[place] for row in table.rows)]
+    return dataclasses.replace(
+        table,
+        columns=tuple(table.columns[place] for place in kept),
+        rows=tuple(tuple(row[place] for place in kept) for row in table.rows),
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Box:
     """A box of a graph.
