@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from archgen.link import merge as _merge
+from archgen.link import rules as _rules
 from archgen.link.declare import link
-from archgen.link.rules import RULES
+from archgen.link.merge import merge
 
-__all__ = ["RULES", "link"]
+RULES = (*_merge.RULES, *_rules.RULES)
+
+__all__ = ["RULES", "link", "merge"]
