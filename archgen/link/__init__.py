@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from archgen.link import merge, rules
-from archgen.link.chapters import MISSING_CHAPTER
+from archgen.link import merge as _merge
+from archgen.link import rules as _rules
 from archgen.link.declare import link
+from archgen.link.merge import merge
 
-RULES = (*merge.RULES, *rules.RULES, MISSING_CHAPTER)
+RULES = (*_merge.RULES, *_rules.RULES)
 
-__all__ = ["RULES", "link"]
+__all__ = ["RULES", "link", "merge"]

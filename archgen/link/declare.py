@@ -65,8 +65,8 @@ def link(  # noqa: PLR0913 - all by name
         containers=containers,
         links=declare_rest.links(table, references),
         chains=declare_rest.chains(table, references),
-        views=declare_rest.views(table, references),
-        policies=declare_rest.policies(table, references),
+        views=declare_rest.views(table),
+        policies=declare_rest.policies(table),
         interfaces=interfaces,
     )
     return architecture, tuple(found)

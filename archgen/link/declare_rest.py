@@ -131,7 +131,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
     return found
 
 
-def views(root: Table, references: References) -> dict[str, View]:
+def views(root: Table) -> dict[str, View]:
     """Declare the views; merging has reported one that does not say what it shows."""
     found: dict[str, View] = {}
     for name, entry, below in reading.elements(root, "views"):
@@ -151,7 +151,7 @@ def views(root: Table, references: References) -> dict[str, View]:
     return found
 
 
-def policies(root: Table, references: References) -> dict[str, Policy]:
+def policies(root: Table) -> dict[str, Policy]:
     """Declare the policies; merging has reported one that does not say what it forbids."""
     found: dict[str, Policy] = {}
     for name, entry, below in reading.elements(root, "policies"):

@@ -1,8 +1,23 @@
 """Transform: architecture in, architecture out."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 from archgen.model.architecture import Architecture
+from archgen.transform.derive import derive
+
+Pass = Callable[[Architecture], Architecture]
+
+PASSES: tuple[Pass, ...] = (derive,)
+"""What is done to an architecture before it is judged and shown, in this order."""
 
 
-def transform(a: Architecture) -> Architecture:
-    """Stub until derive lands."""
-    return a
+def transform(architecture: Architecture) -> Architecture:
+    """Run all passes."""
+    for one in PASSES:
+        architecture = one(architecture)
+    return architecture
+
+
+__all__ = ["PASSES", "derive", "transform"]

@@ -1,0 +1,43 @@
+"""A planned node for each component that no node implements, so that the low level can be drawn from the first day."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from itertools import count
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.node import Node
+
+
+def planned_nodes(architecture: Architecture) -> Iterator[Node]:
+    """Give the nodes to add, in the order of the components."""
+    implemented = {component for node in architecture.nodes.values() for component in node.implements}
+    taken = set(architecture.nodes)
+    for component in architecture.components.values():
+        if component.id not in implemented:
+            name = _free_name(component, taken)
+            taken.add(name)
+            yield _planned(component, name)
+
+
+def _free_name(component: Component, taken: Container[str]) -> str:
+    """Give the component's id, `group_component` where that is taken, and a number more where both are."""
+    long = component.id.replace(".", "_")
+    for name in (component.name, long):
+        if name not in taken:
+            return name
+    return next(name for number in count(2) if (name := f"{long}_{number}") not in taken)
+
+
+def _planned(component: Component, name: str) -> Node:
+    return Node(
+        id=name,
+        title=component.title,
+        implements=(component.id,),
+        owner=component.owner,
+        name=name,
+        status="planned",
+        timing={component.id: component.timing} if component.timing else {},
+        written=False,
+    )
