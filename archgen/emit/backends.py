@@ -1,0 +1,213 @@
+"""Backends: folders that say what an output is made of. archgen ships some, and a project may bring its own.
+
+A backend's folder holds backend.yaml (schemas/backend.schema.json), templates/ and assets/. Those of a project are
+somebody's text: they are of the emitter `text`, whose templates run in a sandbox.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, NoReturn
+
+from archgen import resources
+from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.source import Span
+
+RULE = Rule(
+    "backend-error",
+    Severity.ERROR,
+    "A backend of the project cannot be read, or one of its templates fails.\n\n"
+    "Why: a backend is a folder in `backends/` with a manifest `backend.yaml` and templates. Where the manifest does not "
+    "follow its schema, a template names something that does not exist, or needs more time, memory or output than it may "
+    "have, nothing is written for this backend; all other outputs are made.",
+    fixed=True,
+)
+MANIFEST = "backend.yaml"
+_LARGEST = 65_536
+_DEEPEST = 20
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file to write, or one for each item of a list: its template, and the template of its path."""
+
+    template: str
+    path: str
+    for_each: str | None = None
+    only: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Backend:
+    """One backend. `name` is its folder as diagnostics show it."""
+
+    id: str
+    title: str
+    description: str
+    emitter: str
+    views: tuple[str, ...]
+    files: tuple[File, ...]
+    options: Mapping[str, Any]
+    folder: Path
+    name: str
+
+
+class _Unreadable(Exception):
+    """A manifest is not as it should be; carries the diagnostic."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def shipped(name: str) -> Backend:
+    """Give a backend that comes with archgen."""
+    return _read(resources.path("backends", name), f"backends/{name}")
+
+
+def find(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
+    """Find all backends by id: those shipped, then the project's own, which may not take a shipped one's id."""
+    found = {folder.name: shipped(folder.name) for folder in _folders(resources.path("backends"))}
+    diagnostics = []
+    for folder in _folders(project / "backends"):
+        try:
+            backend = _own(folder, found)
+            found[backend.id] = backend
+        except _Unreadable as error:
+            diagnostics.append(error.diagnostic)
+    return found, tuple(diagnostics)
+
+
+def _folders(parent: Path) -> list[Path]:
+    if not parent.is_dir():
+        return []
+    return sorted(path for path in parent.iterdir() if path.is_dir() and (path / MANIFEST).exists())
+
+
+def _own(folder: Path, known: Mapping[str, Backend]) -> Backend:
+    name = f"backends/{folder.name}"
+    if folder.is_symlink():
+        _refuse(name, f"`{name}` is a link; a backend's folder stands in the project")
+    backend = _read(folder, name)
+    if backend.emitter != "text":
+        _refuse(name, f"a project's own backend has the emitter `text`, not `{backend.emitter}`")
+    if backend.id in known:
+        _refuse(
+            name, f"there is a backend `{backend.id}` already", "give it another `id`, and its folder the same name"
+        )
+    return backend
+
+
+def _read(folder: Path, name: str) -> Backend:
+    """Read and check a manifest."""
+    text = _text(folder / MANIFEST, name)
+    data, root = _parse(text, name)
+    error = min(_validator().iter_errors(data), key=lambda e: [str(part) for part in e.instance_path], default=None)
+    if error is not None:
+        _refuse(name, _said(error), span=_span(root, error.instance_path, name))
+    if data["id"] != folder.name:
+        message = f"the id is `{data['id']}`, but the folder is `{folder.name}`"
+        _refuse(name, message, "give both the same name", _span(root, ["id"], name))
+    views = data["view"]
+    return Backend(
+        id=data["id"],
+        title=data["title"],
+        description=data.get("description", ""),
+        emitter=data["emitter"],
+        views=(views,) if isinstance(views, str) else tuple(views),
+        files=tuple(File(**file) for file in data.get("files", ())),
+        options=data.get("options", {}),
+        folder=folder,
+        name=name,
+    )
+
+
+def _text(path: Path, name: str) -> str:
+    try:
+        if not path.is_file():
+            _refuse(name, f"`{MANIFEST}` is not a file")
+        if path.stat().st_size > _LARGEST:
+            _refuse(name, f"`{MANIFEST}` has more than {_LARGEST} bytes")
+        return path.read_text("utf-8")
+    except UnicodeDecodeError:
+        _refuse(name, f"`{MANIFEST}` is not UTF-8 text")
+    except OSError as error:
+        _refuse(name, f"`{MANIFEST}` cannot be read: {error.strerror}")
+
+
+def _parse(text: str, name: str) -> tuple[Any, Any]:
+    """Give the data, all scalars as text, and the tree that knows positions. Aliases and deep nesting are refused."""
+    import yaml
+
+    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+    try:
+        _check_events(yaml.parse(text, Loader=loader), name)
+        reader = loader(text)
+        root = reader.get_single_node()
+        return (reader.construct_document(root) if root else {}), root
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        span = Span(f"{name}/{MANIFEST}", line, column, line, column + 1)
+        _refuse(name, f"this is not YAML: {error.problem or error.context}", span=span)
+    except yaml.YAMLError as error:
+        _refuse(name, f"this is not YAML: {str(error).splitlines()[0]}")
+
+
+def _check_events(events: Any, name: str) -> None:  # noqa: ANN401 - the library has no types
+    import yaml
+
+    depth = 0
+    for event in events:
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        line = event.start_mark.line + 1
+        if isinstance(event, yaml.AliasEvent) or depth > _DEEPEST:
+            what = f"nested more than {_DEEPEST} deep" if depth > _DEEPEST else "an alias"
+            _refuse(name, f"a manifest is plain: this is {what}", span=Span(f"{name}/{MANIFEST}", line, 1, line, 1))
+
+
+@cache
+def _validator() -> Any:  # noqa: ANN401 - the library's own class
+    import jsonschema_rs
+
+    schema = json.loads(resources.path("schemas", "backend.schema.json").read_text("utf-8"))
+    return jsonschema_rs.validator_for(schema)
+
+
+def _said(error: Any) -> str:  # noqa: ANN401 - the library's own class
+    """Say a schema error in our words."""
+    where = ".".join(str(part) for part in error.instance_path)
+    place = f"`{where}`" if where else "the manifest"
+    kind = error.kind
+    name = type(kind).__name__.rpartition("_")[2]
+    if name == "AdditionalProperties":
+        return f"{place} has an unknown key {', '.join(f'`{key}`' for key in kind.unexpected)}"
+    if name == "Required":
+        return f"{place} lacks the key `{kind.property}`"
+    if name == "Enum":
+        return f"{place} must be one of {', '.join(f'`{option}`' for option in kind.options)}"
+    if name == "AnyOf":
+        return f"{place} must be `outline`, `pages`, `record`, `graphs` or `tables`, or a list of these"
+    return f"{place} is not as the schema of backends asks ({name})"
+
+
+def _span(node: Any, path: Sequence[str | int], name: str) -> Span:  # noqa: ANN401 - the library has no types
+    """Find the place of a value: its key, where it has one."""
+    place = node
+    for part in path:
+        if isinstance(part, int):
+            place = node = node.value[part]
+        else:
+            place, node = next(pair for pair in node.value if pair[0].value == part)
+    if place is None:
+        return Span.of_file(f"{name}/{MANIFEST}")
+    start, end = place.start_mark, place.end_mark
+    return Span(f"{name}/{MANIFEST}", start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _refuse(name: str, message: str, help: str | None = None, span: Span | None = None) -> NoReturn:  # noqa: A002
+    raise _Unreadable(Diagnostic(RULE.name, message, span or Span.of_file(f"{name}/{MANIFEST}"), help=help))

@@ -1,0 +1,120 @@
+"""The static site: pages and pictures in, a tree of files out. It opens from the disk and asks nobody for anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from archgen.emit import backends
+from archgen.emit.picture import Picture
+from archgen.emit.site import pictures as drawing
+from archgen.emit.site.blocks import Writer
+from archgen.emit.site.chapters import ChapterFiles, Chapters
+from archgen.emit.site.links import Links, collect, here
+from archgen.emit.site.navigation import Navigation, navigation
+from archgen.emit.tree import FileTree, tree
+from archgen.views.shapes import Page, Paragraph
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+FONTS = Path(__file__).resolve().parent.parent / "fonts"
+"""The font that pictures are laid out with: pages load the same, so that text fits its boxes in every browser."""
+
+
+def write(  # noqa: PLR0913 - what a site is made of
+    pages: Sequence[Page],
+    pictures: Mapping[str, Picture],
+    *,
+    title: str,
+    revision: str,
+    notices: Sequence[Paragraph],
+    chapter_files: ChapterFiles,
+) -> FileTree:
+    """Make the site. The first page is the start page; `chapter_files` gives the pictures that chapters show.
+
+    A link in a picture is `#` and the anchor that it leads to.
+    """
+    backend = backends.shipped("site")
+    links = collect(pages)
+    way = navigation(pages, links, _kinds(backend))
+    chapters = Chapters(chapter_files)
+    template = _template(backend.folder)
+    frame = {"title": title, "revision": revision}
+    found = [
+        (
+            links.files[page.path],
+            _page(page, notices, way, Writer(here(links.files[page.path], links), pictures, chapters), template, frame),
+        )
+        for page in pages
+    ]
+    found += [*chapters.files.items(), *_pictures(pictures, links), *_assets(backend.folder)]
+    return tree(found)
+
+
+def _page(  # noqa: PLR0913 - all that a page shows
+    page: Page,
+    notices: Sequence[Paragraph],
+    way: Navigation,
+    writer: Writer,
+    template: Template,
+    frame: Mapping[str, str],
+) -> bytes:
+    """Write one page: its content, in the frame that all pages share."""
+    place = writer.here
+    html = template.render(
+        frame,
+        page=page,
+        root=place.root,
+        content=writer.content(page.section),
+        notices=[writer.paragraph(notice) for notice in notices],
+        crumbs=way.crumbs(page, place.root),
+        navigation=way.html(page, place.root),
+        contents=[(section.title, place.id(section.anchor)) for section in page.section.sections],
+        start=place.root + way.start,
+    )
+    return html.encode()
+
+
+def _kinds(backend: backends.Backend) -> tuple[tuple[str, str], ...]:
+    return tuple((entry["kind"], entry["title"]) for entry in backend.options["navigation"])
+
+
+@cache
+def _template(folder: Path) -> Template:
+    """Compile the frame once for all pages and all runs of a process."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    from archgen.emit.site.markup import clean
+
+    environment = Environment(
+        loader=FileSystemLoader(folder / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: clean(value) if type(value) is str else value,
+    )
+    return environment.get_template("page.html.j2")
+
+
+def _pictures(pictures: Mapping[str, Picture], links: Links) -> Iterator[tuple[str, bytes]]:
+    """Give each picture as a file of its own, which a page's picture opens."""
+    for graph, picture in pictures.items():
+        if picture.svg is not None:
+            path = drawing.path(graph)
+            place = here(path, links)
+            yield path, drawing.alone(picture.svg, place.href, drawing.style_alone(place.root))
+
+
+@cache
+def _assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
+    """Give the files that pages load: style, script and fonts, and the style of pictures."""
+    own = (
+        (path.relative_to(folder).as_posix(), path) for path in sorted((folder / "assets").rglob("*")) if path.is_file()
+    )
+    fonts = ((f"assets/fonts/{path.name.lower()}", path) for path in sorted(FONTS.iterdir()))
+    files = [(name.lower(), path.read_bytes()) for name, path in (*own, *fonts)]
+    return (*files, ("assets/pictures.css", drawing.style_embedded().encode()))

@@ -1,0 +1,150 @@
+"""CommonMark from the project as HTML: no HTML of its own, no request to anywhere, pictures copied into the site."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+from archgen.emit.names import safe_path
+from archgen.emit.site.links import Here
+from archgen.emit.site.markup import escape, web
+from archgen.views.shapes import Markdown
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+    from markdown_it.token import Token
+
+ChapterFiles = Callable[[str], bytes | None]
+"""Gives a file of the project by its path (`/`, relative to the project), or None where there is none."""
+
+_PICTURES = (
+    (b"\x89PNG\r\n\x1a\n", ".png"),
+    (b"\xff\xd8\xff", ".jpg"),
+    (b"GIF8", ".gif"),
+    (b"RIFF", ".webp"),
+    (b"<svg", ".svg"),
+    (b"<?xml", ".svg"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Chapters:
+    """Writes CommonMark, and gathers the pictures that it needs (`files`: path in the site -> bytes)."""
+
+    source: ChapterFiles
+    files: dict[str, bytes] = field(default_factory=dict)
+    known: dict[str, str | None] = field(default_factory=dict)
+
+    def html(self, block: Markdown, level: int, here: Here) -> str:
+        """Write a text that stands below a heading of a level."""
+        parser = _parser()
+        tokens = parser.parse(block.text)
+        _nest_headings(tokens, level)
+        for token in tokens:
+            self._inline(token.children or (), block.folder, here)
+        return str(parser.renderer.render(tokens, parser.options, {}))
+
+    def _inline(self, tokens: Sequence[Token], folder: str, here: Here) -> None:
+        """Settle where links and pictures lead: renderers find the answer in the token's `meta`."""
+        around: list[str] = []
+        for token in tokens:
+            if token.type == "link_open":
+                around.append(_address(str(token.attrs.get("href", "")), folder, here))
+                token.meta["address"] = around[-1]
+            elif token.type == "link_close":
+                token.meta["address"] = around.pop()
+            elif token.type == "image":
+                source = str(token.attrs.get("src", ""))
+                file = self._copy(_joined(folder, unquote(source)))
+                token.meta["source"] = here.root + file if file else ""
+                token.meta["address"] = "" if any(around) else web(source) or ""
+
+    def _copy(self, path: str | None) -> str | None:
+        """Take a picture into the site; give its path there, or None where there is no such picture."""
+        if path is None:
+            return None
+        if path not in self.known:
+            data = self.source(path)
+            ending = data and next((end for start, end in _PICTURES if data.lstrip()[:8].startswith(start)), None)
+            self.known[path] = self._keep(path, data, ending) if data and ending else None
+        return self.known[path]
+
+    def _keep(self, path: str, data: bytes, ending: str) -> str:
+        stem = safe_path(f"pictures/{posixpath.splitext(path)[0]}")
+        name, number = stem + ending, 2
+        while name in self.files:
+            name, number = f"{stem}-{number}{ending}", number + 1
+        self.files[name] = data
+        return name
+
+
+def _joined(folder: str, path: str) -> str | None:
+    """Give the path in the project that a relative address means, or None where it leaves the project."""
+    if not path or "\\" in path or ":" in path.split("/", maxsplit=1)[0]:
+        return None
+    joined = posixpath.normpath(posixpath.join("/" if path.startswith("/") else folder, path)).lstrip("/")
+    return None if joined == ".." or joined.startswith("../") else joined
+
+
+def _address(target: str, folder: str, here: Here) -> str:
+    """Lead to the web, to a chapter's page or to an element; any other link leads nowhere, and only its words stay."""
+    path = _joined(folder, unquote(target.partition("#")[0]))
+    return web(target) or (path and here.href(f"chapter:{path}")) or here.href(unquote(target)) or ""
+
+
+def _nest_headings(tokens: Sequence[Token], level: int) -> None:
+    """Move headings so that the largest is one below the heading that the text stands under, deeper ones follow."""
+    levels = [int(token.tag[1]) for token in tokens if token.type in {"heading_open", "heading_close"}]
+    shift = level + 1 - min(levels, default=0)
+    for token in tokens:
+        if token.type in {"heading_open", "heading_close"}:
+            token.tag = f"h{min(6, int(token.tag[1]) + shift)}"
+
+
+@cache
+def _parser() -> MarkdownIt:
+    from markdown_it import MarkdownIt
+
+    parser = MarkdownIt("commonmark", {"html": False})
+    for name, rule in (
+        ("link_open", _link_open),
+        ("link_close", _link_close),
+        ("image", _image),
+        ("fence", _code),
+        ("code_block", _code),
+        ("text", _text),
+    ):
+        parser.add_render_rule(name, rule)
+    return parser
+
+
+def _link_open(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
+    address = tokens[place].meta["address"]
+    return f'<a href="{address}">' if address else "<span>"
+
+
+def _link_close(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
+    return "</a>" if tokens[place].meta["address"] else "</span>"
+
+
+def _image(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
+    """Show a copied picture; one from the web is a link (a page asks nobody), a missing one its words."""
+    token = tokens[place]
+    alt = escape("".join(child.content for child in token.children or ()))
+    if token.meta["source"]:
+        return f'<img src="{token.meta["source"]}" alt="{alt}">'
+    if token.meta["address"]:
+        return f'<a href="{token.meta["address"]}">{alt or token.meta["address"]}</a>'
+    return f'<span class="muted">[{alt or "a picture"}: not shown]</span>'
+
+
+def _code(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
+    return f'<pre tabindex="0"><code>{escape(tokens[place].content)}</code></pre>\n'
+
+
+def _text(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
+    return escape(tokens[place].content)

@@ -1,0 +1,101 @@
+"""Pictures in pages, and as files of their own: links lead to pages, colours follow light and dark.
+
+The SVGs come from archgen's own drawing, which escapes all text, so their tags can be found without parsing: an
+attribute holds no bare `<` or `>`. Whatever an address says, only one that leads to a page or the web stays.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from html import unescape
+from urllib.parse import unquote
+
+from archgen.emit.names import safe_path
+from archgen.emit.site.markup import escape, web
+
+Href = Callable[[str], str | None]
+
+_HEAD = re.compile(r"\A.*?(?=<svg\b)", re.DOTALL)
+_COMMENT = re.compile(r"<!--.*?-->\s*", re.DOTALL)
+_SVG = re.compile(r"<svg\b([^>]*)>")
+_LINK = re.compile(r"<a\b([^>]*)>|</a>")
+_TARGET = re.compile(r'(?:xlink:)?href="([^"]*)"')
+_TIP = re.compile(r'xlink:title="([^"]*)"')
+_ID = re.compile(r'\sid="[^"]*"')
+_SIZE = re.compile(r'\s(width|height)="([0-9.]+)(?:pt|px)?"')
+
+
+def path(graph: str) -> str:
+    """Give the path of a picture's own file in the site."""
+    return safe_path(f"figures/{graph}.svg")
+
+
+def inline(svg: bytes, href: Href, attributes: str) -> str:
+    """Make the SVG element for a page. Ids go: several pictures may stand on one page, and nothing refers to them."""
+    text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
+    text = _links(_ID.sub("", text), href)
+    return _SVG.sub(lambda found: f"<svg{_pixels(found[1])} {attributes}>", text, count=1).strip()
+
+
+def alone(svg: bytes, href: Href, style: str) -> bytes:
+    """Make the file for a picture: as drawn, with its links and with a style that knows light and dark."""
+    text = _HEAD.sub('<?xml version="1.0" encoding="UTF-8"?>\n', svg.decode("utf-8"), count=1)
+    text = _links(_COMMENT.sub("", text), href)
+    return _SVG.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
+
+
+def _pixels(attributes: str) -> str:
+    """Drop what HTML does not need, and give the size in pixels (a point is 4/3 of one)."""
+    attributes = re.sub(r'\sxmlns(?::\w+)?="[^"]*"', "", attributes)
+    return _SIZE.sub(lambda found: f' {found[1]}="{float(found[2]) * 4 / 3:.0f}"', attributes)
+
+
+def _links(text: str, href: Href) -> str:
+    """Point each link at its page. A link that leads nowhere becomes a group, so that its tooltip stays."""
+    open_tags: list[str] = []
+
+    def replace(found: re.Match[str]) -> str:
+        if found[1] is None:
+            return open_tags.pop() if open_tags else ""
+        target = _TARGET.search(found[1])
+        tip = _TIP.search(found[1])
+        title = f"<title>{tip[1]}</title>" if tip else ""
+        address = target and _address(unescape(target[1]), href)
+        open_tags.append("</a>" if address else "</g>")
+        return f'<a href="{address}">{title}' if address else f"<g>{title}"
+
+    return _LINK.sub(replace, text)
+
+
+def _address(target: str, href: Href) -> str | None:
+    """Give the escaped address that a link's target means: `#` and an anchor, or an address of the web."""
+    if target.startswith("#"):
+        found = href(unquote(target[1:]))
+        return escape(found) if found else None
+    return web(target)
+
+
+def style_embedded() -> str:
+    """Give the style of pictures in pages: dark where the reader or the system wants it, as pages are."""
+    dark = _dark(":root[data-theme=dark]")
+    system = _dark(":root:not([data-theme=light])")
+    return f"{dark}\n@media (prefers-color-scheme: dark) {{\n{system}}}\n"
+
+
+def style_alone(root: str) -> str:
+    """Give the style of a picture's own file: the font that it was laid out with, and the dark colours."""
+    faces = "".join(
+        f'@font-face{{font-family:"DejaVu Sans";font-weight:{weight};src:local("{local}"),url({root}assets/fonts/{file})}}'
+        for weight, local, file in (
+            (400, "DejaVu Sans", "dejavusans.ttf"),
+            (700, "DejaVu Sans Bold", "dejavusans-bold.ttf"),
+        )
+    )
+    return f"{faces}@media (prefers-color-scheme:dark){{svg{{background:#14181c}}{_dark('').replace(chr(10), '')}}}"
+
+
+def _dark(scope: str) -> str:
+    from archgen.emit.graphviz.palette import dark_rules
+
+    return dark_rules(scope)

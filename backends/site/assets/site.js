@@ -1,0 +1,166 @@
+// What pages can do beyond being read: light and dark, sorting and filtering tables, looking closely at pictures.
+// Everything is there without it. Plain script: it runs from the disk.
+"use strict";
+(function () {
+  const root = document.documentElement;
+
+  function element(name, properties, ...children) {
+    const made = Object.assign(document.createElement(name), properties);
+    made.append(...children);
+    return made;
+  }
+
+  // --- light and dark -------------------------------------------------------------------------------------------
+  const button = document.querySelector("button.theme");
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const dark = () => (root.dataset.theme ? root.dataset.theme === "dark" : system.matches);
+  const label = () => (button.textContent = dark() ? "Light" : "Dark");
+  button.hidden = false;
+  button.addEventListener("click", () => {
+    root.dataset.theme = dark() ? "light" : "dark";
+    try {
+      localStorage.setItem("archgen-theme", root.dataset.theme);
+    } catch (refused) {
+      // The choice then holds for this page only.
+    }
+    label();
+  });
+  system.addEventListener("change", label);
+  label();
+
+  // --- the tree: show where the reader is -----------------------------------------------------------------------
+  const tree = document.getElementById("navigation");
+  const current = tree.querySelector("[aria-current]");
+  function reveal() {
+    if (current) tree.scrollTop = current.offsetTop - tree.clientHeight / 3;
+  }
+  tree.addEventListener("toggle", reveal);
+  reveal();
+
+  // --- tables: sort by a column, show the rows that hold some words ---------------------------------------------
+  const order = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
+  const text = (row, at) => row.cells[at].textContent.trim();
+
+  function sortable(table, rows) {
+    const heads = [...table.tHead.rows[0].cells];
+    heads.forEach((head, at) => {
+      const control = element("button", { type: "button", className: "sort" }, ...head.childNodes);
+      head.append(control);
+      control.addEventListener("click", () => {
+        const down = head.ariaSort === "ascending";
+        heads.forEach((other) => (other.ariaSort = null));
+        head.ariaSort = down ? "descending" : "ascending";
+        const sorted = [...rows].sort((a, b) => order.compare(text(a, at), text(b, at)) * (down ? -1 : 1));
+        table.tBodies[0].append(...sorted);
+      });
+    });
+  }
+
+  function filterable(table, rows) {
+    const caption = table.caption.textContent;
+    const count = element("output", { className: "muted" });
+    const field = element("input", { type: "search", placeholder: "Filter", ariaLabel: "Filter: " + caption });
+    field.addEventListener("input", () => {
+      const wanted = field.value.toLowerCase().split(/\s+/).filter(Boolean);
+      let shown = 0;
+      for (const row of rows) {
+        const words = row.textContent.toLowerCase();
+        row.hidden = !wanted.every((word) => words.includes(word));
+        if (!row.hidden) shown += 1;
+      }
+      count.textContent = wanted.length ? shown + " of " + rows.length : "";
+    });
+    table.closest(".table").prepend(element("div", { className: "filter" }, field, count));
+  }
+
+  for (const table of document.querySelectorAll(".table table")) {
+    const rows = [...table.tBodies[0].rows];
+    if (rows.length > 2) sortable(table, rows);
+    if (rows.length > 9) filterable(table, rows);
+  }
+
+  // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
+  function look(svg, caption) {
+    const view = svg.cloneNode(true);
+    const box = svg.viewBox.baseVal;
+    const stage = element("div", { className: "stage", tabIndex: 0 }, view);
+    stage.setAttribute("role", "group");
+    stage.ariaLabel = caption + ". Plus and minus zoom, arrow keys move.";
+    const close = element("button", { type: "button", textContent: "Close" });
+    const tools = [["−", 0.8, "Smaller"], ["+", 1.25, "Larger"], ["Fit", 0, "Fit into the window"]].map(
+      ([words, factor, name]) => {
+        const tool = element("button", { type: "button", textContent: words, ariaLabel: name });
+        tool.addEventListener("click", () => (factor ? zoom(factor) : fit()));
+        return tool;
+      }
+    );
+    const head = element("div", { className: "tools" }, element("span", { textContent: caption }), ...tools, close);
+    const dialog = element("dialog", { className: "look", ariaLabel: caption }, head, stage);
+    let scale = 1, x = 0, y = 0;
+    const place = () => (view.style.transform = `translate(${x}px, ${y}px) scale(${scale})`);
+
+    function fit() {
+      const natural = [svg.width.baseVal.value, svg.height.baseVal.value];
+      view.style.width = natural[0] + "px";
+      view.style.height = natural[1] + "px";
+      scale = Math.min(stage.clientWidth / natural[0], stage.clientHeight / natural[1], 2);
+      x = (stage.clientWidth - natural[0] * scale) / 2;
+      y = (stage.clientHeight - natural[1] * scale) / 2;
+      place();
+    }
+    function zoom(factor, at = [stage.clientWidth / 2, stage.clientHeight / 2]) {
+      const next = Math.min(8, Math.max(0.1, scale * factor));
+      x = at[0] - ((at[0] - x) * next) / scale;
+      y = at[1] - ((at[1] - y) * next) / scale;
+      scale = next;
+      place();
+    }
+    stage.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      const frame = stage.getBoundingClientRect();
+      zoom(Math.exp(-event.deltaY / 400), [event.clientX - frame.left, event.clientY - frame.top]);
+    }, { passive: false });
+    let from = null, moved = false;
+    stage.addEventListener("pointerdown", (event) => {
+      from = [event.clientX - x, event.clientY - y];
+      moved = false;
+    });
+    stage.addEventListener("pointermove", (event) => {
+      if (!from || !event.buttons) return;
+      if (!moved && Math.hypot(event.clientX - x - from[0], event.clientY - y - from[1]) < 4) return;
+      if (!moved) stage.setPointerCapture(event.pointerId);
+      moved = true;
+      [x, y] = [event.clientX - from[0], event.clientY - from[1]];
+      place();
+    });
+    stage.addEventListener("pointerup", () => (from = null));
+    stage.addEventListener("click", (event) => moved && event.preventDefault(), true);
+    stage.addEventListener("dragstart", (event) => event.preventDefault());
+    stage.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] }[event.key];
+      if (step) [x, y] = [x + step[0], y + step[1]], place();
+      else if (event.key === "+" || event.key === "=") zoom(1.25);
+      else if (event.key === "-") zoom(0.8);
+      else if (event.key === "0") fit();
+      else return;
+      event.preventDefault();
+    });
+    close.addEventListener("click", () => dialog.close());
+    dialog.addEventListener("close", () => dialog.remove());
+    document.body.append(dialog);
+    dialog.showModal();
+    fit();
+    stage.focus();
+  }
+
+  for (const figure of document.querySelectorAll("figure.picture")) {
+    const svg = figure.querySelector(".canvas svg");
+    if (!svg) continue;
+    const caption = figure.querySelector("figcaption span").textContent;
+    const open = figure.querySelector("a.whole");
+    const control = element("button", { type: "button", className: "closer", ariaLabel: "Look closer: " + caption });
+    control.textContent = "Look closer";
+    control.addEventListener("click", () => look(svg, caption));
+    open.before(control, " ");
+  }
+})();
