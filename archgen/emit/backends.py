@@ -56,7 +56,7 @@ class Backend:
     name: str
 
 
-class _Unreadable(Exception):
+class _ManifestError(Exception):
     """A manifest is not as it should be; carries the diagnostic."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -77,7 +77,7 @@ def find(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
         try:
             backend = _own(folder, found)
             found[backend.id] = backend
-        except _Unreadable as error:
+        except _ManifestError as error:
             diagnostics.append(error.diagnostic)
     return found, tuple(diagnostics)
 
@@ -210,4 +210,4 @@ def _span(node: Any, path: Sequence[str | int], name: str) -> Span:  # noqa: ANN
 
 
 def _refuse(name: str, message: str, help: str | None = None, span: Span | None = None) -> NoReturn:  # noqa: A002
-    raise _Unreadable(Diagnostic(RULE.name, message, span or Span.of_file(f"{name}/{MANIFEST}"), help=help))
+    raise _ManifestError(Diagnostic(RULE.name, message, span or Span.of_file(f"{name}/{MANIFEST}"), help=help))

@@ -11,7 +11,7 @@ LONGEST = 100
 """Characters that one part of a path may have: a third of what file systems take, so that folders may nest."""
 
 _UNSAFE = re.compile(r"[^a-z0-9._-]+")
-_DASHES = re.compile(r"-{2,}")
+_DASHES = re.compile(r"-+(?=[-.])")
 _RESERVED = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?=\.|$)")
 
 
@@ -21,7 +21,7 @@ def slug(text: str) -> str:
     Text that has no such letter at all, or is too long, is told apart by a digest.
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
-    name = _DASHES.sub("-", _UNSAFE.sub("-", plain)).strip(".-")
+    name = _DASHES.sub("", _UNSAFE.sub("-", plain)).strip(".-")
     if not name:
         return "x-" + _digest(text)
     if len(name) > LONGEST:

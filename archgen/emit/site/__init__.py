@@ -42,40 +42,28 @@ def write(  # noqa: PLR0913 - what a site is made of
     way = navigation(pages, links, _kinds(backend))
     chapters = Chapters(chapter_files)
     template = _template(backend.folder)
-    frame = {"title": title, "revision": revision}
-    found = [
-        (
-            links.files[page.path],
-            _page(page, notices, way, Writer(here(links.files[page.path], links), pictures, chapters), template, frame),
-        )
-        for page in pages
-    ]
-    found += [*chapters.files.items(), *_pictures(pictures, links), *_assets(backend.folder)]
-    return tree(found)
+    found = [*_assets(backend.folder), *_pictures(pictures, links)]
+    for page in pages:
+        path = links.files[page.path]
+        writer = Writer(here(path, links), pictures, chapters)
+        frame = _frame(page, writer, way, notices)
+        found.append((path, template.render(frame, title=title, revision=revision).encode()))
+    return tree((*found, *chapters.files.items()))
 
 
-def _page(  # noqa: PLR0913 - all that a page shows
-    page: Page,
-    notices: Sequence[Paragraph],
-    way: Navigation,
-    writer: Writer,
-    template: Template,
-    frame: Mapping[str, str],
-) -> bytes:
-    """Write one page: its content, in the frame that all pages share."""
+def _frame(page: Page, writer: Writer, way: Navigation, notices: Sequence[Paragraph]) -> dict[str, object]:
+    """Give what the template puts on a page."""
     place = writer.here
-    html = template.render(
-        frame,
-        page=page,
-        root=place.root,
-        content=writer.content(page.section),
-        notices=[writer.paragraph(notice) for notice in notices],
-        crumbs=way.crumbs(page, place.root),
-        navigation=way.html(page, place.root),
-        contents=[(section.title, place.id(section.anchor)) for section in page.section.sections],
-        start=place.root + way.start,
-    )
-    return html.encode()
+    return {
+        "page": page,
+        "root": place.root,
+        "start": place.root + way.start,
+        "crumbs": way.crumbs(page, place.root),
+        "navigation": way.html(page, place.root),
+        "notices": [writer.paragraph(notice) for notice in notices],
+        "contents": [(section.title, place.id(section.anchor)) for section in page.section.sections],
+        "content": writer.content(page.section),
+    }
 
 
 def _kinds(backend: backends.Backend) -> tuple[tuple[str, str], ...]:

@@ -16,12 +16,15 @@ from archgen.views.shapes import Page
 
 @dataclass(frozen=True, slots=True)
 class Navigation:
-    """The tree. `kinds` are the headings (kind, title) in order; `below` holds each page's children by its anchor."""
+    """The tree. `kinds` are the headings (kind, title) in order; `below` holds each page's children by its anchor;
+    `start` is the start page's path, `home` what other pages call it.
+    """
 
     kinds: tuple[tuple[str, str], ...]
     below: Mapping[str, Sequence[Page]]
     parents: Mapping[str, str]
     start: str
+    home: str
     links: Links
     made: dict[tuple[str, str | None], str] = field(default_factory=dict)
 
@@ -62,7 +65,9 @@ class Navigation:
         return f"<li>{self._link(page, root, count)}{inner}</li>"
 
     def _link(self, page: Page, root: str, more: str = "") -> str:
-        return f'<a href="{root}{self.links.pages[page.anchor]}">{words(page.title)}{more}</a>'
+        path = self.links.pages[page.anchor]
+        title = self.home if path == self.start else page.title
+        return f'<a href="{root}{path}">{words(title)}{more}</a>'
 
 
 def navigation(pages: Sequence[Page], links: Links, kinds: Sequence[tuple[str, str]]) -> Navigation:
@@ -81,4 +86,5 @@ def navigation(pages: Sequence[Page], links: Links, kinds: Sequence[tuple[str, s
             below.setdefault(f"kind {page.kind}", []).append(page)
         else:
             below.setdefault(parents[page.anchor], []).append(page)
-    return Navigation(tuple(named.items()), below, parents, links.pages[start], links)
+    home = next((title for page in pages for title, anchor in page.crumbs if anchor == start), pages[0].title)
+    return Navigation(tuple(named.items()), below, parents, links.pages[start], home, links)

@@ -79,6 +79,17 @@
     if (rows.length > 9) filterable(table, rows);
   }
 
+  // A table that fits needs no box to scroll in: no stop for the Tab key, and its head stays in sight.
+  const fitting = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      target.classList.remove("fits");
+      const fits = target.scrollWidth <= target.clientWidth;
+      target.classList.toggle("fits", fits);
+      target.tabIndex = fits ? -1 : 0;
+    }
+  });
+  for (const box of document.querySelectorAll(".scroll")) fitting.observe(box);
+
   // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
   function look(svg, caption) {
     const view = svg.cloneNode(true);

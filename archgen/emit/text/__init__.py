@@ -1,0 +1,110 @@
+"""Text outputs by templates: a backend of the emitter `text` needs no Python, and can do no harm.
+
+The templates run in a process of their own (see worker.py); what comes back is text with safe paths.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from archgen.diagnostic import Diagnostic
+from archgen.emit.backends import RULE, Backend
+from archgen.emit.names import safe_paths
+from archgen.emit.text.limits import Limits
+from archgen.emit.tree import FileTree, tree
+from archgen.source import Span
+from archgen.views.shapes import plain
+
+LIMITS = Limits()
+_ROOT = Path(__file__).resolve().parents[3]
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from archgen.emit.text.worker import main; main()"
+_LARGEST_ASSETS = 64_000_000
+
+
+def write(
+    backend: Backend, views: Mapping[str, object], limits: Limits = LIMITS
+) -> tuple[FileTree | None, tuple[Diagnostic, ...]]:
+    """Make a backend's files. `views` holds the shapes by their names in the manifest (`pages`, `record`, ...).
+
+    Where a template fails, there is no tree, and a diagnostic that names the template and the line.
+    """
+    request = {
+        "templates": str(backend.folder / "templates"),
+        "files": [asdict(file) for file in backend.files],
+        "data": {name: plain(views[name]) for name in backend.views},
+        "options": plain(backend.options),
+        "limits": asdict(limits),
+    }
+    answer = _ask(request, limits)
+    if "error" in answer:
+        return None, (_diagnostic(backend, answer),)
+    rendered = [(str(path), str(text)) for path, text in answer["files"]]
+    try:
+        found = [*_assets(backend), *((path, text.encode()) for path, text in rendered)]
+    except _AssetError as error:
+        return None, (_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
+    paths = safe_paths(path for path, _ in found)
+    return tree((paths[path], data) for path, data in found), ()
+
+
+class _AssetError(Exception):
+    """An asset cannot be taken."""
+
+
+def _ask(request: Mapping[str, Any], limits: Limits) -> Mapping[str, Any]:
+    """Run the worker; it answers, or dies of one of its limits."""
+    command = [sys.executable, "-I", "-c", _START, str(_ROOT)]
+    try:
+        done = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
+            command, input=json.dumps(request).encode(), capture_output=True, timeout=limits.waiting, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return {"error": f"it takes more than {limits.waiting:g} s", "template": None, "line": None}
+    try:
+        answer = json.loads(done.stdout)
+    except ValueError:
+        answer = None
+    if isinstance(answer, dict) and done.returncode == 0:
+        return answer
+    return {"error": _cause(done, limits), "template": None, "line": None}
+
+
+def _cause(done: subprocess.CompletedProcess[bytes], limits: Limits) -> str:
+    """Say what ended a worker that could not answer."""
+    if b"MemoryError" in done.stderr:
+        return f"it needs more than {limits.memory // 1_000_000} MB of memory"
+    if done.returncode < 0:
+        return f"its templates were stopped: they may compute for {limits.computing} s"
+    last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no reason was given"]
+    return f"its templates could not be run: {last[0]}"
+
+
+def _assets(backend: Backend) -> list[tuple[str, bytes]]:
+    """Copy what stands in assets/, but no link and not without bound."""
+    folder = backend.folder / "assets"
+    found, size = [], 0
+    for path in sorted(folder.rglob("*")) if folder.is_dir() and not folder.is_symlink() else ():
+        name = path.relative_to(backend.folder).as_posix()
+        if path.is_symlink():
+            msg = f"`{name}` is a link; an asset is a file"
+            raise _AssetError(msg)
+        if path.is_file():
+            size += path.stat().st_size
+            if size > _LARGEST_ASSETS:
+                msg = f"its assets have more than {_LARGEST_ASSETS // 1_000_000} MB"
+                raise _AssetError(msg)
+            found.append((name, path.read_bytes()))
+    return found
+
+
+def _diagnostic(backend: Backend, answer: Mapping[str, Any]) -> Diagnostic:
+    template, line = answer["template"], answer["line"] or 1
+    file = f"{backend.name}/templates/{template}" if template else f"{backend.name}/backend.yaml"
+    message = f"the backend `{backend.id}` fails: {answer['error']}"
+    return Diagnostic(RULE.name, message, Span(file, line, 1, line, 1))

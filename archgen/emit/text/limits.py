@@ -1,0 +1,36 @@
+"""What a template may use up, and how the process that runs it is held to it."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds for one backend: seconds of computing, seconds in all, bytes of memory, bytes of output, files."""
+
+    computing: int = 20
+    waiting: float = 60.0
+    memory: int = 1_000_000_000
+    output: int = 64_000_000
+    files: int = 20_000
+
+
+def confine(limits: Limits) -> None:
+    """Bind this process: computing time, memory, no files written, few opened, no further process.
+
+    Systems that have no such limits (Windows) leave the time in all, which the parent process keeps, and the output.
+    """
+    with contextlib.suppress(ImportError):
+        import resource
+
+        for what, bound in (
+            (resource.RLIMIT_CPU, limits.computing),
+            (resource.RLIMIT_AS, limits.memory),
+            (resource.RLIMIT_FSIZE, 0),
+            (resource.RLIMIT_CORE, 0),
+            (resource.RLIMIT_NOFILE, 32),
+        ):
+            with contextlib.suppress(ValueError, OSError):  # a tighter limit than ours is in force already
+                resource.setrlimit(what, (bound, bound))

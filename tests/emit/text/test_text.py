@@ -1,0 +1,205 @@
+"""Templates of a project's own: what they can do, and what they cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from archgen.emit import text
+from archgen.emit.backends import Backend, find
+from archgen.emit.text.limits import Limits
+
+RECORD = {"groups": {"a": {"title": "Sensing & <acting>"}, "b": {"title": "Cognition"}}, "name": "ramcip"}
+QUICK = Limits(computing=2, waiting=10, memory=400_000_000, output=10_000, files=5)
+
+Make = Callable[..., Backend]
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Make:
+    """Make a project with one backend of its own, and find it."""
+
+    def made(template: str, path: str = "out.md", more: str = "", name: str = "t.md.j2") -> Backend:
+        folder = tmp_path / "backends" / "mine"
+        (folder / "templates").mkdir(parents=True, exist_ok=True)
+        (folder / "templates" / name).write_text(template)
+        (folder / "backend.yaml").write_text(
+            "id: mine\ntitle: Mine\nemitter: text\nview: record\nfiles:\n"
+            f"  - template: {name}\n    path: '{path}'\n{more}"
+        )
+        found, diagnostics = find(tmp_path)
+        assert diagnostics == ()
+        return found["mine"]
+
+    return made
+
+
+def files(backend: Backend) -> dict[str, str]:
+    tree, diagnostics = text.write(backend, {"record": RECORD}, QUICK)
+    assert diagnostics == ()
+    assert tree is not None
+    return {path: data.decode() for path, data in tree.files.items()}
+
+
+def fault(backend: Backend) -> str:
+    tree, diagnostics = text.write(backend, {"record": RECORD}, QUICK)
+    assert tree is None
+    (found,) = diagnostics
+    assert found.rule == "backend-error"
+    return f"{found.span.file}:{found.span.line}: {found.message}"
+
+
+def test_a_template_gets_plain_data(make: Make) -> None:
+    backend = make("{% for g in record.groups.values() %}\n- {{ g.title }}\n{% endfor %}\n")
+    assert files(backend) == {"out.md": "- Sensing & <acting>\n- Cognition\n"}
+
+
+def test_one_file_for_each_item(make: Make) -> None:
+    backend = make("{{ key }}: {{ item.title }}", "g/{{ item.title }}.md", "    for_each: record.groups\n")
+    assert files(backend) == {"g/sensing-acting.md": "a: Sensing & <acting>", "g/cognition.md": "b: Cognition"}
+
+
+def test_only_some_items(make: Make) -> None:
+    backend = make("x", "{{ key }}.md", "    for_each: record.groups\n    only: {title: Cognition}\n")
+    assert list(files(backend)) == ["b.md"]
+
+
+@pytest.mark.parametrize("name", ["t.html.j2", "t.xml.j2", "t.html", "t.svg.j2"])
+def test_markup_is_escaped(make: Make, name: str) -> None:
+    backend = make("{{ record.groups.a.title }}", "x.txt", name=name)
+    assert files(backend) == {"x.txt": "Sensing &amp; &lt;acting&gt;"}
+
+
+@pytest.mark.parametrize(
+    ("path", "written"),
+    [
+        ("../../evil.md", "evil.md"),
+        ("/etc/passwd", "etc/passwd"),
+        ('{{ ".." }}/{{ ".." }}/x', "x"),
+        ("con.md", "con_.md"),
+        ("a\\..\\b.md", "a/b.md"),
+        (".archgen-files", "archgen-files"),
+    ],
+)
+def test_paths_stay_in_the_output_folder(make: Make, path: str, written: str) -> None:
+    assert list(files(make("x", path))) == [written]
+
+
+def test_paths_that_would_be_one_are_told_apart(make: Make) -> None:
+    backend = make("{{ key }}", "same.md", "    for_each: record.groups\n")
+    assert files(backend) == {"same.md": "a", "same-2.md": "b"}
+
+
+@pytest.mark.parametrize(
+    ("template", "said"),
+    [
+        ("one\n{{ record.nothing }}", ":2: the backend `mine` fails: 'dict object' has no attribute 'nothing'"),
+        ("{{ nobody }}", ":1: the backend `mine` fails: 'nobody' is undefined"),
+        ("one\ntwo {% if %}", ":2: the backend `mine` fails: this is no template: Expected an expression"),
+        ("{{ 1 // 0 }}", ":1: the backend `mine` fails: ZeroDivisionError"),
+        ("\n{% include 'other.j2' %}", ":2: the backend `mine` fails: there is no template `other.j2`"),
+        ("{% include '../backend.yaml' %}", ":1: the backend `mine` fails: there is no template `../backend.yaml`"),
+        ("{% include '/etc/passwd' %}", ":1: the backend `mine` fails: there is no template `/etc/passwd`"),
+        ("{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", "call each other without end"),
+        ("{% include 't.md.j2' %}", "call each other without end"),
+        ("{% for i in range(900) %}aaaaaaaaaaaa{% endfor %}", "writes more than it may"),
+    ],
+)
+def test_a_mistake_names_template_and_line(make: Make, template: str, said: str) -> None:
+    found = fault(make(template))
+    assert found.startswith("backends/mine/templates/t.md.j2:")
+    assert said in found
+
+
+@pytest.mark.parametrize(
+    "template",
+    [
+        "{{ ''.__class__.__mro__[1].__subclasses__() }}",
+        "{{ record.__class__ }}",
+        "{{ record['__class__'] }}",
+        "{{ record|attr('__class__') }}",
+        "{{ self.__init__.__globals__ }}",
+        "{{ cycler.__init__.__globals__.os }}",
+        "{{ joiner.__init__.__globals__ }}",
+        "{{ namespace.__init__.__globals__ }}",
+        "{{ href.__globals__ }}",
+        "{{ href.__closure__ }}",
+        "{{ '{0.__class__}'.format(record) }}",
+        "{{ '{a.__class__}'.format_map({'a': record}) }}",
+        "{{ record|map(attribute='__class__')|join }}",
+        "{{ record.update({'x': 1}) }}",
+        "{{ record.groups.clear() }}",
+        "{{ lipsum() }}",
+        "{{ [1, 2]|random }}",
+        "{{ ''|xmlattr|attr('__init__') }}",
+    ],
+)
+def test_tricks_lead_nowhere(make: Make, template: str) -> None:
+    assert "the backend `mine` fails" in fault(make(template))
+
+
+@pytest.mark.parametrize(
+    ("template", "said"),
+    [
+        (
+            "{% for a in range(99999) %}{% for b in range(99999) %}{% set c = a * b %}{% endfor %}{% endfor %}",
+            "may compute for 2 s",
+        ),
+        ("{{ 'x' * 10**9 }}", "more than 400 MB of memory"),
+        ("{{ 'x'.ljust(10**9) }}", "more than 400 MB of memory"),
+        ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = ns.s ~ ns.s %}{% endfor %}", "memory"),
+        ("{{ [0] * 10**9 }}", "more than 400 MB of memory"),
+        ("{{ 10 ** (10 ** 9) }}", "may compute for 2 s"),
+        ("{{ range(10**9)|list }}", "Range too big"),
+    ],
+)
+def test_time_memory_and_output_are_bounded(make: Make, template: str, said: str) -> None:
+    assert said in fault(make(template))
+
+
+def test_the_number_of_files_is_bounded(make: Make) -> None:
+    backend = make("x", "x.md", "    for_each: record.many\n")
+    tree, (found,) = text.write(backend, {"record": {"many": list(range(6))}}, QUICK)
+    assert tree is None
+    assert "more than 5 files" in found.message
+
+
+def test_for_each_must_be_there(make: Make) -> None:
+    assert "no `record.nodes` in the data" in fault(make("x", "x.md", "    for_each: record.nodes\n"))
+
+
+def test_a_mistake_in_a_path_is_the_manifests(make: Make) -> None:
+    assert fault(make("x", "{{ nobody }}.md")).startswith("backends/mine/backend.yaml:1: the backend `mine` fails: ")
+
+
+def test_a_template_that_is_a_link_out_is_not_read(make: Make, tmp_path: Path) -> None:
+    backend = make("{% include 'secret.j2' %}")
+    (tmp_path / "secret").write_text("secret")
+    (backend.folder / "templates" / "secret.j2").symlink_to(tmp_path / "secret")
+    assert "no template `secret.j2`" in fault(backend)
+
+
+def test_a_template_that_is_no_text(make: Make) -> None:
+    backend = make("x")
+    (backend.folder / "templates" / "t.md.j2").write_bytes(b"\xff\xfe")
+    assert "not UTF-8" in fault(backend)
+
+
+def test_assets_are_copied_but_no_links(make: Make, tmp_path: Path) -> None:
+    backend = make("x")
+    (backend.folder / "assets").mkdir()
+    (backend.folder / "assets" / "Logo.svg").write_text("<svg/>")
+    assert files(backend) == {"out.md": "x", "assets/logo.svg": "<svg/>"}
+    (backend.folder / "assets" / "key").symlink_to(tmp_path / "id_rsa")
+    assert "`assets/key` is a link" in fault(backend)
+
+
+def test_the_worker_sees_nothing_of_the_surroundings(
+    make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "jinja2.py").write_text("raise SystemExit('taken over')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert files(make("fine")) == {"out.md": "fine"}
