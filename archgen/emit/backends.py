@@ -57,11 +57,11 @@ class Backend:
 
 
 class _ManifestError(Exception):
-    """A manifest is not as it should be; carries the diagnostic."""
+    """A manifest is not as it should be; carries the diagnostics."""
 
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+    def __init__(self, *diagnostics: Diagnostic) -> None:
+        super().__init__()
+        self.diagnostics = diagnostics
 
 
 def shipped(name: str) -> Backend:
@@ -72,13 +72,13 @@ def shipped(name: str) -> Backend:
 def find(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
     """Find all backends by id: those shipped, then the project's own, which may not take a shipped one's id."""
     found = {folder.name: shipped(folder.name) for folder in _folders(resources.path("backends"))}
-    diagnostics = []
+    diagnostics: list[Diagnostic] = []
     for folder in _folders(project / "backends"):
         try:
             backend = _own(folder, found)
             found[backend.id] = backend
         except _ManifestError as error:
-            diagnostics.append(error.diagnostic)
+            diagnostics += error.diagnostics
     return found, tuple(diagnostics)
 
 
@@ -106,9 +106,11 @@ def _read(folder: Path, name: str) -> Backend:
     """Read and check a manifest."""
     text = _text(folder / MANIFEST, name)
     data, root = _parse(text, name)
-    error = min(_validator().iter_errors(data), key=lambda e: [str(part) for part in e.instance_path], default=None)
-    if error is not None:
-        _refuse(name, _said(error), span=_span(root, error.instance_path, name))
+    wrong = sorted(_validator().iter_errors(data), key=lambda error: [str(part) for part in error.instance_path])
+    if wrong:
+        raise _ManifestError(
+            *(Diagnostic(RULE.name, _said(error), _span(root, error.instance_path, name)) for error in wrong)
+        )
     if data["id"] != folder.name:
         message = f"the id is `{data['id']}`, but the folder is `{folder.name}`"
         _refuse(name, message, "give both the same name", _span(root, ["id"], name))

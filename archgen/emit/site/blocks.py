@@ -136,7 +136,7 @@ class Writer:
                 f'<figure class="picture"{self._id(figure.anchor)}>\n<p class="notice warning">'
                 f"This picture could not be drawn.</p>\n<figcaption>{caption}</figcaption>\n</figure>"
             )
-        svg = pictures.inline(picture.svg, self.here.href, f'role="group" aria-label="{alt}"')
+        svg = pictures.inline(picture.svg, self.here.href, alt)
         file = self.here.root + pictures.path(figure.graph)
         warning = f'<p class="notice warning">{escape(picture.warning)}</p>\n' if picture.warning else ""
         return (

@@ -18,11 +18,13 @@ Href = Callable[[str], str | None]
 
 _HEAD = re.compile(r"\A.*?(?=<svg\b)", re.DOTALL)
 _COMMENT = re.compile(r"<!--.*?-->\s*", re.DOTALL)
-_SVG = re.compile(r"<svg\b([^>]*)>")
+_SVG = re.compile(r"<svg\b([^>]*)>(?:\s*<(title|desc)>[^<]*</\2>)*")
+_ROOT = re.compile(r"<svg\b[^>]*>")
+_UNUSED = re.compile(r'\s(?:xmlns(?::\w+)?|role|aria-\w+)="[^"]*"')
 _LINK = re.compile(r"<a\b([^>]*)>|</a>")
 _TARGET = re.compile(r'(?:xlink:)?href="([^"]*)"')
 _TIP = re.compile(r'xlink:title="([^"]*)"')
-_ID = re.compile(r'\sid="[^"]*"')
+_ID = re.compile(r'(?<=<g|<a)\sid="[^"]*"|(?<=<svg)\sid="[^"]*"')
 _SIZE = re.compile(r'\s(width|height)="([0-9.]+)(?:pt|px)?"')
 
 
@@ -31,24 +33,26 @@ def path(graph: str) -> str:
     return safe_path(f"figures/{graph}.svg")
 
 
-def inline(svg: bytes, href: Href, attributes: str) -> str:
-    """Make the SVG element for a page. Ids go: several pictures may stand on one page, and nothing refers to them."""
+def inline(svg: bytes, href: Href, name: str) -> str:
+    """Make the SVG element for a page, under a name (escaped) that stands for the picture's own title and description.
+
+    Ids go: several pictures may stand on one page, and nothing refers to them.
+    """
     text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
     text = _links(_ID.sub("", text), href)
-    return _SVG.sub(lambda found: f"<svg{_pixels(found[1])} {attributes}>", text, count=1).strip()
+    return _SVG.sub(lambda found: f'<svg{_kept(found[1])} role="group" aria-label="{name}">', text, count=1).strip()
 
 
 def alone(svg: bytes, href: Href, style: str) -> bytes:
     """Make the file for a picture: as drawn, with its links and with a style that knows light and dark."""
     text = _HEAD.sub('<?xml version="1.0" encoding="UTF-8"?>\n', svg.decode("utf-8"), count=1)
     text = _links(_COMMENT.sub("", text), href)
-    return _SVG.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
+    return _ROOT.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
 
 
-def _pixels(attributes: str) -> str:
+def _kept(attributes: str) -> str:
     """Drop what HTML does not need, and give the size in pixels (a point is 4/3 of one)."""
-    attributes = re.sub(r'\sxmlns(?::\w+)?="[^"]*"', "", attributes)
-    return _SIZE.sub(lambda found: f' {found[1]}="{float(found[2]) * 4 / 3:.0f}"', attributes)
+    return _SIZE.sub(lambda found: f' {found[1]}="{float(found[2]) * 4 / 3:.0f}"', _UNUSED.sub("", attributes))
 
 
 def _links(text: str, href: Href) -> str:

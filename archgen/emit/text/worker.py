@@ -19,7 +19,8 @@ from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, T
 from jinja2.loaders import BaseLoader
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from archgen.emit.names import is_safe, safe_path, slug
+from archgen.emit.names import is_safe, safe_path
+from archgen.emit.text.filters import FILTERS
 from archgen.emit.text.limits import Limits, confine
 
 _LARGEST_TEMPLATE = 1_000_000
@@ -58,7 +59,7 @@ def environment(folder: Path) -> ImmutableSandboxedEnvironment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters["slug"] = lambda text: slug(str(text))
+    made.filters.update(FILTERS)
     del made.globals["lipsum"]
     del made.filters["random"]
     return made

@@ -173,5 +173,9 @@
     control.textContent = "Look closer";
     control.addEventListener("click", () => look(svg, caption));
     open.before(control, " ");
+    figure.classList.add("zooms");
+    figure.querySelector(".canvas").addEventListener("click", (event) => {
+      if (!event.target.closest("a")) look(svg, caption);
+    });
   }
 })();

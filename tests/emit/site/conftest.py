@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -255,14 +255,31 @@ def chapter_file(path: str) -> bytes | None:
 
 
 @pytest.fixture(scope="session")
-def site() -> FileTree:
-    """Make the site of the made-up architecture."""
+def draw() -> Callable[[str, dict[str, str]], Picture]:
+    """Give the function that draws boxes with links."""
+    return drawn
+
+
+@pytest.fixture(scope="session")
+def made() -> Callable[[], FileTree]:
+    """Give the function that makes the site of the made-up architecture."""
+    pages, pictures = tuple(made_pages()), made_pictures()
     notices = (Paragraph((Text("This document shows a part: "), Text("owner:certh", code=True)), "note"),)
-    return write(
-        tuple(made_pages()),
-        made_pictures(),
-        title="Robotic Assistant",
-        revision="1.0, 3f2a9c1+",
-        notices=notices,
-        chapter_files=chapter_file,
-    )
+
+    def make() -> FileTree:
+        return write(
+            pages,
+            pictures,
+            title="Robotic Assistant",
+            revision="1.0, 3f2a9c1+",
+            notices=notices,
+            chapter_files=chapter_file,
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def site(made: Callable[[], FileTree]) -> FileTree:
+    """Give the site of the made-up architecture."""
+    return made()

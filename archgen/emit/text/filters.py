@@ -1,0 +1,68 @@
+"""What templates can call to put text safely where it stands: Markdown, a code span, Mermaid, an identifier."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from archgen.emit.names import slug
+
+_MARKS = re.compile(r"([\\`*_{}\[\]<>&~$])")
+_START = re.compile(r"^(\d*)([-+=#]|(?<=\d)[.)](?=\s|$))")
+_TICKS = re.compile(r"`+")
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+
+
+def markdown(text: object) -> str:
+    """Escape text for a line of Markdown: nothing in it is a mark, whatever it holds."""
+    line = " ".join(str(text).split())
+    return _START.sub(r"\1\\\2", _MARKS.sub(r"\\\1", line))
+
+
+def code(text: object) -> str:
+    """Make a code span of a line; more ticks stand around it than in it."""
+    line = " ".join(str(text).split()) or " "
+    ticks = "`" * (max((len(run) for run in _TICKS.findall(line)), default=0) + 1)
+    pad = " " if line[0] == "`" or line[-1] == "`" else ""
+    return f"{ticks}{pad}{line}{pad}{ticks}"
+
+
+def commonmark(text: object) -> str:
+    """Give CommonMark from the project as it is, if it holds no HTML and no address but of the web; else as text."""
+    from markdown_it import MarkdownIt
+
+    class Reader(MarkdownIt):
+        def validateLink(self, url: str) -> bool:  # noqa: ARG002, N802 - the library's; every address is judged below
+            return True
+
+    parser = Reader("commonmark", {"html": True})
+    tokens = [token for block in parser.parse(str(text)) for token in (block, *(block.children or ()))]
+    addresses = [str(token.attrs.get(name, "")) for token in tokens for name in ("href", "src")]
+    if any(token.type.startswith("html_") for token in tokens) or any(_strange(address) for address in addresses):
+        return "\n".join(markdown(line) for line in str(text).split("\n"))
+    return str(text)
+
+
+def _strange(address: str) -> bool:
+    return bool(_SCHEME.match(address)) and not address.lower().startswith(("http://", "https://", "mailto:"))
+
+
+def mermaid(text: object) -> str:
+    """Escape text for a Mermaid label in double quotes."""
+    line = " ".join(str(text).split())
+    return re.sub(r"[^\w .,:/()+·→-]", lambda found: f"#{ord(found.group())};", line) or " "
+
+
+def identifier(text: object) -> str:
+    """Make an identifier of any text: different texts give different ones, and none is a word of a language."""
+    return "n_" + re.sub(r"[^A-Za-z0-9]", lambda found: f"_{ord(found.group()):x}_", str(text))
+
+
+FILTERS: dict[str, Any] = {
+    "code": code,
+    "commonmark": commonmark,
+    "identifier": identifier,
+    "markdown": markdown,
+    "mermaid": mermaid,
+    "slug": lambda text: slug(str(text)),
+}

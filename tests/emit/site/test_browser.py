@@ -1,0 +1,220 @@
+"""The site before outside judges: the Nu Html Checker, and Chromium with axe-core, opened from the disk."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, Route, sync_playwright
+
+from archgen.emit.site import write as make_site
+from archgen.emit.tree import FileTree, write
+from archgen.views import shapes
+
+JUDGES = Path(__file__).resolve().parents[2] / "judges" / "node_modules"
+SAMPLE = (
+    "index.html",
+    "groups/g1.html",
+    "components/g1.c2.html",
+    "nodes/node_1_1.html",
+    "topics/robot/topic_7.html",
+    "connections.html",
+    "chapters/introduction.html",
+)
+HOSTILE = '</title><script>document.title="taken"</script><img src=x onerror=document.title="taken">{{7*7}}'
+
+
+def needed(path: str | Path | None, package: str) -> str:
+    assert path is not None and Path(path).exists(), f"this test needs {package}"  # noqa: PT018 - one fact
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def folder(site: FileTree, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the site to the disk."""
+    place = tmp_path_factory.mktemp("out") / "site"
+    write(site, place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium."""
+    chromium = needed(shutil.which("chromium") or shutil.which("chromium-browser"), "Chromium (Debian: `chromium`)")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()
+
+
+Open = Callable[..., Page]
+
+
+@pytest.fixture
+def visit(browser: Browser, folder: Path) -> Iterator[Open]:
+    """Open a page from the disk; a request to anywhere else, an error or a message in the console is a failure."""
+    wrong: list[str] = []
+
+    def judge(route: Route) -> None:
+        if route.request.url.startswith("file://"):
+            route.continue_()
+        else:
+            wrong.append(route.request.url)
+            route.abort()
+
+    def opened(path: str, width: int = 1280, scheme: str = "light", root: Path | None = None) -> Page:
+        context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)  # type: ignore[arg-type]
+        page = context.new_page()
+        page.route("**/*", judge)
+        page.on("console", lambda message: wrong.append(message.text))
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on("requestfailed", lambda request: wrong.append(f"{request.url} failed"))
+        page.goto(f"file://{root or folder}/{path}")
+        return page
+
+    yield opened
+    for context in browser.contexts:
+        context.close()
+    assert wrong == []
+
+
+def test_the_nu_checker_finds_nothing(folder: Path) -> None:
+    java = needed(shutil.which("java"), "a Java (Debian: `default-jre-headless`)")
+    jar = needed(JUDGES / "vnu-jar/build/dist/vnu.jar", "the Nu checker (`npm ci` in tests/judges)")
+    pages = [str(path) for path in sorted(folder.rglob("*.html"))]
+    assert len(pages) == 351
+    command = [java, "-Xss4m", "-jar", jar, "--format", "json", *pages]
+    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
+    said = json.loads(done.stderr)["messages"]
+    assert [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in said] == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 360])
+def test_axe_finds_nothing(visit: Open, scheme: str, width: int) -> None:
+    axe = Path(needed(JUDGES / "axe-core/axe.min.js", "axe-core (`npm ci` in tests/judges)")).read_text()
+    for path in SAMPLE:
+        page = visit(path, width, scheme)
+        page.evaluate(axe)
+        found = page.evaluate(
+            "axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))"
+        )
+        assert found == [], path
+
+
+@pytest.mark.parametrize("path", SAMPLE)
+def test_nothing_scrolls_sideways_on_a_telephone(visit: Open, path: str) -> None:
+    page = visit(path, 360)
+    assert page.evaluate("document.documentElement.scrollWidth") == 360
+    wide = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken") &&
+        e.getBoundingClientRect().right > 360).map(e => e.outerHTML.slice(0, 80))"""
+    assert page.evaluate(wide) == []
+
+
+def test_the_font_that_ships_is_loaded(visit: Open) -> None:
+    page = visit("index.html")
+    assert page.evaluate("document.fonts.ready.then(() => document.fonts.check('16px Inter'))")
+    assert page.evaluate("[...document.fonts].filter(f => f.family == 'Inter' && f.status == 'loaded').length") >= 1
+
+
+def test_light_and_dark_are_remembered(visit: Open) -> None:
+    page = visit("index.html", scheme="dark")
+    colour = "getComputedStyle(document.body).backgroundColor"
+    assert page.evaluate(colour) == "rgb(20, 24, 28)"
+    page.get_by_role("button", name="Light").click()
+    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    page.get_by_role("link", name="Environment Model").first.click()
+    page.wait_for_url("**/groups/g1.html")
+    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+
+
+def test_pictures_follow_light_and_dark(visit: Open) -> None:
+    page = visit("index.html")
+    colour = "getComputedStyle(document.querySelector('.canvas svg polygon')).fill"
+    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    page.get_by_role("button", name="Dark").click()
+    assert page.evaluate(colour) == "rgb(20, 24, 28)"
+
+
+def test_links_in_pictures_work(visit: Open) -> None:
+    page = visit("index.html")
+    page.locator(".canvas a").nth(1).click()
+    page.wait_for_url("**/groups/g1.html")
+    assert page.title().startswith("Environment Model")
+    page.get_by_role("link", name="Open picture").click()
+    page.wait_for_url("**/figures/groups/g1.svg")
+    page.locator("a").nth(2).click()
+    page.wait_for_url("**/components/g1.c2.html")
+
+
+def test_a_picture_can_be_looked_at_closely(visit: Open) -> None:
+    page = visit("groups/g1.html")
+    page.get_by_role("button", name="Look closer").click()
+    drawing = page.locator("dialog svg")
+    before = drawing.bounding_box()
+    page.keyboard.press("+")
+    after = drawing.bounding_box()
+    assert before is not None
+    assert after is not None
+    assert after["width"] == pytest.approx(before["width"] * 1.25)
+    page.keyboard.press("Escape")
+    assert page.locator("dialog").count() == 0
+    page.get_by_role("button", name="Look closer").click()
+    page.locator("dialog a").nth(2).click()
+    page.wait_for_url("**/components/g1.c2.html")
+
+
+def test_tables_sort_and_filter(visit: Open) -> None:
+    page = visit("connections.html")
+    column = "[...document.querySelectorAll('tbody tr')].filter(r => !r.hidden).map(r => r.cells[1].innerText)"
+    page.get_by_role("button", name="Topic").click()
+    assert page.evaluate(column)[:3] == ["/robot/topic_0", "/robot/topic_1", "/robot/topic_2"]
+    page.get_by_role("button", name="Topic").click()
+    assert page.evaluate(column)[0] == "/robot/topic_137"
+    assert page.locator("th").nth(1).get_attribute("aria-sort") == "descending"
+    page.get_by_role("searchbox").fill("person topic_8")
+    assert page.evaluate(column) == ["/robot/topic_85", "/robot/topic_8"]
+    assert page.locator("output").inner_text() == "2 of 138"
+
+
+def test_the_keyboard_gets_past_the_tree(visit: Open) -> None:
+    page = visit("components/g1.c2.html")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "content"
+
+
+def test_the_tree_opens_on_a_telephone(visit: Open) -> None:
+    page = visit("components/g1.c2.html", 360)
+    tree = page.locator("#navigation")
+    assert not tree.is_visible()
+    page.get_by_role("button", name="Menu").click()
+    assert tree.is_visible()
+    page.keyboard.press("Escape")
+    assert not tree.is_visible()
+
+
+def test_hostile_titles_run_nothing(visit: Open, tmp_path: Path) -> None:
+    table = shapes.Table("t", HOSTILE, (shapes.Column(HOSTILE),), (((shapes.Text(HOSTILE),),),) * 12)
+    section = shapes.Section("page:index", HOSTILE, (table, shapes.Markdown(HOSTILE)))
+    start = shapes.Page("index.html", "page:index", HOSTILE, "overview", section)
+    made = make_site((start,), {}, title=HOSTILE, revision=HOSTILE, notices=(), chapter_files=lambda _: None)
+    write(made, tmp_path / "site")
+    page = visit("index.html", root=tmp_path / "site")
+    assert page.title() == HOSTILE
+    assert page.locator("h1").inner_text() == HOSTILE
+    assert page.locator("main img").count() == 0
+
+
+def test_everything_is_there_without_script(browser: Browser, folder: Path) -> None:
+    page = browser.new_context(java_script_enabled=False).new_page()
+    page.goto(f"file://{folder}/connections.html")
+    assert page.locator("tbody tr").count() == 138
+    assert not page.locator("button.theme").is_visible()
+    assert page.locator("#navigation").is_visible()
+    page.context.close()

@@ -1,0 +1,131 @@
+"""The wiki: templates only, and nothing that a project writes becomes a mark."""
+
+from __future__ import annotations
+
+import pytest
+from markdown_it import MarkdownIt
+
+from archgen.emit import text
+from archgen.emit.backends import shipped
+from archgen.emit.text.filters import code, commonmark, identifier, markdown, mermaid
+from archgen.views.shapes import Arrow, Box, Cluster, Column, Facts, Figure, Graph, Markdown, Page, Section, Table, Text
+
+EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
+HOME = ("Overview", "page:index")
+
+
+def wiki(title: str) -> dict[str, str]:
+    graph = Graph(
+        "groups/g",
+        "G",
+        "group",
+        (
+            Box("g.a", title, ("10 Hz",), cluster="g", emphasis="subject"),
+            Box("t", "/topic", style="topic", emphasis="neighbour"),
+        ),
+        (Arrow("e", "g.a", "t", label=title, style="service"),),
+        (Cluster("g", title),),
+    )
+    cells = (
+        (Text(title, ref="component:g.a"),),
+        (Text(title, code=True),),
+        (Text("paper", url="https://example.org/ (1)"),),
+    )
+    columns = (Column(title), Column("Code"), Column("Link", 1, "right"))
+    group = Section(
+        "group:g",
+        title,
+        (
+            Facts((("Owner", (Text(title, strong=True),)),)),
+            Figure("figure:g", "groups/g", title, ""),
+            Table("table:g", title, columns, (cells,)),
+        ),
+    )
+    component = Section("component:g.a", title, (Markdown("Plain *words*."), Markdown(title)))
+    pages = (
+        Page("index.html", "page:index", title, "overview", Section("page:index", title, ())),
+        Page("groups/g.html", "group:g", title, "groups", group, (HOME,), title),
+        Page("components/g.a.html", "component:g.a", title, "components", component, (HOME, (title, "group:g"))),
+    )
+    tree, diagnostics = text.write(shipped("wiki"), {"pages": pages, "graphs": (graph,)})
+    assert diagnostics == ()
+    assert tree is not None
+    return {path: data.decode() for path, data in tree.files.items()}
+
+
+def test_a_page_for_each_group_and_a_start_page() -> None:
+    files = wiki("Sensing")
+    assert files["home.md"] == "# Sensing\n\n\n## Pages\n\n- [Sensing](groups/g.md): Sensing\n"
+    assert files["groups/g.md"] == (
+        "# Sensing\n\nSensing\n\n"
+        "- **Owner:** **Sensing**\n\n"
+        "```mermaid\nflowchart LR\n"
+        '  n_t["/topic"]:::neighbour\n'
+        '  subgraph n_cluster_20_g["Sensing"]\n'
+        '    n_g_2e_a("Sensing<br>10 Hz"):::subject\n'
+        "  end\n"
+        '  n_g_2e_a -.->|"Sensing"| n_t\n'
+        "  classDef neighbour fill:#eeeeee,stroke:#8a8a8a,color:#1b2127\n"
+        "  classDef subject stroke:#0072b2,stroke-width:2px\n```\n\n\n"
+        "*Sensing*\n\n"
+        "**Sensing**\n\n"
+        "| Sensing | Code | Link |\n| --- | --- | ---: |\n"
+        "| [Sensing](g.md#component-g.a) | `Sensing` | [paper](https://example.org/%20%281%29) |\n\n"
+        '<a id="component-g.a"></a>\n\n## Sensing\n\nPlain *words*.\n\nSensing\n\n'
+    )
+
+
+def test_hostile_text_stays_text() -> None:
+    page = wiki(EVIL)["groups/g.md"]
+    html = MarkdownIt("commonmark", {"html": True}).enable("table").render(page)
+    assert "<script" not in html
+    assert 'href="javascript' not in html
+    assert "<img" not in html
+    assert html.count("<td") == 3
+    assert f"<h1>{EVIL.replace('<', '&lt;').replace('>', '&gt;').replace(chr(34), '&quot;')}</h1>" in html
+    picture = page.partition("```mermaid\n")[2].partition("```")[0]
+    assert not set("<>`[]{}|") & set("".join(part for part in picture.split('"')[1::2]).replace("<br>", ""))
+
+
+@pytest.mark.parametrize(
+    ("given", "written"),
+    [
+        ("1.0", "1.0"),
+        ("1. one", "1\\. one"),
+        ("- one", "\\- one"),
+        ("# one", "\\# one"),
+        ("a\nb", "a b"),
+        ("snake_case", "snake\\_case"),
+        ("a\\b", "a\\\\b"),
+    ],
+)
+def test_markdown(given: str, written: str) -> None:
+    assert markdown(given) == written
+
+
+def test_code_spans_outnumber_their_ticks() -> None:
+    assert [code("a"), code("a`b"), code("``"), code("")] == ["`a`", "``a`b``", "``` `` ```", "` `"]
+
+
+def test_mermaid_labels_hold_no_mark() -> None:
+    assert mermaid('a "b" <c> #d; `e`') == "a #34;b#34; #60;c#62; #35;d#59; #96;e#96;"
+
+
+def test_identifiers_differ_as_their_texts_do() -> None:
+    assert [identifier("a.b"), identifier("a_b"), identifier("end")] == ["n_a_2e_b", "n_a_5f_b", "n_end"]
+
+
+@pytest.mark.parametrize(
+    "evil", ["<b>x</b>", "a <!-- b -->", "[x](javascript:y)", "![x](data:image/svg+xml;a)", "<file:///x>"]
+)
+def test_commonmark_with_html_or_strange_addresses_is_shown_as_text(evil: str) -> None:
+    html = MarkdownIt("commonmark", {"html": True}).render(commonmark(evil))
+    assert "<a" not in html
+    assert "<img" not in html
+    assert "<b>" not in html
+    assert "<!--" not in html
+
+
+def test_good_commonmark_is_left_as_it_is() -> None:
+    good = "See *this* [paper](https://example.org):\n\n- `a < b`\n"
+    assert commonmark(good) == good
