@@ -105,10 +105,11 @@ def grid(
         keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
         rows.append(_row(starts, row, draft.styles.id("Table Text"), "", keep, "", whole=heights[index] < height * 0.8))
     total = sum(twips(width) for width in widths)
+    columns = "".join([f'<w:gridCol w:w="{twips(width)}"/>' for width in widths])
     xml = (
         f'<w:tbl><w:tblPr><w:tblStyle w:val="{draft.styles.id(style)}"/><w:tblW w:w="{total}" w:type="dxa"/><w:tblLayout w:type="fixed"/>'
         f"{_LOOK if header else ''}{_described(description)}</w:tblPr>"
-        f"<w:tblGrid>{''.join(f'<w:gridCol w:w="{twips(width)}"/>' for width in widths)}</w:tblGrid>{''.join(rows)}</w:tbl>"
+        f"<w:tblGrid>{columns}</w:tblGrid>{''.join(rows)}</w:tbl>"
         + paragraph(draft.styles.id("Normal"), "", f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>')
     )
     first = top + sum(heights[:2]) if not short else top + sum(heights)
