@@ -1,0 +1,172 @@
+"""Tables: a header row that repeats, rows that stay whole, columns as wide as their words need, and never two tables that touch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from archgen.emit.docx import figures
+from archgen.emit.docx.draft import Draft
+from archgen.emit.docx.flow import Piece
+from archgen.emit.docx.inlines import plain, runs
+from archgen.emit.docx.markup import escape, paragraph, run, twips
+from archgen.emit.docx.metrics import MONOSPACE, Face, word_width
+from archgen.emit.docx.sheets import Sheet
+from archgen.views.shapes import Column, Facts, Inlines, Table
+
+MOST_COLUMNS = 63
+"""Word opens no table with more."""
+_AIR = 12.0
+"""Points that a cell's margins take from its width."""
+_WIDEST_WORD = 0.4
+"""Share of the table that one unbroken word may claim."""
+_SPACER = 8.0
+_SHORT = 130.0
+"""Points below which a table stays on one page."""
+_NAMES = 0.27
+_LOOK = '<w:tblLook w:val="0420" w:firstRow="1" w:lastRow="0" w:firstColumn="0" w:lastColumn="0" w:noHBand="0" w:noVBand="1"/>'
+_SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="EDF1F4"/>'
+_ALIGN = {"left": "", "right": '<w:jc w:val="right"/>', "centre": '<w:jc w:val="center"/>'}
+
+
+@dataclass(frozen=True, slots=True)
+class _Cell:
+    """A cell before it is set: its runs, its text, how it stands."""
+
+    content: str
+    text: str
+    align: str = ""
+
+
+def table(draft: Draft, shape: Table) -> Iterator[Piece]:
+    """Give a table, with its caption above if it is numbered."""
+    header = [_Cell(run(column.title), column.title, _ALIGN[column.align]) for column in shape.columns]
+    anchors = shape.row_anchors or (None,) * len(shape.rows)
+    caption_anchor = draft.fresh(shape.anchor)
+    sheet = draft.sheets.wide if shape.wide or not _fits(draft, shape, draft.sheets.base) else None
+    if shape.numbered and shape.caption:
+        yield figures.caption(draft, caption_anchor, shape.caption, sheet, "Table")
+        start = ""
+    else:
+        start = draft.mark(caption_anchor)
+    body = []
+    for row, anchor in zip(shape.rows, anchors, strict=False):
+        cells = [_Cell(runs(draft, cell), plain(cell), _ALIGN[column.align]) for cell, column in zip(row, shape.columns, strict=False)]
+        cells += [_Cell("", "")] * (len(shape.columns) - len(cells))
+        mark = start + draft.mark(anchor)
+        start = ""
+        body.append([_Cell(mark + cells[0].content, cells[0].text, cells[0].align), *cells[1:]] if mark else cells)
+    yield grid(draft, header, body, _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width), shape.caption, sheet)
+
+
+def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
+    """Give a short list of names and values as a table of two columns without a header."""
+    width = draft.sheets.base.text_width
+    face = draft.styles.face("Table Text")
+    longest = max((word_width(name) for name, _ in shape.rows), default=0) * face.size * face.factor + _AIR + 2
+    left = min(max(longest, width * _NAMES), width / 2)
+    body = [
+        [_Cell(run(name, '<w:color w:val="55606A"/>'), name), _Cell(runs(draft, value), plain(value))] for name, value in shape.rows
+    ]
+    if body:
+        yield grid(draft, [], body, [left, width - left], "", None, "Report Facts")
+
+
+def simple(draft: Draft, header: Sequence[Inlines], body: Sequence[Sequence[Inlines]], aligns: Sequence[str]) -> Piece:
+    """Give a table from a chapter, without caption and number."""
+    cells = [_Cell(runs(draft, cell), plain(cell), align) for cell, align in zip(header, aligns, strict=True)]
+    rows = [[_Cell(runs(draft, cell), plain(cell), align) for cell, align in zip(row, aligns, strict=True)] for row in body]
+    weights = [max(1.0, *(len(row[n].text) ** 0.5 for row in [cells, *rows])) for n in range(len(cells))]
+    columns = tuple(Column(cell.text, weight) for cell, weight in zip(cells, weights, strict=True))
+    texts = tuple(tuple(row) for row in body)
+    return grid(draft, cells, rows, _widths(draft, columns, texts, draft.sheets.base.text_width), "", None)
+
+
+def grid(
+    draft: Draft,
+    header: Sequence[_Cell],
+    body: Sequence[Sequence[_Cell]],
+    widths: Sequence[float],
+    description: str,
+    sheet: Sheet | None,
+    style: str = "Report Table",
+) -> Piece:
+    """Set a table, with the small empty paragraph behind it that keeps it from the next."""
+    text, head = draft.styles.face("Table Text"), draft.styles.face("Table Heading")
+    heights = [_height(row, widths, text) for row in body]
+    top = _height(header, widths, head) if header else 0.0
+    height = (sheet or draft.sheets.base).text_height
+    short = top + sum(heights) <= _SHORT
+    shade = _SHADE if draft.styles.id(style) == draft.styles.id("Table Grid") else ""
+    starts = [_start(twips(width)) for width in widths]
+    rows = [_row(starts, header, draft.styles.id("Table Heading"), "<w:tblHeader/>", "", shade, whole=True)] if header else []
+    last = len(body) - 1
+    for index, row in enumerate(body):
+        keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
+        rows.append(_row(starts, row, draft.styles.id("Table Text"), "", keep, "", whole=heights[index] < height * 0.8))
+    total = sum(twips(width) for width in widths)
+    columns = "".join([f'<w:gridCol w:w="{twips(width)}"/>' for width in widths])
+    xml = (
+        f'<w:tbl><w:tblPr><w:tblStyle w:val="{draft.styles.id(style)}"/><w:tblW w:w="{total}" w:type="dxa"/><w:tblLayout w:type="fixed"/>'
+        f"{_LOOK if header else ''}{_described(description)}</w:tblPr>"
+        f"<w:tblGrid>{columns}</w:tblGrid>{''.join(rows)}</w:tbl>"
+        + paragraph(draft.styles.id("Normal"), "", f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>')
+    )
+    first = top + sum(heights[:2]) if not short else top + sum(heights)
+    rest = [] if short else heights[2:]
+    return Piece(xml, (first, *rest, _SPACER), repeat=top, sheet=sheet)
+
+
+def _described(description: str) -> str:
+    return f'<w:tblCaption w:val="{escape(description)}"/><w:tblDescription w:val="{escape(description)}"/>' if description else ""
+
+
+def _start(width: int) -> str:
+    return f'<w:tc><w:tcPr><w:tcW w:w="{width}" w:type="dxa"/>'
+
+
+def _row(starts: Sequence[str], cells: Sequence[_Cell], style: str, kind: str, keep: str, shade: str, *, whole: bool) -> str:  # noqa: PLR0913 - one place
+    inner = "".join([
+        f'{start}{shade}</w:tcPr><w:p><w:pPr><w:pStyle w:val="{style}"/>{keep}{cell.align}</w:pPr>{cell.content}</w:p></w:tc>'
+        for start, cell in zip(starts, cells, strict=True)
+    ])
+    properties = ("<w:cantSplit/>" if whole else "") + kind
+    return f"<w:tr>{f'<w:trPr>{properties}</w:trPr>' if properties else ''}{inner}</w:tr>"
+
+
+def _height(cells: Sequence[_Cell], widths: Sequence[float], face: Face) -> float:
+    most = 1
+    for cell, width in zip(cells, widths, strict=True):
+        if cell.text:
+            most = max(most, sum(face.lines(line, width - _AIR) for line in cell.text.split("\n")))
+    return most * face.line + face.before + face.after + 0.5
+
+
+def _longest(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]]) -> list[float]:
+    """Give the width of each column's longest word, with the cell's margins."""
+    text, head = draft.styles.face("Table Text"), draft.styles.face("Table Heading")
+    found = [max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor for column in columns]
+    for row in rows:
+        for index, cell in enumerate(row[: len(found)]):
+            for item in cell:
+                scale = text.size * (text.factor if not item.code else MONOSPACE)
+                for word in item.text.split():
+                    found[index] = max(found[index], word_width(word) * scale)
+    return [width + _AIR for width in found]
+
+
+def _fits(draft: Draft, shape: Table, sheet: Sheet) -> bool:
+    longest = _longest(draft, shape.columns, shape.rows)
+    return sum(min(width, sheet.text_width * _WIDEST_WORD) for width in longest) <= sheet.text_width
+
+
+def _widths(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], total: float) -> list[float]:
+    """Share the width by the columns' weights, but leave each the room of its longest word as far as there is any."""
+    least = [min(width, total * _WIDEST_WORD) for width in _longest(draft, columns, rows)]
+    if sum(least) >= total:
+        return [width * total / sum(least) for width in least]
+    weight = sum(max(column.weight, 0.01) for column in columns)
+    share = [total * max(column.weight, 0.01) / weight for column in columns]
+    spare = [max(wanted - need, 0) for wanted, need in zip(share, least, strict=True)]
+    room = total - sum(least)
+    return [need + room * (extra / sum(spare) if sum(spare) else 1 / len(least)) for need, extra in zip(least, spare, strict=True)]
