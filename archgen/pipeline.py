@@ -12,7 +12,7 @@ from pathlib import Path
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import rules, suppress
-from archgen.link import chapters, interfaces, shipped
+from archgen.link import chapters, interfaces, merge, shipped
 from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
@@ -106,7 +106,7 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 def judge(loaded: Loaded) -> Checked:
     """Take a project that was read through all stages up to its findings."""
-    merged, merge_findings = link.merge(loaded.documents)
+    merged, merge_findings = merge.merge(loaded.documents)
     known, interface_findings = _interfaces(loaded, merged)
     linked, link_findings = link.link(
         merged,

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from archgen.link import merge as _merge
-from archgen.link import rules as _rules
+from archgen.link import merge, rules
 from archgen.link.chapters import MISSING_CHAPTER
 from archgen.link.declare import link
-from archgen.link.merge import merge
 
-RULES = (*_merge.RULES, *_rules.RULES, MISSING_CHAPTER)
+RULES = (*merge.RULES, *rules.RULES, MISSING_CHAPTER)
 
-__all__ = ["RULES", "link", "merge"]
+__all__ = ["RULES", "link"]
