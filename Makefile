@@ -57,9 +57,9 @@ clean:
 	mkdir -p .make && touch $@
 
 # What the tests need beside: the judges (a browser, an office, the validators) and the tools of the check.
-.make/test: .make/run tests/judges/package-lock.json
+.make/test: .make/run tests/judges/package.json
 	sh tools/system_packages.sh test
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group check
-	npm ci --prefix tests/judges --no-audit --no-fund --loglevel=error
+	npm install --prefix tests/judges --no-package-lock --no-audit --no-fund --loglevel=error
 	touch $@
