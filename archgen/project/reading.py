@@ -63,6 +63,7 @@ def _keep(reading: Reading, file: str, document: Document | None, found: tuple[D
 
 
 def read_sources(reading: Reading) -> None:
+    """Read the files that `sources` names, or all below where nothing is written."""
     listed = reading.documents[0].root.entries.get("sources") if reading.documents else None
     if listed is None:
         _read_all(reading)
@@ -98,7 +99,7 @@ def _read_all(reading: Reading) -> None:
                 _keep(reading, file, document, found)
         elif document.root.entries:
             ignored.append((file, next(filter(None, (closest(key, known) for key in document.root.entries)), None)))
-    if ignored:
+    if ignored and MARKER not in reading.broken:
         reading.diagnostics.append(_ignored(ignored))
 
 

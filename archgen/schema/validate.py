@@ -65,7 +65,13 @@ def _data(value: Value) -> object:
     if isinstance(value, Listing):
         return [_data(item) for item in value.items]
     found = value.value
-    return value.text if type(found) is float or (type(found) is int and abs(found) >> 62) else found
+    if type(found) is float:
+        return value.text
+    return max(-_BEYOND, min(found, _BEYOND)) if type(found) is int else found
+
+
+_BEYOND = 1 << 60
+"""Larger than any number of the language, and small enough for the validator."""
 
 
 def _by_weight(errors: Iterable[jsonschema_rs.ValidationError]) -> list[jsonschema_rs.ValidationError]:

@@ -116,6 +116,8 @@ def _scalar_help(text: str, part: dict[str, Any]) -> str | None:
     if "integer" in types:
         digits = re.match(r"\s*([0-9]+)", text)
         return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
+    if "array" in types:
+        return f"write `[{_short(text)}]`"
     if "patternErrorMessage" in part:
         return str(part["patternErrorMessage"])
     return f"its keys are {_listed(tuple(part['properties']))}" if part.get("properties") else None
@@ -198,14 +200,14 @@ def _better_unit(unit: str, dimension: str) -> str | None:
 
 def _expected(part: dict[str, Any]) -> str:
     types = [kind for kind in _types(part) if kind != "null"]
-    words = ["a text"] if "string" in types else []
+    words = ["text"] if "string" in types else []
     if "enum" in part:
         words = [f"one of {_listed([option for option in part['enum'] if option is not None])}"]
     words += [
         _PLAIN_WORDS[kind] for kind in types if kind in _PLAIN_WORDS and not ("string" in types and kind == "boolean")
     ]
     if "number" in types and "boolean" not in types:
-        words = ["a number", *(word for word in words if word != "a text")]
+        words = ["a number", *(word for word in words if word != "text")]
     return " or ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else words[0]
 
 

@@ -158,6 +158,7 @@ _FIXED: tuple[tuple[str, _Words], ...] = (
     (" tag", _Words("text cannot begin with `!`", QUOTE, at_start=True)),
     (" directive", _Words("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
     ("incompatible YAML", _Words("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
+    ("found unexpected ':'", _Words("the `:` has no blank after it", "write `key: value`")),
     ("node content", _Words("a value cannot begin with this", QUOTE)),
     (
         "<document start>",
