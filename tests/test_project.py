@@ -123,7 +123,7 @@ def test_the_project_around_the_current_folder(tmp_path: Path, monkeypatch: pyte
 def test_no_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ProjectNotFoundError, match=r"holds no archgen.yaml: `archgen init` makes one"):
         load(tmp_path)
-    with pytest.raises(ProjectNotFoundError, match="x.yaml does not exist"):
+    with pytest.raises(ProjectNotFoundError, match=r"x.yaml does not exist"):
         load(tmp_path / "x.yaml")
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ProjectNotFoundError, match=r"no archgen.yaml here or in a folder above"):

@@ -118,6 +118,8 @@ def _scalar_help(text: str, part: dict[str, Any]) -> str | None:
         return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
     if "array" in types:
         return f"write `[{_short(text)}]`"
+    if "propertyNames" in part:
+        return "write one `id: ...` line for each below it, or `{}` for none"
     if "patternErrorMessage" in part:
         return str(part["patternErrorMessage"])
     return f"its keys are {_listed(tuple(part['properties']))}" if part.get("properties") else None
@@ -125,6 +127,8 @@ def _scalar_help(text: str, part: dict[str, Any]) -> str | None:
 
 def _container_help(name: str, value: Value, part: dict[str, Any]) -> str | None:
     if isinstance(value, Listing) and "object" in part.get("type", ()):
+        if not value.items:
+            return "write `{}` for none"
         if "propertyNames" in part or isinstance(part.get("additionalProperties"), dict):
             return f"{name} is keyed by id: write `id: ...` lines instead of a list"
         return f"its keys are {_listed(tuple(part['properties']))}" if part.get("properties") else None

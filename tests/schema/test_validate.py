@@ -33,6 +33,8 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("groups: {g: {titel: x}}", "1:14 unknown-key: a functional group has no key `titel` | did you mean `title`?"),
         ("groups: {g: {components: {c: {name: x}}}}", "1:31 unknown-key: a component has no key `name` | the key above is the id; write the name for people as `title`"),
         ("groups: {g: {components: {c: {inputs: [a]}}}}", "1:31 wrong-type: `inputs` is a list, but must be a mapping | `inputs` is keyed by id: write `id: ...` lines instead of a list"),
+        ("groups: {g: {components: {c: {inputs: []}}}}", "1:31 wrong-type: `inputs` is a list, but must be a mapping | write `{}` for none"),
+        ("groups: {g: {components: {c: {inputs: rgbd}}}}", "1:39 wrong-type: `inputs` is `rgbd`, but must be a mapping | write one `id: ...` line for each below it, or `{}` for none"),
         ("groups: {g: {components: {c: {inputs: {a: {optional: yes}}}}}}", "1:54 wrong-type: `optional` is `yes`, but must be `true` or `false` | write `true`"),
         ("groups: {g: {components: {c: {role: fliter}}}}", "1:37 wrong-value: `role` cannot be `fliter` | did you mean `filter`?"),
         ("groups: {g: {title: [x]}}", "1:14 wrong-type: `title` is a list, but must be text | None"),
