@@ -10,12 +10,14 @@ from archgen.analyses import (
     mapping,
     messages,
     names,
+    policies,
     port_types,
     progress,
     qos,
     requirements,
     roles,
     sections,
+    selectors,
     topics,
     type_mapping,
 )
@@ -40,6 +42,8 @@ _JUDGES = (
     *messages.RULES,
     *type_mapping.RULES,
     *chains.RULES,
+    *policies.RULES,
+    *selectors.RULES,
     *progress.RULES,
 )
 

@@ -256,8 +256,10 @@ def _touches_the_world(component: Component) -> bool:
 
 
 def _has_open_reference(component: Component) -> bool:
-    """Tell whether some reference could not be resolved: that is reported already."""
-    return any(entry.from_written and not entry.connections for entry in component.inputs.values())
+    """Tell whether some reference could not be resolved or brings nothing: that is reported already."""
+    return any(
+        entry.from_written and not any(c.outputs for c in entry.connections) for entry in component.inputs.values()
+    )
 
 
 RULES = (
