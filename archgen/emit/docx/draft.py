@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from urllib.parse import quote, urlsplit
 
-from archgen.emit.docx.markup import R, bookmark_name
+from archgen.emit.docx.markup import R, bookmark_name, clean
 from archgen.emit.docx.numbering import Numbering
 from archgen.emit.docx.package import Package, Relation
 from archgen.emit.docx.sheets import Sheets
@@ -99,6 +99,7 @@ class Draft:
 
     def warn(self, text: str) -> None:
         """Say something about the report to who makes it, once."""
+        text = clean(text)
         if text not in self.warnings:
             self.warnings.append(text)
 

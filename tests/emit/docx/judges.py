@@ -1,0 +1,34 @@
+"""The judges from outside that Word reports are held against: Microsoft's Open XML SDK, and LibreOffice's pages."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+_VALIDATOR = Path(__file__).parents[2] / "judges" / "node_modules" / ".bin" / "ooxml-validator"
+
+
+def validated(path: Path) -> list[dict[str, Any]]:
+    """Give what Microsoft's validator says against a .docx."""
+    assert _VALIDATOR.exists(), "Microsoft's validator is missing: run `npm ci` in tests/judges (it needs Node.js)"
+    result = subprocess.run([_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=120)
+    assert result.returncode in {0, 1}, f"the validator could not run: {result.stdout}{result.stderr}"
+    answer = json.loads(result.stdout)
+    errors: list[dict[str, Any]] = answer["errors"]
+    return errors
+
+
+def pages(path: Path) -> list[str]:
+    """Give the text of each page that LibreOffice makes of a .docx."""
+    for program, package in (("soffice", "libreoffice-writer-nogui"), ("pdftotext", "poppler-utils")):
+        assert shutil.which(program), f"`{program}` is missing: install Debian's {package}"
+    profile = f"-env:UserInstallation=file://{path.parent / 'libreoffice'}"
+    command = ["soffice", profile, "--headless", "--convert-to", "pdf", "--outdir", str(path.parent), str(path)]
+    subprocess.run(command, check=True, capture_output=True, timeout=180)
+    pdf = path.with_suffix(".pdf")
+    assert pdf.exists(), "LibreOffice made no PDF of the report"
+    shown = subprocess.run(["pdftotext", "-layout", str(pdf), "-"], check=True, capture_output=True, text=True, timeout=60)
+    return shown.stdout.split("\f")[:-1]

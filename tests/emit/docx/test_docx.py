@@ -1,0 +1,150 @@
+"""The Word report as a whole: what judges say of it, and what a reader must find in it."""
+
+from __future__ import annotations
+
+import html
+import io
+import re
+import time
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from archgen.emit.docx import write
+from archgen.views.shapes import Column, Figure, Markdown, Outline, Paragraph, Section, Table, Text
+from tests.emit.docx import inspection, judges, sample
+
+
+def report(outline: Outline) -> bytes:
+    return write(outline, sample.pictures(), chapter_files=sample.FILES.get)[0]
+
+
+def document(data: bytes, part: str = "word/document.xml") -> str:
+    return zipfile.ZipFile(io.BytesIO(data)).read(part).decode()
+
+
+def words(xml: str) -> str:
+    return re.sub(r"<[^>]+>", "", xml)
+
+
+@pytest.mark.parametrize("outline", [sample.outline(), sample.hostile(), Outline("Empty")], ids=["whole", "hostile", "empty"])
+def test_no_judge_finds_a_fault(outline: Outline, tmp_path: Path) -> None:
+    data = report(outline)
+    assert inspection.faults(data) == []
+    path = tmp_path / "report.docx"
+    path.write_bytes(data)
+    assert judges.validated(path) == []
+
+
+def test_contents_show_the_pages_where_the_headings_are(tmp_path: Path) -> None:
+    outline = sample.outline(5, 5)
+    path = tmp_path / "report.docx"
+    path.write_bytes(report(outline))
+    pages = judges.pages(path)
+    assert len(pages) > 20
+    front = "\n".join(pages[1:5])
+    shown = dict(re.findall(r"^ *([0-9A-Z][0-9.]* .+?)\.{3,} *(\d+)$", front, re.MULTILINE))
+    assert len(shown) == 36
+    for heading, page in shown.items():
+        pattern = r"^\s*" + r"\s+".join(re.escape(word) for word in heading.split()) + r"\s*$"
+        found = [number for number, text in enumerate(pages, 1) if re.search(pattern, text, re.MULTILINE)]
+        assert int(page) in found, f"{heading} is said to be on page {page} and stands on {found}"
+
+
+def test_stored_page_numbers_are_close_to_the_real_ones(tmp_path: Path) -> None:
+    path = tmp_path / "report.docx"
+    data = report(sample.outline(5, 5))
+    path.write_bytes(data)
+    stored = [int(page) for page in re.findall(r"PAGEREF .*?<w:t [^>]*>(\d+)</w:t>", document(data))]
+    shown = [int(page) for text in judges.pages(path) for page in re.findall(r"\.{4,} *(\d+) *$", text, re.MULTILINE)]
+    assert len(stored) == len(shown)
+    # LibreOffice may have other fonts than Word, and Word other rules than LibreOffice: equal is not to be had.
+    assert max(abs(one - other) for one, other in zip(stored, shown, strict=True)) <= 3
+
+
+def test_the_same_report_is_the_same_bytes() -> None:
+    one, two = report(sample.outline(1, 1)), report(sample.outline(1, 1))
+    assert one == two
+    assert {item.date_time for item in zipfile.ZipFile(io.BytesIO(one)).infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_a_large_report_is_written_in_time() -> None:
+    outline, pictures = sample.outline(14, 10), sample.pictures()
+    started = time.process_time()
+    write(outline, pictures, chapter_files=sample.FILES.get)
+    assert time.process_time() - started < 1.5
+
+
+def test_headings_are_numbered_and_appendices_lettered() -> None:
+    outline = Outline(
+        "T",
+        sections=(
+            Section("a", "First", sections=(Section("b", "Below"), Section("c", "Again"))),
+            Section("d", "Second", (Markdown("# From a chapter", shift=1),)),
+            Section("e", "Extra", sections=(Section("f", "Inside"),), appendix=True),
+        ),
+    )
+    entries = re.findall(r'w:history="1">(.*?)<w:r><w:tab/>', document(report(outline)))
+    assert [words(entry) for entry in entries] == [
+        "1  First", "1.1  Below", "1.2  Again", "2  Second", "2.1  From a chapter", "A  Extra", "A.1  Inside",
+    ]  # fmt: skip
+
+
+def test_references_lead_to_bookmarks_or_stay_text() -> None:
+    inlines = (Text("there", ref="b"), Text("nowhere", ref="gone"), Text("out", url="https://example.org/?a=1&b=2"), Text("trap", url="javascript:x"))
+    outline = Outline("T", sections=(Section("a", "A", (Paragraph(inlines),)), Section("b", "B")))
+    data = report(outline)
+    body = document(data).partition("PAGEREF")[2]
+    assert len(re.findall(r'<w:hyperlink [^>]*>(?:(?!</w:hyperlink>).)*there', body)) == 1
+    assert re.search(r"<w:r><w:t [^>]*>nowhere</w:t></w:r><w:hyperlink r:id=", body)
+    assert re.search(r"<w:r><w:t [^>]*>trap</w:t></w:r>", body)
+    assert 'Target="https://example.org/?a=1&amp;b=2" TargetMode="External"' in document(data, "word/_rels/document.xml.rels")
+
+
+def test_captions_are_fields_and_stand_in_their_lists() -> None:
+    table = Table("t", "Ports", (Column("a"),), (((Text("x"),),),))
+    outline = Outline("T", sections=(Section("a", "A", (Figure("f", "small", "Picture", "alt"), table)),))
+    xml = document(report(outline))
+    assert [words(found) for found in re.findall(r'w:history="1">(.*?)<w:r><w:tab/>', xml)] == ["1  A", "Figure 1: Picture", "Table 1: Ports"]
+    assert re.findall(r" (SEQ \w+ \\\* ARABIC) ", xml) == ["SEQ Figure \\* ARABIC", "SEQ Table \\* ARABIC"]
+    codes = [html.unescape(code).strip() for code in re.findall(r"> (TOC [^<]*)<", xml)]
+    assert codes == ['TOC \\o "1-3" \\h \\z \\u', 'TOC \\h \\z \\c "Figure"', 'TOC \\h \\z \\c "Table"']
+
+
+def test_wide_things_turn_the_page_and_back() -> None:
+    xml = document(report(sample.outline(1, 1)))
+    sizes = re.findall(r'<w:pgSz w:w="(\d+)" w:h="(\d+)"', xml)
+    a4, turned, a3 = ("11906", "16838"), ("16838", "11906"), ("23812", "16838")
+    assert sizes[0] == a4
+    assert sizes[-1] == a4
+    assert turned in sizes
+    assert a3 in sizes
+    assert all(one != other or one == a4 for one, other in zip(sizes, sizes[1:], strict=False))
+
+
+def test_tables_repeat_their_header_and_keep_rows_whole() -> None:
+    rows = tuple(((Text(f"row {n}"),),) for n in range(50))
+    xml = document(report(Outline("T", sections=(Section("a", "A", (Table("t", "Many", (Column("Name"),), rows),)),))))
+    table = xml[xml.index("<w:tbl>") :]
+    assert table.count("<w:tr>") == 51
+    assert table.count("<w:cantSplit/>") == 51
+    assert table.count("<w:tblHeader/>") == 1
+    assert table.index("<w:tblHeader/>") < table.index("Name") < table.index("row 0")
+
+
+def test_pictures_are_sharp_and_described() -> None:
+    data = report(Outline("T", sections=(Section("a", "A", (Figure("f", "small", "Picture", "A camera & more"),)),)))
+    xml = document(data)
+    assert 'descr="A camera &amp; more"' in xml
+    assert "asvg:svgBlip" in xml
+    names = [name for name in zipfile.ZipFile(io.BytesIO(data)).namelist() if "media" in name]
+    assert names == ["word/media/archgen1.png", "word/media/archgen2.svg"]
+
+
+def test_a_row_that_others_refer_to_has_a_bookmark() -> None:
+    table = Table("t", "Requirements", (Column("id"),), (((Text("R-12"),),),), row_anchors=("requirement:R-12",))
+    outline = Outline("T", sections=(Section("a", "A", (Paragraph((Text("see R-12", ref="requirement:R-12"),)), table)),))
+    data = report(outline)
+    assert inspection.faults(data) == []
+    assert re.search(r"<w:hyperlink w:anchor=\"_ag\w+\"[^>]*><w:r><w:rPr><w:rStyle w:val=\"Hyperlink\"/></w:rPr><w:t [^>]*>see R-12", document(data))

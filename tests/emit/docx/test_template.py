@@ -1,0 +1,244 @@
+"""A partner's template: its styles, cover, headers and paper are taken; what it lacks is added; what is no template is refused."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import docx
+import pytest
+from docx.enum.style import WD_STYLE_TYPE
+from docx.oxml import OxmlElement
+from docx.oxml.ns import qn
+from docx.shared import Mm
+
+from archgen.emit.docx import TemplateError, write
+from archgen.views.shapes import Outline, Section, Text
+from tests.emit.docx import inspection, judges, sample
+
+Change = Callable[[Any], None]
+
+
+def saved(*changes: Change) -> bytes:
+    """Make a template out of python-docx's own: real styles of Word, letter paper."""
+    document = docx.Document()
+    for change in changes:
+        change(document)
+    target = io.BytesIO()
+    document.save(target)
+    return target.getvalue()
+
+
+def rewritten(data: bytes, part: str, old: str, new: str) -> bytes:
+    source, target = zipfile.ZipFile(io.BytesIO(data)), io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name in source.namelist():
+            content = source.read(name)
+            if name == part:
+                assert old.encode() in content
+                content = content.replace(old.encode(), new.encode())
+            archive.writestr(name, content)
+    return target.getvalue()
+
+
+def dotx(data: bytes) -> bytes:
+    kind = "application/vnd.openxmlformats-officedocument.wordprocessingml."
+    return rewritten(data, "[Content_Types].xml", f"{kind}document.main+xml", f"{kind}template.main+xml")
+
+
+def a5(document: Any) -> None:
+    section = document.sections[0]
+    section.page_width, section.page_height = Mm(148), Mm(210)
+    section.left_margin = section.right_margin = Mm(15)
+
+
+def without_styles(document: Any) -> None:
+    styles = document.styles
+    for name in ("Caption", "Table Grid", "Title", "Subtitle", "List Bullet", "List Number", "Quote", "TOC Heading", "Heading 4"):
+        styles[name].delete()
+
+
+def own_names(document: Any) -> None:
+    """Headings and captions under names that Word does not know, found by outline level and by what captions are called."""
+    for level in range(1, 10):
+        style = document.styles[f"Heading {level}"]
+        element = style.element
+        element.find(qn("w:name")).set(qn("w:val"), f"Partner Kapitel {level}")
+        element.set(qn("w:styleId"), f"Kapitel{level}")
+    for item in document.styles.element.iter(qn("w:basedOn"), qn("w:next"), qn("w:link")):
+        item.set(qn("w:val"), re.sub(r"^Heading(\d)$", r"Kapitel\1", item.get(qn("w:val"))))
+    caption = document.styles["Caption"].element
+    caption.find(qn("w:name")).set(qn("w:val"), "Partner Beschriftung")
+    caption.set(qn("w:styleId"), "PBeschriftung")
+
+
+def covered(document: Any) -> None:
+    document.add_heading("ACME deliverable", 0)
+    document.add_paragraph("{{title}}, version {{ Version }}, {{unheard of}}")
+    document.add_table(1, 2)
+    document.sections[0].header.paragraphs[0].text = "ACME confidential {{revision}}"
+    document.add_paragraph("{{report}}")
+    document.add_paragraph("The end of the deliverable")
+
+
+def broken_paper(document: Any) -> None:
+    document.sections[0].left_margin = Mm(400)
+
+
+def numbered(document: Any) -> None:
+    """Give the first heading a number in Roman letters, as the template's own."""
+    numbering = document.part.numbering_part.element
+    abstract, num = OxmlElement("w:abstractNum"), OxmlElement("w:num")
+    abstract.set(qn("w:abstractNumId"), "77")
+    level = OxmlElement("w:lvl")
+    level.set(qn("w:ilvl"), "0")
+    for name, value in (("w:numFmt", "upperRoman"), ("w:pStyle", "Heading1"), ("w:lvlText", "Part %1")):
+        item = OxmlElement(name)
+        item.set(qn("w:val"), value)
+        level.append(item)
+    abstract.append(level)
+    numbering.insert(0, abstract)
+    num.set(qn("w:numId"), "77")
+    link = OxmlElement("w:abstractNumId")
+    link.set(qn("w:val"), "77")
+    num.append(link)
+    numbering.append(num)
+    properties = document.styles["Heading 1"].element.get_or_add_pPr()
+    properties.get_or_add_numPr().get_or_add_numId().val = 77
+
+
+def report(template: bytes, outline: Outline | None = None) -> tuple[bytes, tuple[str, ...]]:
+    return write(outline or sample.outline(1, 2), sample.pictures(), template=template, chapter_files=sample.FILES.get)
+
+
+def part(data: bytes, name: str = "word/document.xml") -> str:
+    return zipfile.ZipFile(io.BytesIO(data)).read(name).decode()
+
+
+TEMPLATES = {
+    "letter": saved(),
+    "a5": saved(a5),
+    "own names": saved(own_names),
+    "missing styles": saved(without_styles),
+    "dotx": dotx(saved()),
+    "cover": saved(covered),
+    "numbered": saved(numbered),
+    "broken paper": saved(broken_paper),
+    "all at once": dotx(saved(a5, own_names, covered)),
+}
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_no_judge_finds_a_fault(name: str, tmp_path: Path) -> None:
+    data, _ = report(TEMPLATES[name])
+    assert inspection.faults(data) == []
+    path = tmp_path / "report.docx"
+    path.write_bytes(data)
+    assert judges.validated(path) == []
+
+
+@pytest.mark.parametrize(("name", "size", "width"), [("letter", (12240, 15840), 8640), ("a5", (8391, 11906), 6690), ("broken paper", (11906, 16838), 9072)])
+def test_the_paper_decides_the_widths(name: str, size: tuple[int, int], width: int) -> None:
+    xml = part(report(TEMPLATES[name])[0])
+    assert f'<w:pgSz w:w="{size[0]}" w:h="{size[1]}"' in xml
+    tables = [int(text) for text in re.findall(r'<w:tblW w:w="(\d+)" w:type="dxa"/>', xml)]
+    assert tables
+    assert min(abs(table - width) for table in tables) <= 4
+    pictures = [int(text) / 635 for text in re.findall(r'<wp:extent cx="(\d+)"', xml)]
+    assert max(pictures) <= max(2 * size[0], size[1])
+
+
+def test_own_heading_and_caption_styles_are_used() -> None:
+    xml = part(report(TEMPLATES["own names"])[0])
+    assert '<w:pStyle w:val="Kapitel1"/>' in xml
+    assert '<w:pStyle w:val="Kapitel2"/>' in xml
+    assert '<w:pStyle w:val="PBeschriftung"/>' in xml
+    assert "Heading1" not in xml
+
+
+def test_missing_styles_are_added_and_named() -> None:
+    data, warnings = report(TEMPLATES["missing styles"])
+    said = next(warning for warning in warnings if "has no style" in warning)
+    for name in ("Title", "Subtitle", "heading 4", "caption", "Table Grid", "TOC Heading", "toc 1", "table of figures", "Hyperlink"):
+        assert f"`{name}`" in said
+    assert '<w:name w:val="table of figures"/>' in part(data, "word/styles.xml")
+
+
+def test_cover_header_and_closing_words_stay_and_are_filled_in() -> None:
+    data, warnings = report(TEMPLATES["cover"])
+    xml = part(data)
+    texts = re.findall(r"<w:t[ >][^<]*", xml)
+    flat = "".join(text.partition(">")[2] for text in texts)
+    assert flat.index("ACME deliverable") < flat.index("Architecture of a robot that helps, version 1.0, ") < flat.index("Contents")
+    assert flat.endswith("The end of the deliverable")
+    assert "{{" not in flat
+    assert flat.count("Architecture of a robot that helps") == 1
+    assert "ACME confidential 3f2a91c" in part(data, "word/header1.xml")
+    assert "the template asks for {{unheard of}}, which the report does not have: it stays empty" in warnings
+
+
+def test_a_name_that_word_cut_into_runs_is_filled_in() -> None:
+    def cut(document: Any) -> None:
+        paragraph = document.add_paragraph("by {{ti")
+        paragraph.add_run("tle}}")
+
+    assert "by Architecture of a robot that helps" in part(report(saved(cut))[0])
+
+
+def test_own_numbers_of_headings_stay() -> None:
+    data, _ = report(TEMPLATES["numbered"], Outline("T", sections=(Section("a", "First"), Section("b", "Second"))))
+    assert re.findall(r"(Part \w+)  \w+</w:t>", part(data)) == ["Part I", "Part II"]
+
+
+def test_settings_that_ask_or_fetch_are_taken_out() -> None:
+    def asking(document: Any) -> None:
+        document.settings.element.insert(0, OxmlElement("w:updateFields"))
+
+    assert "updateFields" not in part(report(saved(asking))[0], "word/settings.xml")
+
+
+def zipped(**parts: str) -> bytes:
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in parts.items():
+            archive.writestr(name, text)
+    return target.getvalue()
+
+
+def bomb() -> bytes:
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("word/document.xml", "w", force_zip64=True) as stream:
+        for _ in range(210):
+            stream.write(b"\0" * 1_000_000)
+    return target.getvalue()
+
+
+WORD = "application/vnd.openxmlformats-officedocument.wordprocessingml.document.main+xml"
+MACROS = "application/vnd.ms-word.document.macroEnabled.main+xml"
+
+
+@pytest.mark.parametrize(
+    ("template", "message"),
+    [
+        (b"", "the template is no Word file: it cannot be opened as a package (File is not a zip file)"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"x" * 99, "protected with a password or is an old .doc"),
+        (zipped(a="b"), "it is a zip file without `[Content_Types].xml`"),
+        (saved()[:20_000], "the template is no Word file: it cannot be opened as a package"),
+        (bomb(), "unpacked it is larger than 200 MB"),
+        (zipped(**{f"p{n}": "" for n in range(4001)}), "it has 4001 parts"),
+        (rewritten(saved(), "[Content_Types].xml", WORD, MACROS), "it holds macros or controls"),
+        (rewritten(saved(), "[Content_Types].xml", WORD, "text/xml"), "its main part is not a Word document"),
+        (rewritten(saved(), "word/styles.xml", "<w:styles", "<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><w:styles"), "declares a document type"),
+        (rewritten(saved(), "word/document.xml", "</w:body>", ""), "its part `word/document.xml` is not well-formed XML"),
+        (rewritten(saved(), "word/document.xml", "w:document", "w:documents"), "its part `word/document.xml` holds no document"),
+        (rewritten(saved(), "word/document.xml", "http://schemas.openxmlformats.org/wordprocessingml/2006/main", "http://purl.oclc.org/ooxml/wordprocessingml/main"), "Strict Open XML"),
+    ],
+)  # fmt: skip
+def test_what_is_no_template_is_refused(template: bytes, message: str) -> None:
+    with pytest.raises(TemplateError) as error:
+        report(template, Outline("T", facts=(("Version", (Text("1"),)),)))
+    assert message in str(error.value)
