@@ -153,7 +153,9 @@ def test_the_tree_shows_where_the_reader_is() -> None:
 
 
 def test_long_lists_are_not_repeated_on_each_page() -> None:
-    parent = Page("t.html", "page:t", "Topics", "spanning", Section("page:t", "Topics", ()), (("Overview", "page:index"),))
+    parent = Page(
+        "t.html", "page:t", "Topics", "spanning", Section("page:t", "Topics", ()), (("Overview", "page:index"),)
+    )
     crumbs = (("Overview", "page:index"), ("Topics", "page:t"))
     topics = [Page(f"t/{i}.html", f"t:{i}", f"/t{i}", "topics", Section(f"t:{i}", "T", ()), crumbs) for i in range(201)]
     groups = [other(f"g/{i}.html", f"g:{i}", f"G{i}") for i in range(201)]
