@@ -9,7 +9,7 @@ from archgen.emit import text
 from archgen.emit.backends import find
 from archgen.views.shapes import Page, Section
 
-DOCS = Path(__file__).resolve().parents[3] / "docs" / "own_backends.md"
+DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
 
 
 def test_the_example_works(tmp_path: Path) -> None:
