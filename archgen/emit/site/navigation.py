@@ -13,6 +13,10 @@ from archgen.emit.site.links import Links
 from archgen.emit.site.markup import escape, words
 from archgen.views.shapes import Page
 
+LISTED = 200
+"""A list longer than this is not repeated on each page of it: the page above has it whole, with a filter."""
+NEWLINE = "\n"
+
 
 @dataclass(frozen=True, slots=True)
 class Navigation:
@@ -26,14 +30,14 @@ class Navigation:
     start: str
     home: str
     links: Links
-    made: dict[tuple[str, str | None], str] = field(default_factory=dict)
+    made: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
 
     def html(self, page: Page, root: str) -> str:
         """Write the tree for a page; trees that differ only in where the reader is are made once."""
-        top = self._top(page.anchor)
-        key = (root, top)
+        way = self._way(page.anchor)
+        key = (root, way if any(map(self._long, self._lists(way))) else way[-1:])
         if key not in self.made:
-            self.made[key] = "\n".join(self._kind(kind, title, top, root) for kind, title in self.kinds)
+            self.made[key] = "\n".join(self._kind(kind, title, way, root) for kind, title in self.kinds)
         address = f'href="{root}{self.links.pages[page.anchor]}"'
         return self.made[key].replace(address, f'{address} aria-current="page"', 1)
 
@@ -42,26 +46,41 @@ class Navigation:
         found = ((title, self.links.pages.get(anchor)) for title, anchor in page.crumbs)
         return [(title, None if path is None else root + path) for title, path in found]
 
-    def _top(self, anchor: str) -> str | None:
-        """Give the page right below the start page that leads to this one."""
-        seen = {anchor}
-        while (parent := self.parents.get(anchor)) and parent in self.parents and parent not in seen:
-            anchor = parent
-            seen.add(anchor)
-        return anchor
+    def _way(self, anchor: str) -> tuple[str, ...]:
+        """Give the pages from this one up to the one right below the start page."""
+        way = [anchor]
+        while (parent := self.parents.get(anchor)) and parent in self.parents and parent not in way:
+            way.append(anchor := parent)
+        return tuple(way)
 
-    def _kind(self, kind: str, title: str, top: str | None, root: str) -> str:
-        items = "\n".join(self._item(page, top, root) for page in self.below.get(f"kind {kind}", ()))
+    def _lists(self, way: tuple[str, ...]) -> tuple[str, ...]:
+        """Name the lists that the tree shows to a reader here."""
+        return (*(f"kind {kind}" for kind, _ in self.kinds), way[-1])
+
+    def _long(self, name: str) -> bool:
+        return len(self.below.get(name, ())) > LISTED
+
+    def _shown(self, name: str, way: tuple[str, ...]) -> Sequence[Page]:
+        """Give a list as the tree shows it: whole, or where it is too long, what leads to the reader's page."""
+        pages = self.below.get(name, ())
+        return [page for page in pages if page.anchor in way] if self._long(name) else pages
+
+    def _kind(self, kind: str, title: str, way: tuple[str, ...], root: str) -> str:
+        name = f"kind {kind}"
+        items = [self._item(page, way, root) for page in self._shown(name, way)]
+        if self._long(name):
+            more = len(self.below[name]) - len(items)
+            items.append(f'<li><a href="{root}{self.start}">{more} more on the start page</a></li>')
         heading = f"<h2>{escape(title)}</h2>\n" if title else ""
-        return f"{heading}<ul>\n{items}\n</ul>" if items else ""
+        return f"{heading}<ul>\n{NEWLINE.join(items)}\n</ul>" if items else ""
 
-    def _item(self, page: Page, top: str | None, root: str) -> str:
-        children = self.below.get(page.anchor, ())
-        count = f' <span class="count" aria-hidden="true">{len(children)}</span>' if children else ""
-        inner = ""
-        if children and page.anchor == top:
-            items = "\n".join(f"<li>{self._link(child, root)}</li>" for child in children)
-            inner = f"\n<ul>\n{items}\n</ul>\n"
+    def _item(self, page: Page, way: tuple[str, ...], root: str) -> str:
+        """Write an entry; the one that leads to the reader's page has its own list below it, others its length."""
+        children = len(self.below.get(page.anchor, ()))
+        count = f' <span class="count" aria-hidden="true">{children}</span>' if children else ""
+        shown = self._shown(page.anchor, way) if page.anchor == way[-1] else ()
+        items = NEWLINE.join(f"<li>{self._link(child, root)}</li>" for child in shown)
+        inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
         return f"<li>{self._link(page, root, count)}{inner}</li>"
 
     def _link(self, page: Page, root: str, more: str = "") -> str:

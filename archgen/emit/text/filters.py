@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 from archgen.emit.names import slug
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
 
 _MARKS = re.compile(r"([\\`*_{}\[\]<>&~$])")
 _START = re.compile(r"^(\d*)([-+=#]|(?<=\d)[.)](?=\s|$))")
@@ -29,18 +33,24 @@ def code(text: object) -> str:
 
 def commonmark(text: object) -> str:
     """Give CommonMark from the project as it is, if it holds no HTML and no address but of the web; else as text."""
-    from markdown_it import MarkdownIt
-
-    class Reader(MarkdownIt):
-        def validateLink(self, url: str) -> bool:  # noqa: ARG002, N802 - the library's; every address is judged below
-            return True
-
-    parser = Reader("commonmark", {"html": True})
+    parser = _reader()
     tokens = [token for block in parser.parse(str(text)) for token in (block, *(block.children or ()))]
     addresses = [str(token.attrs.get(name, "")) for token in tokens for name in ("href", "src")]
     if any(token.type.startswith("html_") for token in tokens) or any(_strange(address) for address in addresses):
         return "\n".join(markdown(line) for line in str(text).split("\n"))
     return str(text)
+
+
+@cache
+def _reader() -> MarkdownIt:
+    """Make a parser that takes every address for a link: which of them are strange is judged here."""
+    from markdown_it import MarkdownIt
+
+    class Reader(MarkdownIt):
+        def validateLink(self, url: str) -> bool:  # noqa: ARG002, N802 - the library's
+            return True
+
+    return Reader("commonmark", {"html": True})
 
 
 def _strange(address: str) -> bool:
@@ -55,7 +65,8 @@ def mermaid(text: object) -> str:
 
 def identifier(text: object) -> str:
     """Make an identifier of any text: different texts give different ones, and none is a word of a language."""
-    return "n_" + re.sub(r"[^A-Za-z0-9]", lambda found: f"_{ord(found.group()):x}_", str(text))
+    doubled = str(text).replace("_", "__")
+    return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)
 
 
 FILTERS: dict[str, Any] = {

@@ -152,6 +152,24 @@ def test_the_tree_shows_where_the_reader_is() -> None:
     )
 
 
+def test_long_lists_are_not_repeated_on_each_page() -> None:
+    parent = Page(
+        "t.html", "page:t", "Topics", "spanning", Section("page:t", "Topics", ()), (("Overview", "page:index"),)
+    )
+    crumbs = (("Overview", "page:index"), ("Topics", "page:t"))
+    topics = [Page(f"t/{i}.html", f"t:{i}", f"/t{i}", "topics", Section(f"t:{i}", "T", ()), crumbs) for i in range(201)]
+    groups = [other(f"g/{i}.html", f"g:{i}", f"G{i}") for i in range(201)]
+    tree = tree_of(page(), parent, *topics, *groups)
+    for name, entries in (
+        ("t/7.html", ["Overview", "201 more on the start page", "Topics 201", "/t7"]),
+        ("g/9.html", ["Overview", "G9", "200 more on the start page", "Topics 201"]),
+    ):
+        html = tree.files[name].decode()
+        shown = html[html.index("<nav id") : html.index("</nav>")]
+        assert [re.sub(r"<[^>]*>", "", entry) for entry in re.findall(r"<a .*?</a>", shown)] == entries
+        assert shown.count("aria-current") == 1
+
+
 def test_a_picture_stands_in_the_page_with_its_links(draw: Draw) -> None:
     picture = draw("a/b", {"group:g": "A & B".replace("&", "&amp;"), "nobody:x": "C"})
     tree = tree_of(page(Figure("figure:a", "a/b", "Cap", 'The "alt"')), other(), pictures={"a/b": picture})

@@ -12,7 +12,7 @@ from archgen.emit.backends import Backend, find
 from archgen.emit.text.limits import Limits
 
 RECORD = {"groups": {"a": {"title": "Sensing & <acting>"}, "b": {"title": "Cognition"}}, "name": "ramcip"}
-QUICK = Limits(computing=2, waiting=10, memory=400_000_000, output=10_000, files=5)
+QUICK = Limits(computing=2, waiting=60, memory=400_000_000, output=10_000, files=5)
 
 Make = Callable[..., Backend]
 

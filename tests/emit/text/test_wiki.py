@@ -112,7 +112,8 @@ def test_mermaid_labels_hold_no_mark() -> None:
 
 
 def test_identifiers_differ_as_their_texts_do() -> None:
-    assert [identifier("a.b"), identifier("a_b"), identifier("end")] == ["n_a_2e_b", "n_a_5f_b", "n_end"]
+    texts = ("a.b", "a_b", "end", "a_2e_b")
+    assert [identifier(text) for text in texts] == ["n_a_2e_b", "n_a__b", "n_end", "n_a__2e__b"]
 
 
 @pytest.mark.parametrize(

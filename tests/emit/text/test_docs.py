@@ -1,0 +1,31 @@
+"""The manual's example is a backend that works."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from archgen.emit import text
+from archgen.emit.backends import find
+from archgen.views.shapes import Page, Section
+
+DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
+
+
+def test_the_example_works(tmp_path: Path) -> None:
+    manifest, template = re.findall(r"```(?:yaml|jinja)\n(.*?)```", DOCS.read_text(), re.DOTALL)
+    folder = tmp_path / "backends" / "node_list"
+    (folder / "templates").mkdir(parents=True)
+    (folder / "backend.yaml").write_text(manifest)
+    (folder / "templates" / "nodes.md.j2").write_text(template)
+    (folder / "templates" / "node.md.j2").write_text("# {{ item.title|markdown }}\n")
+    backends, diagnostics = find(tmp_path)
+    assert diagnostics == ()
+    page = Page("nodes/cam_1.html", "node:cam_1", "cam_1", "nodes", Section("node:cam_1", "cam_1", ()), lead="Driver")
+    tree, diagnostics = text.write(backends["node_list"], {"pages": (page,)})
+    assert diagnostics == ()
+    assert tree is not None
+    assert {path: data.decode() for path, data in tree.files.items()} == {
+        "nodes.md": "# Nodes\n\n- [cam\\_1](nodes/cam_1.md): Driver\n",
+        "nodes/cam_1.md": "# cam\\_1\n",
+    }
