@@ -5,7 +5,10 @@ project -> syntax -> schema -> link -> model -> transform -> analyses -> views -
 
 from __future__ import annotations
 
+import gc
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -93,7 +96,20 @@ def check(path: Path | None = None) -> Checked:
 
     Raises `project.ProjectNotFoundError` where there is none.
     """
-    return judge(project.load(path))
+    with _without_collection():
+        return judge(project.load(path))
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Keep the garbage collector out: trees and models hold no circles, and it walks all of them again and again."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def check_text(text: str) -> tuple[Diagnostic, ...]:

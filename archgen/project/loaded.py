@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -51,16 +50,10 @@ def load(path: Path | None = None) -> Loaded:
     """Read the project in a folder, in a file, or (with nothing given) around the current folder."""
     root, first = find(path)
     reading = Reading(root)
-    collecting = gc.isenabled()
-    gc.disable()  # trees hold no circles, and looking for them while they grow takes as long again as reading
-    try:
-        take(reading, first)
-        if first == MARKER:
-            read_sources(reading)
-        return _finish(reading, first)
-    finally:
-        if collecting:
-            gc.enable()
+    take(reading, first)
+    if first == MARKER:
+        read_sources(reading)
+    return _finish(reading, first)
 
 
 _KEY = re.compile(r"([A-Za-z][A-Za-z0-9_.-]*)[\"']?[ \t]*:")

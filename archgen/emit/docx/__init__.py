@@ -32,7 +32,9 @@ def write(
     document = opened(template)
     titled = "title" in names_in(document.before)
     unknown = fill(document, titlepage.values(outline))
-    draft = assembly.draft(document, pictures, chapter_files, body.anchors(outline), language=outline.language if template is None else "")
+    draft = assembly.draft(
+        document, pictures, chapter_files, body.anchors(outline), language=outline.language if template is None else ""
+    )
     if template is not None:
         assembly.report_template(draft, unknown)
     first = tuple(titlepage.pieces(draft, outline, titled=titled))

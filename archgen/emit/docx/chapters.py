@@ -89,7 +89,9 @@ def _paragraph(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Pi
         return
     indent = _STEP * place.lists + 284 * max(place.quotes - 1, 0) + (284 if place.quotes and place.lists else 0)
     part = "Quote" if place.quotes else "Normal"
-    yield text.flowing(draft, content, words, part, f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20, height)
+    yield text.flowing(
+        draft, content, words, part, f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20, height
+    )
 
 
 def _list(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
@@ -113,14 +115,18 @@ def _code(draft: Draft, code: str, place: _Place) -> Piece:
     lines = code.split("\n")
     content = "<w:r><w:br/></w:r>".join(run(line) for line in lines)
     indent = _STEP * (place.lists + place.quotes)
-    return text.flowing(draft, content, code, "Code Block", f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20)
+    return text.flowing(
+        draft, content, code, "Code Block", f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20
+    )
 
 
 def _table(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
     rows = [row for part in node.children for row in part.children]
     cells = [[_texts(draft, cell, place) for cell in row.children] for row in rows]
     if len(cells[0]) > tables.MOST_COLUMNS:
-        draft.warn(f"a table in `{place.chapter.folder or '.'}` has {len(cells[0])} columns, and Word opens {tables.MOST_COLUMNS}: it stands as text")
+        draft.warn(
+            f"a table in `{place.chapter.folder or '.'}` has {len(cells[0])} columns, and Word opens {tables.MOST_COLUMNS}: it stands as text"
+        )
         for row in cells:
             words = " | ".join(plain(cell) for cell in row)
             yield text.flowing(draft, run(words), words)
@@ -154,7 +160,9 @@ def _inlines(draft: Draft, node: SyntaxTreeNode, place: _Place, *, pictures: boo
     return found
 
 
-def _walk(draft: Draft, node: SyntaxTreeNode, place: _Place, mood: Text, found: list[Text | _Shown], *, pictures: bool) -> None:  # noqa: PLR0913 - a walk's state
+def _walk(
+    draft: Draft, node: SyntaxTreeNode, place: _Place, mood: Text, found: list[Text | _Shown], *, pictures: bool
+) -> None:  # noqa: PLR0913 - a walk's state
     if node.type in {"text", "code_inline", "html_inline"}:
         found.append(replace(mood, text=node.content, code=mood.code or node.type == "code_inline"))
     elif node.type in {"softbreak", "hardbreak"}:

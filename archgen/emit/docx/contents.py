@@ -29,7 +29,13 @@ def front(draft: Draft, pages: Mapping[str, int]) -> Iterator[Piece]:
 
 
 def _list(  # noqa: PLR0913 - a list has these
-    draft: Draft, title: str, code: str, entries: Sequence[tuple[Entry, str]], pages: Mapping[str, int], *, new_page: bool = False
+    draft: Draft,
+    title: str,
+    code: str,
+    entries: Sequence[tuple[Entry, str]],
+    pages: Mapping[str, int],
+    *,
+    new_page: bool = False,
 ) -> Iterator[Piece]:
     if not entries:
         return

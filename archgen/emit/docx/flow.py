@@ -37,7 +37,9 @@ class Piece:
     @property
     def first(self) -> float:
         """Give the height of what stands on the first page at least."""
-        return self.before + (sum(self.rows) if self.whole or len(self.rows) <= _TOGETHER + 1 else sum(self.rows[:_TOGETHER]))
+        return self.before + (
+            sum(self.rows) if self.whole or len(self.rows) <= _TOGETHER + 1 else sum(self.rows[:_TOGETHER])
+        )
 
 
 def settle(pieces: Sequence[Piece], base: Sheet) -> tuple[Piece, ...]:

@@ -36,7 +36,8 @@ class Numbering:
     def list_from(self, start: int, depth: int = 0) -> int:
         """Give the id of a new numbered list whose items at a depth begin at a number."""
         overrides = "".join(
-            f'<w:lvlOverride w:ilvl="{level}"><w:startOverride w:val="{start if level == depth else 1}"/></w:lvlOverride>' for level in range(LEVELS)
+            f'<w:lvlOverride w:ilvl="{level}"><w:startOverride w:val="{start if level == depth else 1}"/></w:lvlOverride>'
+            for level in range(LEVELS)
         )
         return self._instance(self.ordered, overrides)
 
@@ -48,7 +49,11 @@ class Numbering:
         return number
 
     def _abstract(self, levels: str, kind: str = "multilevel") -> int:
-        known = {int(text) for item in self.root.iterfind(tag("abstractNum")) if (text := item.get(tag("abstractNumId"), "")).isdecimal()}
+        known = {
+            int(text)
+            for item in self.root.iterfind(tag("abstractNum"))
+            if (text := item.get(tag("abstractNumId"), "")).isdecimal()
+        }
         number = max(known, default=-1) + 1
         xml = f'<w:abstractNum xmlns:w="{W}" w:abstractNumId="{number}"><w:multiLevelType w:val="{kind}"/>{levels}</w:abstractNum>'
         _insert(self.root, etree.fromstring(xml), ("num", "numIdMacAtCleanup"))
@@ -59,7 +64,9 @@ def settle(root: etree._Element | None, styles: Styles) -> Numbering:
     """Bring headings, appendices and lists into a document's numbering; a template's own numbered headings stay."""
     root = etree.Element(tag("numbering"), nsmap={"w": W}) if root is None else root
     numbering = Numbering(root)
-    numbering.taken = {int(text) for item in root.iterfind(tag("num")) if (text := item.get(tag("numId"), "")).isdecimal()}
+    numbering.taken = {
+        int(text) for item in root.iterfind(tag("num")) if (text := item.get(tag("numId"), "")).isdecimal()
+    }
     own = _own_headings(root, styles)
     if own:
         numbering.headings = own
@@ -68,9 +75,13 @@ def settle(root: etree._Element | None, styles: Styles) -> Numbering:
         _bind(numbering, styles)
     numbering.appendices = tuple(zip(("upperLetter", *_FORMATS[1:]), _texts(), strict=True))
     numbering.appendix = numbering._instance(numbering._abstract(_heading_levels(numbering.appendices)))  # noqa: SLF001
-    bullets = "".join(_level(n, "bullet", _BULLETS[n % len(_BULLETS)], _INDENT * (n + 1), _INDENT) for n in range(LEVELS))
+    bullets = "".join(
+        _level(n, "bullet", _BULLETS[n % len(_BULLETS)], _INDENT * (n + 1), _INDENT) for n in range(LEVELS)
+    )
     numbering.bullet = numbering._instance(numbering._abstract(bullets, "hybridMultilevel"))  # noqa: SLF001
-    ordered = "".join(_level(n, _ORDERED[n % len(_ORDERED)], f"%{n + 1}.", _INDENT * (n + 1), _INDENT) for n in range(LEVELS))
+    ordered = "".join(
+        _level(n, _ORDERED[n % len(_ORDERED)], f"%{n + 1}.", _INDENT * (n + 1), _INDENT) for n in range(LEVELS)
+    )
     numbering.ordered = numbering._abstract(ordered)  # noqa: SLF001
     return numbering
 
@@ -140,14 +151,26 @@ def _bind(numbering: Numbering, styles: Styles) -> None:
 
 def _own_headings(root: etree._Element, styles: Styles) -> tuple[tuple[str, str], ...]:
     """Give what the numbers of a template's headings look like; nothing if its first heading has none."""
-    number = next((found for item in styles.chain(styles.heading(1)) if (found := item.find(f"{tag('pPr')}/{tag('numPr')}/{tag('numId')}")) is not None), None)
+    number = next(
+        (
+            found
+            for item in styles.chain(styles.heading(1))
+            if (found := item.find(f"{tag('pPr')}/{tag('numPr')}/{tag('numId')}")) is not None
+        ),
+        None,
+    )
     chosen = "" if number is None else number.get(tag("val"), "0")
     instance = next((item for item in root.iterfind(tag("num")) if item.get(tag("numId")) == chosen), None)
     abstract = None if instance is None else instance.find(tag("abstractNumId"))
     if abstract is None:
         return ()
     wanted = abstract.get(tag("val"))
-    levels = [item for found in root.iterfind(tag("abstractNum")) if found.get(tag("abstractNumId")) == wanted for item in found.iterfind(tag("lvl"))]
+    levels = [
+        item
+        for found in root.iterfind(tag("abstractNum"))
+        if found.get(tag("abstractNumId")) == wanted
+        for item in found.iterfind(tag("lvl"))
+    ]
     known = {item.get(tag("ilvl")): (_child(item, "numFmt", "decimal"), _child(item, "lvlText", "")) for item in levels}
     return tuple(known.get(str(n), ("none", "")) for n in range(HEADINGS)) if known else ()
 

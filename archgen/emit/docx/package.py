@@ -80,7 +80,9 @@ class Package:
             external = item.get("TargetMode") == "External"
             target = item.get("Target", "")
             found.append(
-                Relation(item.get("Id", ""), item.get("Type", ""), target if external else _inside(folder, target), external)
+                Relation(
+                    item.get("Id", ""), item.get("Type", ""), target if external else _inside(folder, target), external
+                )
             )
         return found
 
@@ -89,7 +91,9 @@ class Package:
         root = etree.Element(f"{{{_RELATIONS}}}Relationships", nsmap={None: _RELATIONS})
         for relation in relations:
             target = relation.target if relation.external else "/" + relation.target
-            item = etree.SubElement(root, f"{{{_RELATIONS}}}Relationship", Id=relation.id, Type=relation.type, Target=target)
+            item = etree.SubElement(
+                root, f"{{{_RELATIONS}}}Relationship", Id=relation.id, Type=relation.type, Target=target
+            )
             if relation.external:
                 item.set("TargetMode", "External")
         self.parts[relations_name(name)] = xml_bytes(root)
@@ -103,7 +107,9 @@ def relations_name(name: str) -> str:
 
 def parse(data: bytes, name: str) -> etree._Element:
     """Parse a part of a stranger's file: no document type, no entity, nothing fetched."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True)
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
+    )
     try:
         root = etree.fromstring(data, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
@@ -187,7 +193,11 @@ def _typed(parts: dict[str, bytes]) -> Package:
 
 def _content_types(package: Package) -> bytes:
     root = etree.Element(f"{{{_TYPES}}}Types", nsmap={None: _TYPES})
-    endings = {**package.endings, "rels": "application/vnd.openxmlformats-package.relationships+xml", "xml": "application/xml"}
+    endings = {
+        **package.endings,
+        "rels": "application/vnd.openxmlformats-package.relationships+xml",
+        "xml": "application/xml",
+    }
     for ending, content_type in sorted(endings.items()):
         etree.SubElement(root, f"{{{_TYPES}}}Default", Extension=ending, ContentType=content_type)
     for name, content_type in sorted(package.types.items()):

@@ -87,8 +87,12 @@ def settle(root: etree._Element, own: etree._Element) -> Styles:
                 found = _add(styles, spare[part])
                 added.append(part)
             styles.ids[part] = found.get(tag("styleId"), "")
-    report_table = _find([item for item in root.iterfind(tag("style")) if item.get(tag("type")) == "table"], _REPORT_TABLE)
-    styles.ids[_REPORT_TABLE] = styles.ids["Table Grid"] if report_table is None else report_table.get(tag("styleId"), "")
+    report_table = _find(
+        [item for item in root.iterfind(tag("style")) if item.get(tag("type")) == "table"], _REPORT_TABLE
+    )
+    styles.ids[_REPORT_TABLE] = (
+        styles.ids["Table Grid"] if report_table is None else report_table.get(tag("styleId"), "")
+    )
     styles.added = tuple(part for part in added if part not in _SILENT)
     return styles
 
@@ -104,7 +108,9 @@ def _find(known: list[etree._Element], part: str) -> etree._Element | None:
         aliases = f"{_value(item, 'name')},{_value(item, 'aliases')}".casefold().split(",")
         if wanted in aliases or item.get(tag("styleId"), "").casefold() == wanted.replace(" ", ""):
             return item
-    return _default(known) if part in {"Normal", "Default Paragraph Font", "Normal Table"} else _by_purpose(known, wanted)
+    return (
+        _default(known) if part in {"Normal", "Default Paragraph Font", "Normal Table"} else _by_purpose(known, wanted)
+    )
 
 
 def _default(known: list[etree._Element]) -> etree._Element | None:
@@ -130,7 +136,11 @@ def _add(styles: Styles, spare: etree._Element) -> etree._Element:
     while style in taken:
         style += "Archgen"
     new.set(tag("styleId"), style)
-    if any(item.get(tag("type")) == new.get(tag("type")) for item in styles.root.iterfind(tag("style")) if item.get(tag("default"))):
+    if any(
+        item.get(tag("type")) == new.get(tag("type"))
+        for item in styles.root.iterfind(tag("style"))
+        if item.get(tag("default"))
+    ):
         new.attrib.pop(tag("default"), None)
     for reference in ("basedOn", "next"):
         item = new.find(tag(reference))

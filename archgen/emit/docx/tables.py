@@ -51,12 +51,22 @@ def table(draft: Draft, shape: Table) -> Iterator[Piece]:
         start = draft.mark(caption_anchor)
     body = []
     for row, anchor in zip(shape.rows, anchors, strict=False):
-        cells = [_Cell(runs(draft, cell), plain(cell), _ALIGN[column.align]) for cell, column in zip(row, shape.columns, strict=False)]
+        cells = [
+            _Cell(runs(draft, cell), plain(cell), _ALIGN[column.align])
+            for cell, column in zip(row, shape.columns, strict=False)
+        ]
         cells += [_Cell("", "")] * (len(shape.columns) - len(cells))
         mark = start + draft.mark(anchor)
         start = ""
         body.append([_Cell(mark + cells[0].content, cells[0].text, cells[0].align), *cells[1:]] if mark else cells)
-    yield grid(draft, header, body, _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width), shape.caption, sheet)
+    yield grid(
+        draft,
+        header,
+        body,
+        _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width),
+        shape.caption,
+        sheet,
+    )
 
 
 def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
@@ -66,7 +76,8 @@ def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
     longest = max((word_width(name) for name, _ in shape.rows), default=0) * face.size * face.factor + _AIR + 2
     left = min(max(longest, width * _NAMES), width / 2)
     body = [
-        [_Cell(run(name, '<w:color w:val="55606A"/>'), name), _Cell(runs(draft, value), plain(value))] for name, value in shape.rows
+        [_Cell(run(name, '<w:color w:val="55606A"/>'), name), _Cell(runs(draft, value), plain(value))]
+        for name, value in shape.rows
     ]
     if body:
         yield grid(draft, [], body, [left, width - left], "", None, "Report Facts")
@@ -75,7 +86,9 @@ def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
 def simple(draft: Draft, header: Sequence[Inlines], body: Sequence[Sequence[Inlines]], aligns: Sequence[str]) -> Piece:
     """Give a table from a chapter, without caption and number."""
     cells = [_Cell(runs(draft, cell), plain(cell), align) for cell, align in zip(header, aligns, strict=True)]
-    rows = [[_Cell(runs(draft, cell), plain(cell), align) for cell, align in zip(row, aligns, strict=True)] for row in body]
+    rows = [
+        [_Cell(runs(draft, cell), plain(cell), align) for cell, align in zip(row, aligns, strict=True)] for row in body
+    ]
     weights = [max(1.0, *(len(row[n].text) ** 0.5 for row in [cells, *rows])) for n in range(len(cells))]
     columns = tuple(Column(cell.text, weight) for cell, weight in zip(cells, weights, strict=True))
     texts = tuple(tuple(row) for row in body)
@@ -99,7 +112,11 @@ def grid(
     short = top + sum(heights) <= _SHORT
     shade = _SHADE if draft.styles.id(style) == draft.styles.id("Table Grid") else ""
     starts = [_start(twips(width)) for width in widths]
-    rows = [_row(starts, header, draft.styles.id("Table Heading"), "<w:tblHeader/>", "", shade, whole=True)] if header else []
+    rows = (
+        [_row(starts, header, draft.styles.id("Table Heading"), "<w:tblHeader/>", "", shade, whole=True)]
+        if header
+        else []
+    )
     last = len(body) - 1
     for index, row in enumerate(body):
         keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
@@ -110,7 +127,11 @@ def grid(
         f'<w:tbl><w:tblPr><w:tblStyle w:val="{draft.styles.id(style)}"/><w:tblW w:w="{total}" w:type="dxa"/><w:tblLayout w:type="fixed"/>'
         f"{_LOOK if header else ''}{_described(description)}</w:tblPr>"
         f"<w:tblGrid>{columns}</w:tblGrid>{''.join(rows)}</w:tbl>"
-        + paragraph(draft.styles.id("Normal"), "", f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>')
+        + paragraph(
+            draft.styles.id("Normal"),
+            "",
+            f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>',
+        )
     )
     first = top + sum(heights[:2]) if not short else top + sum(heights)
     rest = [] if short else heights[2:]
@@ -118,18 +139,26 @@ def grid(
 
 
 def _described(description: str) -> str:
-    return f'<w:tblCaption w:val="{escape(description)}"/><w:tblDescription w:val="{escape(description)}"/>' if description else ""
+    return (
+        f'<w:tblCaption w:val="{escape(description)}"/><w:tblDescription w:val="{escape(description)}"/>'
+        if description
+        else ""
+    )
 
 
 def _start(width: int) -> str:
     return f'<w:tc><w:tcPr><w:tcW w:w="{width}" w:type="dxa"/>'
 
 
-def _row(starts: Sequence[str], cells: Sequence[_Cell], style: str, kind: str, keep: str, shade: str, *, whole: bool) -> str:  # noqa: PLR0913 - one place
-    inner = "".join([
-        f'{start}{shade}</w:tcPr><w:p><w:pPr><w:pStyle w:val="{style}"/>{keep}{cell.align}</w:pPr>{cell.content}</w:p></w:tc>'
-        for start, cell in zip(starts, cells, strict=True)
-    ])
+def _row(
+    starts: Sequence[str], cells: Sequence[_Cell], style: str, kind: str, keep: str, shade: str, *, whole: bool
+) -> str:  # noqa: PLR0913 - one place
+    inner = "".join(
+        [
+            f'{start}{shade}</w:tcPr><w:p><w:pPr><w:pStyle w:val="{style}"/>{keep}{cell.align}</w:pPr>{cell.content}</w:p></w:tc>'
+            for start, cell in zip(starts, cells, strict=True)
+        ]
+    )
     properties = ("<w:cantSplit/>" if whole else "") + kind
     return f"<w:tr>{f'<w:trPr>{properties}</w:trPr>' if properties else ''}{inner}</w:tr>"
 
@@ -145,7 +174,10 @@ def _height(cells: Sequence[_Cell], widths: Sequence[float], face: Face) -> floa
 def _longest(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]]) -> list[float]:
     """Give the width of each column's longest word, with the cell's margins."""
     text, head = draft.styles.face("Table Text"), draft.styles.face("Table Heading")
-    found = [max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor for column in columns]
+    found = [
+        max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor
+        for column in columns
+    ]
     for row in rows:
         for index, cell in enumerate(row[: len(found)]):
             for item in cell:
@@ -169,4 +201,7 @@ def _widths(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inl
     share = [total * max(column.weight, 0.01) / weight for column in columns]
     spare = [max(wanted - need, 0) for wanted, need in zip(share, least, strict=True)]
     room = total - sum(least)
-    return [need + room * (extra / sum(spare) if sum(spare) else 1 / len(least)) for need, extra in zip(least, spare, strict=True)]
+    return [
+        need + room * (extra / sum(spare) if sum(spare) else 1 / len(least))
+        for need, extra in zip(least, spare, strict=True)
+    ]

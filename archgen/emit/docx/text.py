@@ -17,7 +17,9 @@ _STEP = 18.0
 """Points that a list moves to the right for each level."""
 
 
-def heading(draft: Draft, anchor: str, title: str, level: int, *, appendix: bool = False, new_page: bool = False) -> Piece:
+def heading(
+    draft: Draft, anchor: str, title: str, level: int, *, appendix: bool = False, new_page: bool = False
+) -> Piece:
     """Give a numbered heading; it goes into the table of contents."""
     level = min(level, HEADINGS)
     formats = draft.numbering.appendices if appendix else draft.numbering.headings
@@ -27,7 +29,11 @@ def heading(draft: Draft, anchor: str, title: str, level: int, *, appendix: bool
     anchor = draft.fresh(anchor)
     entry = Entry(bookmark_name(anchor), label(formats, draft.counts), title, level)
     draft.headings.append(entry)
-    number = f'<w:numPr><w:ilvl w:val="{level - 1}"/><w:numId w:val="{draft.numbering.appendix}"/></w:numPr>' if appendix else ""
+    number = (
+        f'<w:numPr><w:ilvl w:val="{level - 1}"/><w:numId w:val="{draft.numbering.appendix}"/></w:numPr>'
+        if appendix
+        else ""
+    )
     properties = ("<w:pageBreakBefore/>" if new_page else "") + number
     face = draft.styles.face(f"heading {level}")
     rows = (face.line,) * face.lines(f"{entry.label} {title}", draft.sheets.base.text_width)
@@ -40,7 +46,15 @@ def said(draft: Draft, shape: Paragraph) -> Piece:
     return flowing(draft, runs(draft, shape.inlines), plain(shape.inlines), _KINDS[shape.kind])
 
 
-def flowing(draft: Draft, content: str, text: str, part: str = "Normal", properties: str = "", indent: float = 0, more: float = 0) -> Piece:  # noqa: PLR0913 - all of a paragraph
+def flowing(
+    draft: Draft,
+    content: str,
+    text: str,
+    part: str = "Normal",
+    properties: str = "",
+    indent: float = 0,
+    more: float = 0,
+) -> Piece:  # noqa: PLR0913 - all of a paragraph
     """Give a paragraph from its runs. `text` is what they say, `more` the height that pictures in it add."""
     face = draft.styles.face(part)
     width = draft.sheets.base.text_width - indent

@@ -131,6 +131,7 @@ def _arrow(end: _End) -> Arrow:
 
 def _alt(title: str, subjects: list[str], topics: list[str]) -> str:
     said = f"{title} is implemented by {', '.join(subjects)}." if subjects else f"No node implements {title}."
-    return f"{said} It uses {plural(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}" + (
-        f": {', '.join(topics)}." if topics else " topics."
+    return (
+        f"{said} It uses {plural(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}"
+        + (f": {', '.join(topics)}." if topics else " topics.")
     )
