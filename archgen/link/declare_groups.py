@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from archgen.link import reading
 from archgen.link.declare_timing import declare_timing
 from archgen.link.outline import Outline
-from archgen.link.references import References, ports_of
+from archgen.link.references import Ports, References
 from archgen.link.resolve import Wiring
 from archgen.model.component import Component, Group, Indicator, RequirementUse, Role
-from archgen.model.timing import Timing
 from archgen.syntax.tree import Entry, Table
 
 _ROLES = frozenset({"source", "filter", "sink", "reactive"})
@@ -69,7 +68,9 @@ class HighLevel:
             inputs_known=below.get("inputs") is not None,
             outputs=self.outline.outputs[complete],
             outputs_known=below.get("outputs") is not None,
-            timing=self._timing(complete, entry, inputs),
+            timing=declare_timing(
+                entry, Ports(self.references, complete, (complete,), self.outline.ports), self.references.found
+            ),
             tags=reading.texts(below, "tags"),
             urls=reading.words(below, "urls"),
             layout=reading.layout(below),
@@ -77,15 +78,6 @@ class HighLevel:
             at=entry.at,
             role_at=reading.place(below, "role"),
         )
-
-    def _timing(self, complete: str, entry: Entry, inputs: Mapping[str, Entry]) -> Timing | None:
-        if reading.body(entry).get("timing") is None:
-            return None
-        names: dict[str, Mapping[str, Iterable[str]]] = {
-            "input": {complete: inputs},
-            "output": {complete: self.outline.outputs[complete]},
-        }
-        return declare_timing(entry, ports_of(self.references, complete, (complete,), names), self.references.found)
 
 
 def _role(below: Table) -> Role | None:

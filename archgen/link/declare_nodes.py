@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from archgen.link import reading
 from archgen.link.activities import Activities
 from archgen.link.declare_timing import declare_timing
 from archgen.link.outline import Outline
-from archgen.link.references import Ports, References, ports_of
+from archgen.link.references import Ports, References
 from archgen.model.component import Component
 from archgen.model.deployment import Container
 from archgen.model.node import Node, NodeStatus, PortUse, Qos, Use
@@ -100,8 +100,8 @@ def _parameters(below: Table) -> Mapping[str, object]:
 
 
 def _ports(name: str, below: Table, around: Surroundings, implements: tuple[str, ...]) -> Ports:
-    names: dict[str, Mapping[str, Iterable[str]]] = {"input": around.outline.inputs, "output": around.outline.outputs}
-    return ports_of(around.references, name, implements, names, free=below.get("implements") is None)
+    free = below.get("implements") is None
+    return Ports(around.references, name, implements, around.outline.ports, free=free)
 
 
 def _uses(below: Table, ports: Ports) -> Iterator[PortUse]:

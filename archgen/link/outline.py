@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.link import reading
@@ -20,6 +20,11 @@ class Outline:
     """By component and name."""
     inputs: dict[str, dict[str, Entry]] = field(default_factory=dict)
     """By component and name."""
+
+    @property
+    def ports(self) -> Mapping[str, Mapping[str, Collection[str]]]:
+        """Give the names of the ports of each component, by kind."""
+        return {"input": self.inputs, "output": self.outputs}
 
     def all_outputs(self) -> Iterator[Output]:
         """Give every output."""

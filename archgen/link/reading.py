@@ -19,8 +19,8 @@ _BLANKS = re.compile(r"\s+")
 
 def table(of: Table, key: str) -> Table:
     """Give the table at a key, an empty one where there is none."""
-    found = of.get(key)
-    return found if type(found) is Table else NOTHING
+    entry = of.entries.get(key)
+    return entry.value if entry is not None and type(entry.value) is Table else NOTHING
 
 
 def body(entry: Entry) -> Table:
@@ -30,14 +30,20 @@ def body(entry: Entry) -> Table:
 
 def scalar(of: Table, key: str) -> Scalar | None:
     """Give the scalar at a key, None where nothing is written."""
-    found = of.get(key)
+    entry = of.entries.get(key)
+    if entry is None:
+        return None
+    found = entry.value
     return found if type(found) is Scalar and found.value is not None else None
 
 
 def text(of: Table, key: str) -> str | None:
     """Give a text as it was written."""
-    found = scalar(of, key)
-    return found.text if found else None
+    entry = of.entries.get(key)
+    if entry is None:
+        return None
+    found = entry.value
+    return found.text if type(found) is Scalar and found.value is not None else None
 
 
 def scalars(of: Table, key: str) -> tuple[Scalar, ...]:

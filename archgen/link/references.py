@@ -178,14 +178,25 @@ class Ports:
     owner: str
     """The element whose keys they are, for findings."""
     components: tuple[str, ...]
-    names: Names
+    ports: Mapping[str, Mapping[str, Collection[str]]]
+    """The names of the inputs and outputs of each component, by kind."""
     free: bool = False
     """The node implements nothing: its keys are names of its own."""
+    _names: Names | None = None
+
+    @property
+    def names(self) -> Names:
+        """Give the look-up of keys; most elements need none."""
+        if self._names is None:
+            self._names = Names({kind: list(_complete(self.components, names)) for kind, names in self.ports.items()})
+        return self._names
 
     def follow(self, words: str, at: Span, kind: str) -> str | None:
         """Give the complete id of the port (`input` or `output`) that a key means."""
         if not self.components:  # what it implements is not known: that is reported already
             return words if self.free else None
+        if len(self.components) == 1 and words in self.ports[kind].get(self.components[0], ()):
+            return f"{self.components[0]}.{words}"
         result = self.names.find(words, (kind,))
         if result.count == 1:
             return result.elements[0].id
@@ -227,20 +238,6 @@ class Ports:
 
     def _place(self, name: Named) -> Span:
         return self.references.places[name.kind][name.id]
-
-
-def ports_of(
-    references: References,
-    owner: str,
-    components: Iterable[str],
-    ports: Mapping[str, Mapping[str, Iterable[str]]],
-    *,
-    free: bool = False,
-) -> Ports:
-    """Gather the ports of some components. `ports` has the names of the inputs and outputs of each, by kind."""
-    members = tuple(components)
-    ids = {kind: list(_complete(members, names)) for kind, names in ports.items()}
-    return Ports(references, owner, members, Names(ids), free)
 
 
 def _complete(components: Iterable[str], names: Mapping[str, Iterable[str]]) -> Iterator[str]:

@@ -39,6 +39,9 @@ class Found:
         return self.elements[0] if self.count == 1 else None
 
 
+NOTHING = Found((), 0)
+
+
 class Names:
     """The complete ids of each kind of element, found by their ends."""
 
@@ -58,10 +61,19 @@ class Names:
         A complete path is that element. Else the candidates end in the words; one word never means the writer or an
         output of its own; those in the writer's group win over all others.
         """
+        ends = {kind: paths for kind in kinds if (paths := self._ends[kind].get(words))}
+        if len(ends) == 1 and (component is None or "." in words):
+            ((kind, paths),) = ends.items()
+            if len(paths) == 1:  # nearly always
+                return Found((Named(kind, paths[0]),), 1)
+        return self._choose(words, kinds, ends, component) if ends else NOTHING
+
+    def _choose(
+        self, words: str, kinds: Sequence[str], ends: Mapping[str, Sequence[str]], component: str | None
+    ) -> Found:
         own = self._own(words, component)
         for kind in kinds:
             if words in self._complete[kind]:
-                ends = {k: self._ends[k].get(words, ()) for k in kinds}
                 hidden = tuple(name for name in _take(ends, own).elements if name != (kind, words))
                 return Found((Named(kind, words),), 1, hidden)
         if component:
@@ -69,7 +81,7 @@ class Names:
             found = _take({kind: self._ends_in_group[kind].get((group, words), ()) for kind in kinds}, own)
             if found.count:
                 return found
-        return _take({kind: self._ends[kind].get(words, ()) for kind in kinds}, own)
+        return _take(ends, own)
 
     def _own(self, words: str, component: str | None) -> tuple[Named, ...]:
         """Name what one word never means: the writer itself and its output of that name."""
