@@ -1,0 +1,113 @@
+"""The keys of selectors: which components and nodes `tag:`, `owner:`, `type:` and the others name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.names import Named
+from archgen.model.node import Node
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """What an atom names. `of_nodes`: it speaks of nodes only, so that steps are steps between nodes."""
+
+    components: frozenset[str]
+    nodes: frozenset[str]
+    named: tuple[Named, ...] = ()
+    outputs: tuple[str, ...] = ()
+    """Given where only outputs are named: what they feed is less than what their components feed."""
+    of_nodes: bool = False
+    crosses: bool = True
+    """The components of these nodes are meant, too."""
+
+
+def wild(pattern: str, text: str) -> bool:
+    """Compare a text with a pattern in which `*` stands for any run; takes time in proportion to the text."""
+    first, *rest = pattern.split("*")
+    if not rest:
+        return pattern == text
+    *middle, last = rest
+    if len(text) < len(first) + len(last) or not text.startswith(first) or not text.endswith(last):
+        return False
+    here, end = len(first), len(text) - len(last)
+    for piece in middle:
+        found = text.find(piece, here, end)
+        if found < 0:
+            return False
+        here = found + len(piece)
+    return True
+
+
+def by_key(architecture: Architecture, key: str, value: str, findings: Mapping[str, frozenset[str]]) -> Hit:
+    """Give the components and nodes that a key's value names; `*` stands for any run."""
+    if key == "type":
+        return Hit(frozenset(_with_type(architecture, " ".join(value.split()))), frozenset())
+    if key == "finding":
+        return _found(architecture, [element for rule in findings if wild(value, rule) for element in findings[rule]])
+    of_component, of_node = _COMPONENTS.get(key), _NODES.get(key)
+    components = (
+        (c.id for c in architecture.components.values() if _any(value, of_component(architecture, c)))
+        if of_component
+        else ()
+    )
+    nodes = (n.id for n in architecture.nodes.values() if _any(value, of_node(n))) if of_node else ()
+    return Hit(frozenset(components), frozenset(nodes), of_nodes=of_component is None, crosses=key != "owner")
+
+
+def _any(value: str, texts: Iterable[str | None]) -> bool:
+    return any(text is not None and wild(value, text) for text in texts)
+
+
+def _media(_architecture: Architecture, component: Component) -> Iterable[str]:
+    physical = (*(i.physical for i in component.inputs.values()), *(o.physical for o in component.outputs.values()))
+    return ("physical" if yes else "digital" for yes in physical)
+
+
+_COMPONENTS: Mapping[str, Callable[[Architecture, Component], Iterable[str | None]]] = {
+    "tag": lambda architecture, component: (*component.tags, *architecture.groups[component.group].tags),
+    "owner": lambda _, component: (component.owner,),
+    "medium": _media,
+    "role": lambda _, component: (component.role,),
+    "requirement": lambda _, component: (use.text for use in component.requirements if use.is_id),
+    "behaviour": lambda _, component: (component.timing.behaviour if component.timing else None,),
+}
+_NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
+    "tag": lambda node: node.tags,
+    "owner": lambda node: (node.owner,),
+    "status": lambda node: (node.status,),
+    "host": lambda node: (node.host,),
+    "package": lambda node: (node.package,),
+    "behaviour": lambda node: (timing.behaviour for timing in node.timing.values()),
+    "node": lambda node: (node.id,),
+}
+
+
+def _with_type(architecture: Architecture, value: str) -> Iterable[str]:
+    """Name the components that send a type, expect it, or read an output of it."""
+    sending = set[str]()
+    for output in architecture.outputs.values():
+        if output.type is not None and wild(value, output.type):
+            sending.add(output.id)
+            yield output.component
+    yield from (i.component for i in architecture.inputs.values() if i.type is not None and wild(value, i.type))
+    yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sending)
+
+
+def _found(architecture: Architecture, elements: Iterable[str]) -> Hit:
+    """Find the components and nodes that findings concern; one on a group concerns its components."""
+    components, nodes = set[str](), set[str]()
+    for element in elements:
+        port = architecture.inputs.get(element) or architecture.outputs.get(element)
+        if port:
+            components.add(port.component)
+        elif element in architecture.components:
+            components.add(element)
+        elif element in architecture.groups:
+            components.update(c.id for c in architecture.groups[element].components.values())
+        elif element in architecture.nodes:
+            nodes.add(element)
+    return Hit(frozenset(components), frozenset(nodes))
