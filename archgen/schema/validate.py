@@ -143,12 +143,21 @@ def _prune(place: Place, key: str | None) -> None:
     elif isinstance(place.parent, Listing):
         place.parent.items[int(place.path[-1])] = _HOLE
     elif isinstance(place.parent, Table) and place.entry is not None:
-        if place.entry.key in _KEPT:
+        if _is_asked_for(place.path):
             place.entry.value = Listing([], place.value.at)
         elif len(place.path) > 1 and place.path[-2] in _KEYED:
             place.entry.value = Scalar(None, "", place.value.at)
         else:
             place.parent.entries.pop(place.entry.key, None)
+
+
+def _is_asked_for(path: tuple[str | int, ...]) -> bool:
+    """Say whether a path is that of a key in `_KEPT`, and not of an element that is called like one."""
+    if path[-1] not in _KEPT:
+        return False
+    if path[-1] == "from":
+        return path[-3:-2] == ("inputs",)
+    return len(path) == 3 and path[0] in {"nodes", "chains"}  # noqa: PLR2004 - section, id, key
 
 
 def _drop_holes(value: Value) -> None:
