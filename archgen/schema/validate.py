@@ -61,7 +61,7 @@ def sections() -> frozenset[str]:
 def _data(value: Value) -> object:
     """Turn a tree into what the validator takes. Floats go as text: it reads NaN as null and 5.0 as a whole number."""
     if isinstance(value, Table):
-        return {key: _data(entry.value) for key, entry in value.entries.items()}
+        return {_MARK + key if key[0] in _NUMERIC else key: _data(entry.value) for key, entry in value.entries.items()}
     if isinstance(value, Listing):
         return [_data(item) for item in value.items]
     found = value.value
@@ -70,6 +70,9 @@ def _data(value: Value) -> object:
     return max(-_BEYOND, min(found, _BEYOND)) if type(found) is int else found
 
 
+_MARK = "\0"
+_NUMERIC = frozenset("0123456789+\0")
+"""The validator's paths tell the key `0` or `+1` from an entry's number by nothing: such keys are marked."""
 _BEYOND = 1 << 60
 """Larger than any number of the language, and small enough for the validator."""
 
@@ -86,19 +89,19 @@ def _judge(
     wrong: list[tuple[Place, str | None]],
     seen: set[tuple[str | int, ...]],
 ) -> None:
-    place = _locate(document.root, tuple(error.instance_path))
+    place = _locate(document.root, [_unmarked(step) for step in error.instance_path])
     part = _part(error.schema_path)
     kind = error.kind.name
     if kind == "additionalProperties" and isinstance(place.value, Table):
         kind_of: Any = error.kind  # its attributes depend on the kind, which the library's types do not say
-        for key in kind_of.unexpected:
+        for key in map(_unmarked, kind_of.unexpected):
             found.append(wording.unknown_key(place.value.entries[key], part, place.path))
             wrong.append((place, key))
     elif kind == "propertyNames" and isinstance(place.value, Table):
         inner: Any = error.kind
-        key = str(inner.error.instance)
-        if (*place.path, key) not in seen:
-            seen.add((*place.path, key))
+        key = _unmarked(inner.error.instance)
+        if (*place.path, key, "") not in seen:  # no key is empty, so this is no value's path
+            seen.add((*place.path, key, ""))
             found.append(wording.wrong_key(place.value.entries[key], part, place.path))
             if not _USABLE_ID.match(key):
                 wrong.append((place, key))
@@ -108,7 +111,11 @@ def _judge(
         wrong.append((place, None))
 
 
-def _locate(root: Table, path: tuple[str | int, ...]) -> Place:
+def _unmarked(step: Any) -> Any:  # noqa: ANN401 - a key or a number
+    return step[1:] if isinstance(step, str) and step[0] == _MARK else step
+
+
+def _locate(root: Table, path: list[str | int]) -> Place:
     value: Value = root
     parent: Table | Listing | None = None
     entry: Entry | None = None
@@ -119,7 +126,7 @@ def _locate(root: Table, path: tuple[str | int, ...]) -> Place:
             value = entry.value
         elif isinstance(value, Listing):
             value = value.items[int(step)]
-    return Place(path, value, parent, entry)
+    return Place(tuple(path), value, parent, entry)
 
 
 def _part(path: Iterable[str | int]) -> dict[str, Any]:

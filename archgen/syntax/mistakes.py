@@ -90,6 +90,8 @@ def _words(line: str, column: int, problem: Problem) -> _Words:
         return _second_colon(line, column)
     if "cannot start any token" in found:
         return _bad_start(line[column : column + 1])
+    if "node content" in found:
+        return _bad_node(line[column : column + 1])
     if "expected key" in found or "expected <block end>" in found or "'-' indicator" in found:
         return _out_of_place(line, column)
     if "',' or ']'" in found or "',' or '}'" in found:
@@ -114,6 +116,12 @@ def _bad_start(character: str) -> _Words:
     return _Words(
         f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE
     )
+
+
+def _bad_node(character: str) -> _Words:
+    if character == ":":
+        return _Words("a key is missing before `:`", "write `key: value`")
+    return _Words(f"a value cannot begin with `{character}`" if character else "a value is missing", QUOTE)
 
 
 def _out_of_place(line: str, column: int) -> _Words:
@@ -159,7 +167,6 @@ _FIXED: tuple[tuple[str, _Words], ...] = (
     (" directive", _Words("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
     ("incompatible YAML", _Words("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
     ("found unexpected ':'", _Words("the `:` has no blank after it", "write `key: value`")),
-    ("node content", _Words("a value cannot begin with this", QUOTE)),
     (
         "<document start>",
         _Words("this does not belong to what is above it", "keys of one mapping begin in the same column"),

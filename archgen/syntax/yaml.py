@@ -155,7 +155,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                     walk.diagnostics.extend(comments.swallowed(source, at, end.index, empty=not text))
             if wants_key:
                 key, key_at, key_end, wants_key = intern(text), at, end, False
-                if not style and (not text or text == "<<"):
+                if not text or (text == "<<" and not style):
                     fault(*_BAD_KEYS[text], at)
                 if rare and event.anchor is not None:
                     anchors[event.anchor] = (Scalar(text, text, at), 1)
@@ -255,7 +255,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
 
 
 _BAD_KEYS = {
-    "": ("a key is missing before this `:`", "write `key: value`"),
+    "": ("a key is missing before `:`", "write `key: value`"),
     "<<": ("merge keys (`<<`) are not read", "write the keys out, or share a whole value with `*name`"),
 }
 

@@ -24,7 +24,21 @@ def _names(part: Any) -> set[str]:  # noqa: ANN401
 
 
 KEYS = st.sampled_from(
-    [*sorted(_names(schema())), "a", "b_c", "R-1", "Bad-Id", "../x", "all", "x.y", "Point  cloud", ""]
+    [
+        *sorted(_names(schema())),
+        "a",
+        "b_c",
+        "R-1",
+        "Bad-Id",
+        "../x",
+        "all",
+        "x.y",
+        "Point  cloud",
+        "0",
+        "01",
+        "+1",
+        "\0",
+    ]
 )
 LEAVES = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5),

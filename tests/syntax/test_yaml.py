@@ -110,6 +110,8 @@ QUOTE = 'put the text in quotes: "..."'
         ("t: {b: 1, a}", "1:11 syntax-error: the key `a` has no `:` | write `key: value`; a list stands in brackets: [a, b]"),
         ("t: [a]\n[b]: 1", "2:1 syntax-error: a key is a word, not a list or a mapping | text in braces or brackets must be quoted"),
         ("<<: {a: 1}", "1:1 syntax-error: merge keys (`<<`) are not read | write the keys out, or share a whole value with `*name`"),
+        ("a: {'': 1}", "1:5 syntax-error: a key is missing before `:` | write `key: value`"),
+        ("a: {: 1}", "1:5 syntax-error: a key is missing before `:` | write `key: value`"),
         ("a: 1\n---\nb: 2", "2:1 syntax-error: a second YAML document begins here | a file is one document: put the second into its own"),
         ("a: x\x07", "1:5 syntax-error: the control character U+0007 cannot stand in YAML | delete it"),
         ("a:\n  b: 1\n c: 2", "3:2 syntax-error: this line does not belong to anything above it | keys of one mapping begin in the same column, and so do the entries of one list"),
