@@ -173,7 +173,7 @@ def test_hostile_things_in_the_folder(tmp_path: Path) -> None:
     (root / "h.yaml").write_text("hosts: {h: }")
     start = time.monotonic()
     loaded = load(root)
-    assert time.monotonic() - start < 5
+    assert time.monotonic() - start < 30
     assert names(loaded) == ["archgen.yaml", "h.yaml"]
     assert sorted(findings(loaded)) == [
         "a.yaml:1:1 syntax-error: this is a named pipe, not a file",

@@ -38,19 +38,11 @@ Why: a slip in a pattern would leave out files without a word.
 
 Bad:
 
-    # file: archgen.yaml
-    archgen: 1
-    sources: ["gruops/*.yaml"]
-    # file: groups/sensing.yaml
-    groups: {sensing: Sensing}
+    ros: {interfaces: ["mgs/*.msg"]}
 
 Good:
 
-    # file: archgen.yaml
-    archgen: 1
-    sources: ["groups/*.yaml"]
-    # file: groups/sensing.yaml
-    groups: {sensing: Sensing}
+    ros: {interfaces: []}
 """,
     ),
 )

@@ -28,7 +28,6 @@ Good:
     groups:
       sensing:
         title: "Sensing: the eyes of the robot"
-        components: {camera: Camera}
 """,
     ),
     _rule(
@@ -77,18 +76,14 @@ Why: such a value has no end.
 
 Bad:
 
-    nodes:
-      planner:
-        parameters:
-          limits: &limits [1, *limits]
+    groups:
+      sensing: {title: Sensing, tags: &tags [safety, *tags]}
 
 Good:
 
-    nodes:
-      planner:
-        parameters:
-          limits: &limits [1, 2]
-          soft_limits: *limits
+    groups:
+      sensing: {title: Sensing, tags: &tags [safety, outdoors]}
+      driving: {title: Driving, tags: *tags}
 """,
     ),
     _rule(
@@ -100,22 +95,18 @@ each file, 100,000 values from aliases, and 64 levels.
 
 Bad:
 
-    nodes:
-      planner:
-        parameters:
-          a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
-          b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]
-          c: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]
-          d: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]
-          e: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]
+    groups:
+      a: {title: A, tags: &a [x, x, x, x, x, x, x, x, x, x]}
+      b: {title: B, tags: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]}
+      c: {title: C, tags: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]}
+      d: {title: D, tags: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]}
+      e: {title: E, tags: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]}
 
 Good:
 
-    nodes:
-      planner:
-        parameters:
-          a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
-          b: *a
+    groups:
+      a: {title: A, tags: &a [safety, outdoors]}
+      b: {title: B, tags: *a}
 """,
     ),
     _rule(
@@ -164,18 +155,12 @@ Why: a value that was meant otherwise than it is read is worse than none.
 Bad:
 
     groups:
-      sensing:
-        components:
-          camera:
-            inputs: [light]
+      sensing: {title: Sensing, tags: safety}
 
 Good:
 
     groups:
-      sensing:
-        components:
-          camera:
-            inputs: {light: {external: The room, medium: physical}}
+      sensing: {title: Sensing, tags: [safety]}
 """,
     ),
     _rule(
@@ -187,15 +172,15 @@ names and in links.
 
 Bad:
 
-    nodes:
-      planner:
-        timing: {rate: 10}
+    hosts: {onboard_pc: On-board computer, arm_pc: Computer in the arm}
+    links:
+      lan: {connects: [onboard_pc, arm_pc], latency: 1}
 
 Good:
 
-    nodes:
-      planner:
-        timing: {rate: 10 Hz}
+    hosts: {onboard_pc: On-board computer, arm_pc: Computer in the arm}
+    links:
+      lan: {connects: [onboard_pc, arm_pc], latency: 1 ms}
 """,
     ),
     Rule(

@@ -151,7 +151,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
             if note:
                 if style:
                     quoted.append((start.index, end.index))
-                elif end.line in hashes and (not wants_key or not text):
+                elif end.line in hashes and not wants_key and (not text or type(resolve(text)) is str):
                     walk.diagnostics.extend(comments.swallowed(source, at, end.index, empty=not text))
             if wants_key:
                 key, key_at, key_end, wants_key = intern(text), at, end, False

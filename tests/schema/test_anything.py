@@ -75,7 +75,7 @@ DOCUMENTS = st.one_of(
 )
 
 
-@settings(max_examples=400, deadline=5000)
+@settings(max_examples=400, deadline=None)
 @given(st.lists(DOCUMENTS, min_size=1, max_size=3))
 def test_any_data(trees: list[object]) -> None:
     documents = []
@@ -91,7 +91,7 @@ def test_any_data(trees: list[object]) -> None:
     merge(documents)
 
 
-@settings(max_examples=300, deadline=5000)
+@settings(max_examples=300, deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes(data: bytes) -> None:
     document, found = yaml.parse("f", data.decode("latin-1"))

@@ -10,9 +10,10 @@ import pytest
 
 from archgen import project, schema
 from archgen.diagnostic import Rule
-from archgen.link import merge
+from archgen.link.merge import RULES as MERGING
+from archgen.link.merge import merge
 
-RULES = (*schema.RULES, *project.RULES, *merge.RULES)
+RULES = (*schema.RULES, *project.RULES, *MERGING)
 
 
 def example(rule: Rule, heading: str) -> dict[str, str]:
@@ -31,7 +32,7 @@ def found(root: Path, files: dict[str, str]) -> set[str]:
         (root / name).parent.mkdir(exist_ok=True)
         (root / name).write_text(text)
     loaded = project.load(root)
-    return {d.rule for d in (*loaded.diagnostics, *merge.merge(loaded.documents, loaded.lost)[1])}
+    return {d.rule for d in (*loaded.diagnostics, *merge(loaded.documents, loaded.lost)[1])}
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

