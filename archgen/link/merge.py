@@ -193,6 +193,7 @@ Bad:
             performance:
               accuracy: 90 %
               overall: {accuracy: 95 %}
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
@@ -202,6 +203,7 @@ Good:
         components:
           camera:
             performance: {accuracy: 90 %}
+    nodes: {camera: {implements: sensing.camera}}
 """,
         fixed=True,
     ),
@@ -221,6 +223,7 @@ Bad:
         components:
           camera: Camera
           camra: {timing: {rate: 10 Hz}}
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
@@ -229,6 +232,7 @@ Good:
         title: Sensing
         components:
           camera: {title: Camera, timing: {rate: 10 Hz}}
+    nodes: {camera: {implements: sensing.camera}}
 """,
         fixed=True,
     ),

@@ -28,7 +28,6 @@ Good:
     groups:
       sensing:
         title: "Sensing: the eyes of the robot"
-        components: {camera: Camera}
 """,
     ),
     _rule(
@@ -77,15 +76,19 @@ Why: such a value has no end.
 
 Bad:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         parameters:
           limits: &limits [1, *limits]
 
 Good:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         parameters:
           limits: &limits [1, 2]
           soft_limits: *limits
@@ -100,8 +103,10 @@ each file, 100,000 values from aliases, and 64 levels.
 
 Bad:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         parameters:
           a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
           b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]
@@ -111,8 +116,10 @@ Bad:
 
 Good:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         parameters:
           a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
           b: *a
@@ -168,6 +175,7 @@ Bad:
         components:
           camera:
             inputs: [light]
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
@@ -176,6 +184,7 @@ Good:
         components:
           camera:
             inputs: {light: {external: The room, medium: physical}}
+    nodes: {camera: {implements: sensing.camera}}
 """,
     ),
     _rule(
@@ -187,14 +196,18 @@ names and in links.
 
 Bad:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         timing: {rate: 10}
 
 Good:
 
+    groups: {driving: {components: {planner: Planner}}}
     nodes:
       planner:
+        implements: driving.planner
         timing: {rate: 10 Hz}
 """,
     ),
