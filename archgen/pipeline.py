@@ -122,7 +122,7 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 def judge(loaded: Loaded) -> Checked:
     """Take a project that was read through all stages up to its findings."""
-    merged, merge_findings = merge.merge(loaded.documents)
+    merged, merge_findings = link.merge(loaded.documents, loaded.lost)
     known, interface_findings = _interfaces(loaded, merged)
     linked, link_findings = link.link(
         merged,
@@ -130,6 +130,7 @@ def judge(loaded: Loaded) -> Checked:
         default_title=loaded.title,
         shipped=shipped.shipped_types(loaded.distro),
         interfaces=known,
+        lost=loaded.lost,
     )
     architecture = transform.transform(linked)
     read, chapter_findings = chapters.chapters(merged, loaded.root)

@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
-from archgen.pipeline import ALL_RULES, check_text
 
 from archgen import resources
 from archgen.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import explain
 from archgen.findings.rules import by_name
+from archgen.pipeline import ALL_RULES, check, check_text
 
 _LOUD = {Severity.ERROR, Severity.WARNING}
+
+
+def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
+    """Judge an example: one file, or several that begin with a line `# file: NAME`."""
+    parts = re.split(r"^# file: (\S+)\n", f"{example}\n", flags=re.MULTILINE)
+    if len(parts) == 1:
+        return check_text(parts[0])
+    for name, text in zip(parts[1::2], parts[2::2], strict=True):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    return check(folder).findings
 
 
 def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
@@ -18,13 +32,13 @@ def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
 
 
 @pytest.mark.parametrize("rule", ALL_RULES, ids=lambda rule: rule.name)
-def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule) -> None:
+def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule, tmp_path: Path) -> None:
     parts = explain.page(rule)
     assert parts.summary
     assert parts.why
     assert parts.bad
     assert parts.good
-    bad, good = check_text(f"{parts.bad}\n"), check_text(f"{parts.good}\n")
+    bad, good = _judge(parts.bad, tmp_path / "bad"), _judge(parts.good, tmp_path / "good")
     assert rule.name in {d.rule for d in bad}, _shown(bad)
     assert {d.rule for d in bad if d.severity in _LOUD} <= {rule.name}, _shown(bad)
     assert rule.name not in {d.rule for d in good}, _shown(good)

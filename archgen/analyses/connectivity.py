@@ -61,7 +61,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
           controller: {implements: controller}
           recorder: {implements: recorder}
     """
-    if len(architecture.components) == 1:
+    if len(architecture.components) == 1 or architecture.partial:
         return
     linked = linked_components(architecture)
     for component in architecture.components.values():
@@ -207,6 +207,8 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera}
           screen: {implements: screen}
     """
+    if architecture.partial:
+        return
     read = {edge.output for edge in architecture.edges}
     shared = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
     whole = {c.target for c in architecture.connections if c.kind != "output"}

@@ -50,6 +50,8 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
           camera_driver: {implements: camera}
           image_view: {implements: screen}
     """
+    if architecture.partial:
+        return
     nodes = nodes_of_components(architecture)
     for component in architecture.components.values():
         if component.id in nodes or component.id in architecture.suspects or _purely_physical(component):
@@ -187,6 +189,8 @@ def unsubscribed_input(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _shared_components(architecture: Architecture) -> Iterator[tuple[Component, tuple[Node, ...], frozenset[str]]]:
     """Give each component that several nodes implement, with them and the ports that they carry."""
+    if architecture.partial:
+        return
     several = {component: nodes for component, nodes in nodes_of_components(architecture).items() if len(nodes) > 1}
     endpoints = {e.port for e in architecture.endpoints if e.component in several and e.port}
     for component, nodes in several.items():

@@ -209,19 +209,25 @@ def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
     Bad:
 
         ros: {distro: jazzy}
+        groups: {sensing: {components: {camera: Camera with preview}}}
         nodes:
           camera:
+            implements: sensing.camera
             internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
           viewer:
+            implements: sensing.camera
             internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/CompressedImage}}}
 
     Good:
 
         ros: {distro: jazzy}
+        groups: {sensing: {components: {camera: Camera with preview}}}
         nodes:
           camera:
+            implements: sensing.camera
             internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
           viewer:
+            implements: sensing.camera
             internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
     """
     for topic in architecture.topics.values():

@@ -91,6 +91,8 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera}
           screen: {implements: screen}
     """
+    if architecture.partial:
+        return
     named = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
     named.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
     # A slip in an id is reported as such, and not once more as a requirement that nobody serves.

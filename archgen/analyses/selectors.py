@@ -109,7 +109,7 @@ def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
           eyes: {show: "camera..screen"}
     """
     for view in architecture.views.values():
-        if not view.show:
+        if not view.show or not architecture.components:
             continue
         selection, problems = select(view.show, architecture)
         if not problems and not selection.components and not selection.nodes:

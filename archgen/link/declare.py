@@ -68,6 +68,8 @@ def link(  # noqa: PLR0913 - all by name
         views=declare_rest.views(table),
         policies=declare_rest.policies(table),
         interfaces=interfaces,
+        suspects=frozenset(references.suspects),
+        partial=bool(lost),
     )
     return architecture, tuple(found)
 

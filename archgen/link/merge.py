@@ -193,7 +193,7 @@ Bad:
             performance:
               accuracy: 90 %
               overall: {accuracy: 95 %}
-    nodes: {camera: sensing.camera}
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
@@ -203,7 +203,7 @@ Good:
         components:
           camera:
             performance: {accuracy: 90 %}
-    nodes: {camera: sensing.camera}
+    nodes: {camera: {implements: sensing.camera}}
 """,
         fixed=True,
     ),
@@ -223,7 +223,7 @@ Bad:
         components:
           camera: Camera
           camra: {timing: {rate: 10 Hz}}
-    nodes: {camera: sensing.camera}
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
@@ -232,7 +232,7 @@ Good:
         title: Sensing
         components:
           camera: {title: Camera, timing: {rate: 10 Hz}}
-    nodes: {camera: sensing.camera}
+    nodes: {camera: {implements: sensing.camera}}
 """,
         fixed=True,
     ),

@@ -31,6 +31,8 @@ class References:
     """The keys in files that could not be read: nobody is told that what they declare does not exist."""
     implements: Mapping[str, Collection[str]] = field(default_factory=dict)
     """The components of each node, once they are known."""
+    suspects: set[str] = field(default_factory=set)
+    """Complete ids of what references that could not be followed most likely meant."""
     names: Names = field(init=False)
     _left: int = _GUESSES
     _pools: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
@@ -74,6 +76,7 @@ class References:
         return closest(word, pool)
 
     def _ambiguous(self, written: Scalar, result: Found, element: str) -> Diagnostic:
+        self.suspects.update(name.id for name in result.elements)
         listed = [f"`{name.id}`" for name in result.elements]
         more = result.count - len(listed)
         last = f"{more} more" if more else listed.pop()
@@ -105,7 +108,9 @@ class References:
             help_line = "name the output that the data comes from"
             return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
         guess = self._guess_path(words, kinds)
-        meant = self.names.find(guess, kinds, component=component).one if guess else None
+        candidates = self.names.find(guess, kinds, component=component) if guess else None
+        self.suspects.update(name.id for name in (candidates.elements if candidates else ()))
+        meant = candidates.one if candidates else None
         return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
@@ -207,6 +212,7 @@ class Ports:
         return None
 
     def _ambiguous(self, words: str, at: Span, result: Found) -> Diagnostic:
+        self.references.suspects.update(name.id for name in result.elements)
         listed = " or ".join(f"`{_end(name.id, 2)}`" for name in result.elements)
         return Diagnostic(
             "ambiguous-reference",
@@ -227,7 +233,9 @@ class Ports:
                 "unknown-reference", message, at, labels=(label,), help=f"`{words}` is an {other}", element=self.owner
             )
         guess = self.references.guess(words, tuple(self.names.ends(kind)))
-        meant = self.names.find(guess, (kind,)).one if guess else None
+        candidates = self.names.find(guess, (kind,)) if guess else None
+        self.references.suspects.update(name.id for name in (candidates.elements if candidates else ()))
+        meant = candidates.one if candidates else None
         labels = (Label(self._place(meant), "declared here"),) if meant else self._declared()
         help_line = f"did you mean `{guess}`?" if guess else None
         return Diagnostic("unknown-reference", message, at, labels=labels, help=help_line, element=self.owner)

@@ -152,6 +152,8 @@ class Architecture:
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     interfaces: Interfaces = field(default_factory=Interfaces)
+    partial: bool = False
+    """A file could not be read at all: what nobody seems to use may be used there."""
     suspects: frozenset[str] = frozenset()
     """Complete ids of what references that could not be resolved most likely meant (the guess, or the candidates). No rule
     says of these that nobody uses them: the reference is reported already."""

@@ -76,14 +76,22 @@ Why: such a value has no end.
 
 Bad:
 
-    groups:
-      sensing: {title: Sensing, tags: &tags [safety, *tags]}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        parameters:
+          limits: &limits [1, *limits]
 
 Good:
 
-    groups:
-      sensing: {title: Sensing, tags: &tags [safety, outdoors]}
-      driving: {title: Driving, tags: *tags}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        parameters:
+          limits: &limits [1, 2]
+          soft_limits: *limits
 """,
     ),
     _rule(
@@ -95,18 +103,26 @@ each file, 100,000 values from aliases, and 64 levels.
 
 Bad:
 
-    groups:
-      a: {title: A, tags: &a [x, x, x, x, x, x, x, x, x, x]}
-      b: {title: B, tags: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]}
-      c: {title: C, tags: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]}
-      d: {title: D, tags: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]}
-      e: {title: E, tags: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        parameters:
+          a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+          b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]
+          c: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]
+          d: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]
+          e: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]
 
 Good:
 
-    groups:
-      a: {title: A, tags: &a [safety, outdoors]}
-      b: {title: B, tags: *a}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        parameters:
+          a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+          b: *a
 """,
     ),
     _rule(
@@ -155,12 +171,20 @@ Why: a value that was meant otherwise than it is read is worse than none.
 Bad:
 
     groups:
-      sensing: {title: Sensing, tags: safety}
+      sensing:
+        components:
+          camera:
+            inputs: [light]
+    nodes: {camera: {implements: sensing.camera}}
 
 Good:
 
     groups:
-      sensing: {title: Sensing, tags: [safety]}
+      sensing:
+        components:
+          camera:
+            inputs: {light: {external: The room, medium: physical}}
+    nodes: {camera: {implements: sensing.camera}}
 """,
     ),
     _rule(
@@ -172,15 +196,19 @@ names and in links.
 
 Bad:
 
-    hosts: {onboard_pc: On-board computer, arm_pc: Computer in the arm}
-    links:
-      lan: {connects: [onboard_pc, arm_pc], latency: 1}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        timing: {rate: 10}
 
 Good:
 
-    hosts: {onboard_pc: On-board computer, arm_pc: Computer in the arm}
-    links:
-      lan: {connects: [onboard_pc, arm_pc], latency: 1 ms}
+    groups: {driving: {components: {planner: Planner}}}
+    nodes:
+      planner:
+        implements: driving.planner
+        timing: {rate: 10 Hz}
 """,
     ),
     Rule(

@@ -1,0 +1,82 @@
+"""What is reported once is not reported again under another name, and stubs are no mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from archgen.diagnostic import Severity
+from archgen.pipeline import check, check_text
+
+
+def _rules(text: str) -> list[str]:
+    return [f"{d.span.line} {d.rule}" for d in check_text(text) if d.severity is not Severity.NOTE]
+
+
+def test_a_slip_in_a_reference_is_reported_once() -> None:
+    text = """\
+groups:
+  sensing:
+    components:
+      camera: {outputs: {image: sensor_msgs/msg/Image}}
+      screen: {inputs: {image: camera.imgae}}
+nodes:
+  camera: {implements: camrea}
+  screen: {implements: screen}
+"""
+    assert _rules(text) == ["5 unknown-reference", "7 unknown-reference"]
+
+
+def test_an_ambiguous_reference_is_reported_once() -> None:
+    text = """\
+groups:
+  left: {components: {camera: {outputs: {image: sensor_msgs/msg/Image}}}}
+  right: {components: {camera: {outputs: {image: sensor_msgs/msg/Image}}}}
+  other: {components: {screen: {inputs: {image: camera.image}}}}
+nodes: {l: left.camera, r: right.camera, s: screen}
+"""
+    assert _rules(text) == ["4 ambiguous-reference"]
+
+
+def test_a_slip_in_a_port_of_a_shared_component_is_reported_once() -> None:
+    text = """\
+groups:
+  sensing:
+    components:
+      camera: {outputs: {image: sensor_msgs/msg/Image}}
+      screen: {inputs: {image: camera.image}}
+nodes:
+  driver: {implements: camera, publishes: {imgae: /image}}
+  helper: {implements: camera, publishes: {}}
+  screen: {implements: screen}
+"""
+    assert _rules(text) == ["7 unknown-reference"]
+
+
+def test_a_slip_in_a_requirement_is_reported_once() -> None:
+    text = """\
+requirements: {R-10: The user sees}
+groups: {sensing: {components: {camera: {title: Camera, requirements: [R-1O]}}}}
+nodes: {camera: camera}
+"""
+    assert _rules(text) == ["2 unknown-requirement"]
+
+
+def test_a_file_that_cannot_be_read_hides_no_finding_and_makes_none(tmp_path: Path) -> None:
+    files = {
+        "archgen.yaml": "archgen: 1\nsources: ['*.yaml']\nrequirements: {R-1: The user sees}\n",
+        "a.yaml": "groups:\n  a: {components: {camera: {outputs: {image: sensor_msgs/msg/Image}, inputs: {light: }}}}\n",
+        "b.yaml": "groups:\n  b: {components: {screen: {inputs: {image: camera.image}}}\nnodes: {camera: a.camera}\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    found = [
+        f"{d.span.file}:{d.span.line} {d.rule}" for d in check(tmp_path).findings if d.severity is not Severity.NOTE
+    ]
+    assert found == ["a.yaml:2 unjustified-component", "a.yaml:2 unfed-input", "b.yaml:2 syntax-error"]
+
+
+def test_a_project_of_stubs_has_no_errors_and_says_only_what_is_open() -> None:
+    text = "groups: {sensing: {components: {camera: Camera, lidar: Laser}}, speech: Speech}\n"
+    found = check_text(text)
+    assert {d.severity for d in found} == {Severity.NOTE, Severity.WARNING}
+    assert {d.rule for d in found} == {"missing-detail", "unmapped-component"}
