@@ -28,6 +28,8 @@ from archgen.views.shapes import (
 )
 
 _SPOKEN = {"note": "Note: ", "warning": "Warning: ", "error": "Error: "}
+_WIDE = 3
+"""A table of fewer columns does not stretch: its values stand near their names."""
 _ALIGNED = {"left": "", "right": ' class="right"', "centre": ' class="centre"'}
 
 
@@ -102,7 +104,7 @@ class Writer:
         anchors = table.row_anchors or (None,) * len(table.rows)
         body = "\n".join([self._row(row, anchor, table) for row, anchor in zip(table.rows, anchors, strict=True)])
         return (
-            f'<div class="table{" wide" if table.wide else ""}"{self._id(table.anchor)}>\n'
+            f'<div class="table{" narrow" if len(table.columns) < _WIDE else ""}"{self._id(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
             f"<caption>{caption}</caption>\n{_widths(table.columns)}"
             f"<thead><tr>{_heads(table.columns)}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"

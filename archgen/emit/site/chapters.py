@@ -109,7 +109,7 @@ def _nest_headings(tokens: Sequence[Token], level: int) -> None:
 def _parser() -> MarkdownIt:
     from markdown_it import MarkdownIt
 
-    parser = MarkdownIt("commonmark", {"html": False})
+    parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     for name, rule in (
         ("link_open", _link_open),
         ("link_close", _link_close),
@@ -117,6 +117,8 @@ def _parser() -> MarkdownIt:
         ("fence", _code),
         ("code_block", _code),
         ("text", _text),
+        ("table_open", _table_open),
+        ("table_close", _table_close),
     ):
         parser.add_render_rule(name, rule)
     return parser
@@ -148,3 +150,11 @@ def _code(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
 
 def _text(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
     return escape(tokens[place].content)
+
+
+def _table_open(*_: object) -> str:
+    return '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>\n'
+
+
+def _table_close(*_: object) -> str:
+    return "</table></div>\n"

@@ -204,6 +204,10 @@ Read [the risks](risks.md), [a component](component:g0.c0), [nothing](missing.md
 ### Deeper
 
 > A quotation.
+
+| Step | Who |
+|---|--:|
+| 1 | <b> |
 """
 
 
