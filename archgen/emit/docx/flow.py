@@ -13,6 +13,8 @@ from archgen.emit.docx.sheets import Sheet
 
 _TOGETHER = 2
 """Lines of a paragraph that stay together at the foot and at the head of a page."""
+_SCRAP = 130.0
+"""Points of text that do not deserve a page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +45,34 @@ class Piece:
 
 
 def settle(pieces: Sequence[Piece], base: Sheet) -> tuple[Piece, ...]:
-    """Give every piece its sheet: the one it needs, that of the piece it is kept with, or the usual one."""
-    settled: list[Piece] = []
+    """Give every piece its sheet: the one it needs, that of the piece it is kept with, or the usual one.
+
+    A scrap of text that would have a usual page to itself, beside a turned one, turns along.
+    """
+    sheets: list[Sheet] = []
     following: Sheet | None = None
     for piece in reversed(pieces):
-        own = piece.sheet or (following if piece.keep_next else None) or base
-        settled.append(replace(piece, sheet=own))
-        following = own
-    return tuple(reversed(settled))
+        following = piece.sheet or (following if piece.keep_next else None) or base
+        sheets.append(following)
+    sheets.reverse()
+    for start, end in _runs(pieces, sheets, base):
+        height = sum(piece.before + sum(piece.rows) + piece.after for piece in pieces[start:end])
+        before = sheets[start - 1] if start and not pieces[start].new_page else base
+        after = sheets[end] if end < len(pieces) and not pieces[end].new_page else base
+        if height <= _SCRAP:
+            sheets[start:end] = [after if after != base else before] * (end - start)
+    return tuple(replace(piece, sheet=sheet) for piece, sheet in zip(pieces, sheets, strict=True))
+
+
+def _runs(pieces: Sequence[Piece], sheets: Sequence[Sheet], base: Sheet) -> list[tuple[int, int]]:
+    """Give the runs of pieces on the usual sheet between what begins a page."""
+    found, start = [], 0
+    for index in range(len(pieces) + 1):
+        if index == len(pieces) or sheets[index] != base or pieces[index].new_page:
+            if start < index:
+                found.append((start, index))
+            start = index if index < len(pieces) and sheets[index] == base else index + 1
+    return found
 
 
 def pages(pieces: Sequence[Piece], base: Sheet) -> dict[str, int]:

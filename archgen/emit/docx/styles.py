@@ -18,13 +18,14 @@ HEADINGS = 9
 _PARAGRAPHS = (
     "Normal", "Title", "Subtitle", *(f"heading {n}" for n in range(1, HEADINGS + 1)), "TOC Heading",
     *(f"toc {n}" for n in range(1, HEADINGS + 1)), "table of figures", "caption", "Figure", "Table Text", "Table Heading",
+    "Small Table Text", "Small Table Heading",
     "List Bullet", "List Number", "Quote", "Code Block", "Note Box", "Warning Box", "Error Box", "header", "footer",
 )  # fmt: skip
 _CHARACTERS = ("Default Paragraph Font", "Hyperlink", "Inline Code")
 _TABLES = ("Normal Table", "Table Grid", "Report Facts")
 _REPORT_TABLE = "Report Table"
 _SILENT = {"Normal", "Default Paragraph Font", "Normal Table", "header", "footer"} | {"Figure", "Table Text", "Table Heading"} | {
-    "Code Block", "Inline Code", "Note Box", "Warning Box", "Error Box", "Report Facts",
+    "Small Table Text", "Small Table Heading", "Code Block", "Inline Code", "Note Box", "Warning Box", "Error Box", "Report Facts",
 }  # fmt: skip
 """Styles of archgen's own that no template can be expected to have, and those that stand for "no style"."""
 _CAPTIONS = ("beschriftung", "légende", "legende", "didascalia", "epígrafe", "bijschrift", "legenda", "λεζάντα")
@@ -153,7 +154,10 @@ def _add(styles: Styles, spare: etree._Element) -> etree._Element:
 def _point(styles: Styles, item: etree._Element) -> None:
     """Let a reference of an added style point at the style that plays the same part in the template."""
     target = item.get(tag("val"), "")
-    names = {"DefaultParagraphFont": "Default Paragraph Font", "TableNormal": "Normal Table", "Caption": "caption"}
+    names = {
+        "DefaultParagraphFont": "Default Paragraph Font", "TableNormal": "Normal Table", "Caption": "caption",
+        "TableText": "Table Text", "TableHeading": "Table Heading",
+    }  # fmt: skip
     part = names.get(target, target)
     if part in styles.ids:
         item.set(tag("val"), styles.ids[part])

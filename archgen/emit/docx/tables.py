@@ -19,7 +19,10 @@ MOST_COLUMNS = 63
 _AIR = 12.0
 """Points that a cell's margins take from its width."""
 _WIDEST_WORD = 0.4
-"""Share of the table that one unbroken word may claim."""
+"""Share of the table that one unbroken word may claim; a longer one (a topic's name) is broken."""
+_WIDEST_SMALL_WORD = 0.25
+_NATURAL = 2.0
+"""How much more than its share a column may get for text that would else take many lines."""
 _SPACER = 8.0
 _SHORT = 130.0
 """Points below which a table stays on one page."""
@@ -27,6 +30,18 @@ _NAMES = 0.27
 _LOOK = '<w:tblLook w:val="0420" w:firstRow="1" w:lastRow="0" w:firstColumn="0" w:lastColumn="0" w:noHBand="0" w:noVBand="1"/>'
 _SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="EDF1F4"/>'
 _ALIGN = {"left": "", "right": '<w:jc w:val="right"/>', "centre": '<w:jc w:val="center"/>'}
+
+
+@dataclass(frozen=True, slots=True)
+class _Type:
+    """The styles of a table's text and of its header row."""
+
+    text: str = "Table Text"
+    heading: str = "Table Heading"
+
+
+_USUAL = _Type()
+_SMALL = _Type("Small Table Text", "Small Table Heading")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +58,7 @@ def table(draft: Draft, shape: Table) -> Iterator[Piece]:
     header = [_Cell(run(column.title), column.title, _ALIGN[column.align]) for column in shape.columns]
     anchors = shape.row_anchors or (None,) * len(shape.rows)
     caption_anchor = draft.fresh(shape.anchor)
-    sheet = draft.sheets.wide if shape.wide or not _fits(draft, shape, draft.sheets.base) else None
+    sheet, kind = fitting(draft, shape)
     if shape.numbered and shape.caption:
         yield figures.caption(draft, caption_anchor, shape.caption, sheet, "Table")
         start = ""
@@ -59,14 +74,18 @@ def table(draft: Draft, shape: Table) -> Iterator[Piece]:
         mark = start + draft.mark(anchor)
         start = ""
         body.append([_Cell(mark + cells[0].content, cells[0].text, cells[0].align), *cells[1:]] if mark else cells)
-    yield grid(
-        draft,
-        header,
-        body,
-        _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width),
-        shape.caption,
-        sheet,
-    )
+    widths = _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width, kind)
+    yield grid(draft, header, body, widths, shape.caption, sheet, kind=kind)
+
+
+def fitting(draft: Draft, shape: Table) -> tuple[Sheet | None, _Type]:
+    """Choose a table's sheet and type: small type before a turned page, and that only if even so its words do not fit."""
+    base, wide = draft.sheets.base, draft.sheets.wide
+    if shape.wide:
+        return wide, _USUAL if _fits(draft, shape, wide, _USUAL, _WIDEST_WORD) else _SMALL
+    if _fits(draft, shape, base, _USUAL, _WIDEST_WORD):
+        return None, _USUAL
+    return (None if _fits(draft, shape, base, _SMALL, _WIDEST_SMALL_WORD) else wide), _SMALL
 
 
 def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
@@ -92,10 +111,10 @@ def simple(draft: Draft, header: Sequence[Inlines], body: Sequence[Sequence[Inli
     weights = [max(1.0, *(len(row[n].text) ** 0.5 for row in [cells, *rows])) for n in range(len(cells))]
     columns = tuple(Column(cell.text, weight) for cell, weight in zip(cells, weights, strict=True))
     texts = tuple(tuple(row) for row in body)
-    return grid(draft, cells, rows, _widths(draft, columns, texts, draft.sheets.base.text_width), "", None)
+    return grid(draft, cells, rows, _widths(draft, columns, texts, draft.sheets.base.text_width, _USUAL), "", None)
 
 
-def grid(
+def grid(  # noqa: PLR0913 - all that a table is
     draft: Draft,
     header: Sequence[_Cell],
     body: Sequence[Sequence[_Cell]],
@@ -103,24 +122,21 @@ def grid(
     description: str,
     sheet: Sheet | None,
     style: str = "Report Table",
+    kind: _Type = _USUAL,
 ) -> Piece:
     """Set a table, with the small empty paragraph behind it that keeps it from the next."""
-    text, head = draft.styles.face("Table Text"), draft.styles.face("Table Heading")
+    text, head = draft.styles.face(kind.text), draft.styles.face(kind.heading)
     heights = [_height(row, widths, text) for row in body]
     top = _height(header, widths, head) if header else 0.0
     height = (sheet or draft.sheets.base).text_height
     short = top + sum(heights) <= _SHORT
     shade = _SHADE if draft.styles.id(style) == draft.styles.id("Table Grid") else ""
     starts = [_start(twips(width)) for width in widths]
-    rows = (
-        [_row(starts, header, draft.styles.id("Table Heading"), "<w:tblHeader/>", "", shade, whole=True)]
-        if header
-        else []
-    )
+    rows = [_row(starts, header, draft.styles.id(kind.heading), "<w:tblHeader/>", "", shade, whole=True)] if header else []
     last = len(body) - 1
     for index, row in enumerate(body):
         keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
-        rows.append(_row(starts, row, draft.styles.id("Table Text"), "", keep, "", whole=heights[index] < height * 0.8))
+        rows.append(_row(starts, row, draft.styles.id(kind.text), "", keep, "", whole=heights[index] < height * 0.8))
     total = sum(twips(width) for width in widths)
     columns = "".join([f'<w:gridCol w:w="{twips(width)}"/>' for width in widths])
     xml = (
@@ -171,35 +187,38 @@ def _height(cells: Sequence[_Cell], widths: Sequence[float], face: Face) -> floa
     return most * face.line + face.before + face.after + 0.5
 
 
-def _longest(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]]) -> list[float]:
-    """Give the width of each column's longest word, with the cell's margins."""
-    text, head = draft.styles.face("Table Text"), draft.styles.face("Table Heading")
-    found = [
-        max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor
-        for column in columns
-    ]
+def _needs(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], kind: _Type) -> tuple[list[float], list[float]]:
+    """Give the width of each column's longest word and of its longest line, with the cell's margins."""
+    text, head = draft.styles.face(kind.text), draft.styles.face(kind.heading)
+    words = [max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor for column in columns]
+    whole = list(words)
     for row in rows:
-        for index, cell in enumerate(row[: len(found)]):
+        for index, cell in enumerate(row[: len(words)]):
+            used = 0.0
             for item in cell:
                 scale = text.size * (text.factor if not item.code else MONOSPACE)
-                for word in item.text.split():
-                    found[index] = max(found[index], word_width(word) * scale)
-    return [width + _AIR for width in found]
+                widths = [word_width(word) * scale for word in item.text.split()]
+                words[index] = max(words[index], *widths, 0)
+                used = sum(widths) + (0.0 if item.line_break else used)
+                whole[index] = max(whole[index], used + len(widths) * scale / 4)
+    return [width + _AIR for width in words], [width + _AIR for width in whole]
 
 
-def _fits(draft: Draft, shape: Table, sheet: Sheet) -> bool:
-    longest = _longest(draft, shape.columns, shape.rows)
-    return sum(min(width, sheet.text_width * _WIDEST_WORD) for width in longest) <= sheet.text_width
+def _fits(draft: Draft, shape: Table, sheet: Sheet, kind: _Type, most: float) -> bool:
+    longest, _ = _needs(draft, shape.columns, shape.rows, kind)
+    return sum(min(width, sheet.text_width * most) for width in longest) <= sheet.text_width
 
 
-def _widths(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], total: float) -> list[float]:
-    """Share the width by the columns' weights, but leave each the room of its longest word as far as there is any."""
-    least = [min(width, total * _WIDEST_WORD) for width in _longest(draft, columns, rows)]
+def _widths(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], total: float, kind: _Type) -> list[float]:
+    """Share the width by the columns' weights, but give each the room of its longest word, as far as there is any."""
+    words, whole = _needs(draft, columns, rows, kind)
+    least = [min(width, total * _WIDEST_WORD) for width in words]
     if sum(least) >= total:
         return [width * total / sum(least) for width in least]
     weight = sum(max(column.weight, 0.01) for column in columns)
     share = [total * max(column.weight, 0.01) / weight for column in columns]
-    spare = [max(wanted - need, 0) for wanted, need in zip(share, least, strict=True)]
+    wanted = [max(part, min(line, part * _NATURAL)) for part, line in zip(share, whole, strict=True)]
+    spare = [max(want - need, 0) for want, need in zip(wanted, least, strict=True)]
     room = total - sum(least)
     return [
         need + room * (extra / sum(spare) if sum(spare) else 1 / len(least))
