@@ -55,7 +55,7 @@ def load(folder: Path, name: str, formats: Sequence[str]) -> Picture | None:
             float(head["height"]),
             dot=(parts.pop("dot") or b"").decode(),
             warning=head["warning"],
-            **parts,  # type: ignore[arg-type]
+            **parts,
         )
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
@@ -81,7 +81,13 @@ def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> 
         parts[form] = (offset, len(blob), zlib.crc32(blob))
         blobs.append(blob)
         offset += len(blob)
-    head = {"id": picture.id, "width": picture.width, "height": picture.height, "warning": picture.warning, "parts": parts}
+    head = {
+        "id": picture.id,
+        "width": picture.width,
+        "height": picture.height,
+        "warning": picture.warning,
+        "parts": parts,
+    }
     with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:
         file.write(json.dumps(head).encode() + b"\n" + b"".join(blobs))
     os.replace(file.name, folder / f"{name}.picture")  # noqa: PTH105 - as atomic as the system can

@@ -128,7 +128,9 @@ def _rows(entries: Sequence[tuple[Scene, str]], width: float) -> Scene:
 def _renamed(scene: Scene, prefix: str) -> Scene:
     return Scene(
         scene.frames,
-        tuple(replace(line, edge=prefix, tail=f"{prefix}{line.tail}", head=f"{prefix}{line.head}") for line in scene.lines),
+        tuple(
+            replace(line, edge=prefix, tail=f"{prefix}{line.tail}", head=f"{prefix}{line.head}") for line in scene.lines
+        ),
         tuple(replace(part, name=f"{prefix}{part.name}") for part in scene.parts),
     )
 

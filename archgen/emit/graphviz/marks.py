@@ -95,7 +95,10 @@ def _common(item: Box, link: Link) -> Attributes:
     classes = ["box", item.style, item.emphasis]
     classes += [item.status] if item.status else []
     classes += [f"hue{item.colour}"] if item.colour is not None else []
-    return {"class": f'"{" ".join(classes)}"', **linked(item.ref, item.tooltip or "\n".join((item.title, *item.lines)), link)}
+    return {
+        "class": f'"{" ".join(classes)}"',
+        **linked(item.ref, item.tooltip or "\n".join((item.title, *item.lines)), link),
+    }
 
 
 def linked(ref: str | None, tooltip: str, link: Link) -> Attributes:

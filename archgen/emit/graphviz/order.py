@@ -55,6 +55,7 @@ def _greedy(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
 
 def folded(order: Sequence[str], lengths: Mapping[str, float], rows: int, gap: float) -> tuple[tuple[str, ...], ...]:
     """Cut an order into so many runs that the longest is as short as can be."""
+
     def runs(limit: float) -> list[list[str]]:
         found: list[list[str]] = [[]]
         used = 0.0

@@ -61,7 +61,7 @@ def command() -> Command:
     return (sys.executable, "-P", "-c", _START.format(root=root))
 
 
-def draw(
+def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     tasks: Sequence[Task],
     folder: Path,
     *,
@@ -87,7 +87,12 @@ class _Run:
     """What the threads share: each holds one worker process and takes the next task when its last one is done."""
 
     def __init__(
-        self, tasks: Sequence[Task], progress: Progress | None, timeout: float, start: Command, environment: dict[str, str]
+        self,
+        tasks: Sequence[Task],
+        progress: Progress | None,
+        timeout: float,
+        start: Command,
+        environment: dict[str, str],
     ) -> None:
         self.done: dict[int, Picture] = {}
         self.missing = ""

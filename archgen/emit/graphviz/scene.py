@@ -130,9 +130,7 @@ class Scene:
         return "\n".join([*lines, "}", ""])
 
 
-def placed(
-    layout: dict[str, Any], boxes: dict[str, Attributes], arrows: dict[str, tuple[str, Attributes]]
-) -> Scene:
+def placed(layout: dict[str, Any], boxes: dict[str, Attributes], arrows: dict[str, tuple[str, Attributes]]) -> Scene:
     """Read boxes and arrows back from Graphviz's json. Nodes that are not asked for (helpers) are left out.
 
     `arrows` gives for each edge id of the layout the arrow's id and how it is drawn.
@@ -141,7 +139,14 @@ def placed(
     names = {item["_gvid"]: item["name"] for item in objects}
     parts = tuple(_part(item, boxes[item["name"]]) for item in objects if item["name"] in boxes)
     lines = tuple(
-        Line(item["id"][1:], arrows[item["id"]][0], names[item["tail"]], names[item["head"]], arrows[item["id"]][1], item["pos"])
+        Line(
+            item["id"][1:],
+            arrows[item["id"]][0],
+            names[item["tail"]],
+            names[item["head"]],
+            arrows[item["id"]][1],
+            item["pos"],
+        )
         for item in layout.get("edges", [])
         if item.get("id") in arrows and "pos" in item
     )
@@ -175,9 +180,7 @@ def _pairs(attributes: Attributes) -> str:
 
 def meet(one: Rectangle, other: Rectangle, gap: float = 0.0) -> bool:
     """Say whether two rectangles overlap, or come nearer than a gap."""
-    return (
-        one[0] < other[2] + gap and other[0] < one[2] + gap and one[1] < other[3] + gap and other[1] < one[3] + gap
-    )
+    return one[0] < other[2] + gap and other[0] < one[2] + gap and one[1] < other[3] + gap and other[1] < one[3] + gap
 
 
 def meetings(scene: Scene) -> Iterable[tuple[str, str]]:

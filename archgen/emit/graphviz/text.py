@@ -1,6 +1,6 @@
-"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
+r"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
 
-Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\\N` is
+Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\N` is
 replaced by Graphviz; in a quoted string `"` ends it, and a character reference would be read as one. Both are
 escaped here and nowhere else. Control characters make an SVG that is no XML, and the marks that turn the direction of
 writing make a text look like another: neither gets into a picture.
@@ -16,7 +16,9 @@ LONGEST = 400
 """A text longer than this many characters is cut, with an ellipsis; pages and tables have it whole."""
 
 _BLANKS = re.compile(r"\s+")
-_UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff0-\uffff]")
+_UNFIT = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff0-\uffff]"
+)
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]*):")
 _BREAKS = (re.compile(r"(?=/)"), re.compile(r"(?<=[-_.:,;])"))
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\\": "&#92;"})

@@ -141,9 +141,7 @@ def _composed(
     nodes = [f"{name} [{written(each)}];" for name, each in boxes.items()]
     wanted = {f"e{at}": drafted.arrows[f"e{at}"] for at, _ in arrows}
     outer = placed(engine.layout(document(settings, [*nodes, *statements])), boxes, wanted)
-    scenes = [
-        names[part.name].scene.moved(part.x - part.width / 2, part.y - part.height / 2) for part in outer.parts
-    ]
+    scenes = [names[part.name].scene.moved(part.x - part.width / 2, part.y - part.height / 2) for part in outer.parts]
     anchors = tuple(replace(part, attributes=_UNSEEN, kind="mark") for part in outer.parts)
     return Scene(lines=outer.lines, parts=anchors).joined(*scenes)
 

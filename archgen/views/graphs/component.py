@@ -79,7 +79,9 @@ def _fed(view: Index, item: Component, port: Input, connection: Connection) -> D
         box = boxes.neighbour(view, producer, "left")
         box = replace(box, id=f"<{box.id}")
     star = connection.kind != "output"
-    label = f"* {plural(len(types), 'type')}" if star and len(types) != 1 else f"{'* ' * star}{types[0] if types else ''}"
+    label = (
+        f"* {plural(len(types), 'type')}" if star and len(types) != 1 else f"{'* ' * star}{types[0] if types else ''}"
+    )
     style = style_of(architecture, outputs[0]) if outputs else "data"
     arrow = Arrow(
         f"{connection.target}>{port.id}",
