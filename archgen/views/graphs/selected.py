@@ -111,7 +111,7 @@ def implementation(view: Index, name: str, title: str, chosen: Collection[str]) 
         style = "data" if each.topic.flow == "topic" else each.topic.flow
         box = f"topic {each.topic.name}"
         for tail, head in ((each.tail, box), (box, each.head)):
-            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))  # type: ignore[arg-type]
+            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))
             arrows[arrow.id] = arrow
     graph = Graph(
         name,
