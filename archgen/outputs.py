@@ -12,8 +12,9 @@ from archgen.diagnostic import Diagnostic
 from archgen.emit import tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
-from archgen.model import selector
-from archgen.model.selector import Selection
+from archgen.model import selection
+from archgen.model.selection import Selection
+from archgen.model.selector import Problem
 from archgen.pipeline import Checked
 from archgen.revision import revision
 from archgen.views import graphs, pages, record, statistics
@@ -40,9 +41,9 @@ class Ask:
     warn: Callable[[str], None] = lambda _text: None
 
 
-def select(checked: Checked, words: str) -> tuple[Selection, tuple[selector.Problem, ...]]:
+def select(checked: Checked, words: str) -> tuple[Selection, tuple[Problem, ...]]:
     """Evaluate a selector against a project; `finding:` sees its findings."""
-    return selector.select(words, checked.architecture, _found(checked))
+    return selection.select(words, checked.architecture, _found(checked))
 
 
 def _found(checked: Checked) -> Mapping[str, frozenset[str]]:
@@ -80,7 +81,7 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
         msg = f"no picture is called {' or '.join(only)}"
         raise tree.OutputError(msg, f"there are {shown}, ...")
     formats = tuple(form for form in forms if form != "dot")
-    pictures = draw(tuple(chosen.values()), formats, ask.progress)
+    pictures = draw(tuple(chosen.values()), formats, ask)
     tree.write(_picture_files(pictures, forms), target)
     return len(pictures)
 
@@ -169,7 +170,7 @@ class _Made:
 
 def _make(checked: Checked, ask: Ask) -> _Made:
     found = view(checked, ask)
-    drawn = {graph.id: graph for graph in graphs.all_graphs(checked.architecture, ask.selection)}
+    drawn = {graph.id: graph for graph in graphs.all_graphs(checked.architecture, ask.selection, checked.findings)}
     if ask.level == "functional":
         drawn = {name: graph for name, graph in drawn.items() if not _is_low(name)}
     edition = Edition(
@@ -193,14 +194,27 @@ def _matches(name: str, patterns: Sequence[str]) -> bool:
 
 
 def _draw(made: _Made, ask: Ask, formats: Sequence[str]) -> Mapping[str, Picture]:
-    return draw(tuple(made.graphs.values()), formats, ask.progress)
+    return draw(tuple(made.graphs.values()), formats, ask)
 
 
-def draw(graphs: Sequence[Graph], formats: Sequence[str], progress: Progress | None = None) -> Mapping[str, Picture]:
-    """Draw graphs; links in a picture lead to `#` and an element's anchor."""
+def draw(graphs: Sequence[Graph], formats: Sequence[str], ask: Ask) -> Mapping[str, Picture]:
+    """Draw graphs; links in a picture lead to `#` and an element's anchor.
+
+    Where the machine cannot draw, there is a warning and no picture: everything else can still be made.
+    """
     from archgen.emit import graphviz
 
-    return graphviz.draw(graphs, formats, link=lambda ref: f"#{ref}", cache=cache_folder(), progress=progress)
+    try:
+        pictures = graphviz.draw(
+            graphs, formats, link=lambda ref: f"#{ref}", cache=cache_folder(), progress=ask.progress
+        )
+    except graphviz.MissingGraphviz as missing:
+        ask.warn(str(missing))
+        return {}
+    for picture in pictures.values():
+        if picture.warning:
+            ask.warn(f"{picture.id}: {picture.warning}")
+    return pictures
 
 
 def cache_folder() -> Path | None:

@@ -122,7 +122,7 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 def judge(loaded: Loaded) -> Checked:
     """Take a project that was read through all stages up to its findings."""
-    merged, merge_findings = link.merge(loaded.documents, loaded.lost)
+    merged, merge_findings = merge.merge(loaded.documents, loaded.lost)
     known, interface_findings = _interfaces(loaded, merged)
     linked, link_findings = link.link(
         merged,

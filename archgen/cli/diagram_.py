@@ -47,7 +47,7 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Draw the architecture of PROJECT: overview, groups, components, ROS graph, hosts, views.
 
-    With --select one more picture, `selection`, shows just what is selected, neighbours grey.
+    With --select the overview shows just what is selected, neighbours grey, and only its pictures are drawn.
     """
     from archgen import outputs
 
