@@ -14,8 +14,8 @@ from pathlib import Path
 
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
-from archgen.findings import rules, suppress
-from archgen.link import chapters, interfaces, merge, shipped
+from archgen.findings import aftermath, rules, suppress
+from archgen.link import chapters, interfaces, shipped
 from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
@@ -134,13 +134,14 @@ def judge(loaded: Loaded) -> Checked:
     )
     architecture = transform.transform(linked)
     read, chapter_findings = chapters.chapters(merged, loaded.root)
+    unread = [d for d in loaded.diagnostics if _BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
     raw = (
         *loaded.diagnostics,
         *merge_findings,
         *interface_findings,
         *link_findings,
         *chapter_findings,
-        *analyses.check(architecture),
+        *aftermath.quiet(analyses.check(architecture), unread, loaded.sources),
         *rules.judge_settings(loaded.rule_places.items(), _BY_NAME),
     )
     ignores = [ignore for found in loaded.ignores.values() for ignore in found]

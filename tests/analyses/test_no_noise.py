@@ -75,6 +75,35 @@ def test_a_file_that_cannot_be_read_hides_no_finding_and_makes_none(tmp_path: Pa
     assert found == ["a.yaml:2 unjustified-component", "a.yaml:2 unfed-input", "b.yaml:2 syntax-error"]
 
 
+def test_what_could_not_be_read_is_not_missed() -> None:
+    text = """\
+groups:
+  sensing:
+    components:
+      camera: {outputs: {image: sensor_msgs/msg/Image, depth: sensor_msgs/msg/Image}}
+      screen:
+        inputs:
+          image: {form: camera.image}
+      display:
+        input: {image: camera.image}
+      panel:
+        inputs: [camera.image]
+      recorder: {inputs: {nothing: }}
+nodes:
+  camera: {implement: camera}
+  screen: {implements: [screen, display, recorder]}
+  panel: panel
+"""
+    assert _rules(text) == [
+        "7 unknown-key",
+        "9 unknown-key",
+        "11 wrong-type",
+        "12 disconnected-component",
+        "12 unfed-input",
+        "14 unknown-key",
+    ]
+
+
 def test_a_project_of_stubs_has_no_errors_and_says_only_what_is_open() -> None:
     text = "groups: {sensing: {components: {camera: Camera, lidar: Laser}}, speech: Speech}\n"
     found = check_text(text)
