@@ -151,7 +151,7 @@ class Selecting:
             if first.outputs and way:
                 way |= first.components
             hit = Hit(frozenset(way), frozenset(), named)
-        if not way and named and word.to:
+        if word.to and not way and all(end.components or end.nodes for end in (first, last)):
             message = f"nothing leads from `{word.atom.value}` to `{word.to.value}`"
             problems.append(Problem(message, word.atom.start, word.to.end, "warning"))
         return self._both_levels(hit)
