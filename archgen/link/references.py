@@ -32,7 +32,7 @@ class References:
     implements: Mapping[str, Collection[str]] = field(default_factory=dict)
     """The components of each node, once they are known."""
     suspects: set[str] = field(default_factory=set)
-    """Complete ids of what references that could not be followed most likely meant."""
+    """Complete ids of what unresolved references most likely meant."""
     names: Names = field(init=False)
     _left: int = _GUESSES
     _pools: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
@@ -46,6 +46,7 @@ class References:
         result = self.names.find(words, kinds, component=component)
         one = result.one
         if result.count > 1:
+            self.suspects.update(name.id for name in result.elements)
             self.found.append(self._ambiguous(written, result, element))
         elif one is None and not self.is_lost(words):
             self.found.append(self._unknown(written, kinds, element, component))
@@ -108,9 +109,8 @@ class References:
             help_line = "name the output that the data comes from"
             return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
         guess = self._guess_path(words, kinds)
-        candidates = self.names.find(guess, kinds, component=component) if guess else None
-        self.suspects.update(name.id for name in (candidates.elements if candidates else ()))
-        meant = candidates.one if candidates else None
+        meant = self.names.find(guess, kinds, component=component).one if guess else None
+        self.suspects.update([meant.id] if meant else ())
         return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
@@ -206,6 +206,7 @@ class Ports:
         if result.count == 1:
             return result.elements[0].id
         if result.count:
+            self.references.suspects.update(name.id for name in result.elements)
             self.references.found.append(self._ambiguous(words, at, result))
         elif not self.references.is_lost(words):
             self.references.found.append(self._unknown(words, at, kind))
@@ -233,9 +234,8 @@ class Ports:
                 "unknown-reference", message, at, labels=(label,), help=f"`{words}` is an {other}", element=self.owner
             )
         guess = self.references.guess(words, tuple(self.names.ends(kind)))
-        candidates = self.names.find(guess, (kind,)) if guess else None
-        self.references.suspects.update(name.id for name in (candidates.elements if candidates else ()))
-        meant = candidates.one if candidates else None
+        meant = self.names.find(guess, (kind,)).one if guess else None
+        self.references.suspects.update([meant.id] if meant else ())
         labels = (Label(self._place(meant), "declared here"),) if meant else self._declared()
         help_line = f"did you mean `{guess}`?" if guess else None
         return Diagnostic("unknown-reference", message, at, labels=labels, help=help_line, element=self.owner)

@@ -46,13 +46,13 @@ def by_key(architecture: Architecture, key: str, value: str, findings: Mapping[s
     """Give the components and nodes that a key's value names; `*` stands for any run."""
     if key == "type":
         return Hit(frozenset(_with_type(architecture, " ".join(value.split()))), frozenset())
+    if key == "tag":
+        return _tagged(architecture, value)
     if key == "finding":
         return _found(architecture, [element for rule in findings if wild(value, rule) for element in findings[rule]])
     of_component, of_node = _COMPONENTS.get(key), _NODES.get(key)
     components = (
-        (c.id for c in architecture.components.values() if _any(value, of_component(architecture, c)))
-        if of_component
-        else ()
+        (c.id for c in architecture.components.values() if _any(value, of_component(c))) if of_component else ()
     )
     nodes = (n.id for n in architecture.nodes.values() if _any(value, of_node(n))) if of_node else ()
     return Hit(frozenset(components), frozenset(nodes), of_nodes=of_component is None, crosses=key != "owner")
@@ -62,21 +62,19 @@ def _any(value: str, texts: Iterable[str | None]) -> bool:
     return any(text is not None and wild(value, text) for text in texts)
 
 
-def _media(_architecture: Architecture, component: Component) -> Iterable[str]:
+def _media(component: Component) -> Iterable[str]:
     physical = (*(i.physical for i in component.inputs.values()), *(o.physical for o in component.outputs.values()))
     return ("physical" if yes else "digital" for yes in physical)
 
 
-_COMPONENTS: Mapping[str, Callable[[Architecture, Component], Iterable[str | None]]] = {
-    "tag": lambda architecture, component: (*component.tags, *architecture.groups[component.group].tags),
-    "owner": lambda _, component: (component.owner,),
+_COMPONENTS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
+    "owner": lambda component: (component.owner,),
     "medium": _media,
-    "role": lambda _, component: (component.role,),
-    "requirement": lambda _, component: (use.text for use in component.requirements if use.is_id),
-    "behaviour": lambda _, component: (component.timing.behaviour if component.timing else None,),
+    "role": lambda component: (component.role,),
+    "requirement": lambda component: (use.text for use in component.requirements if use.is_id),
+    "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
 }
 _NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
-    "tag": lambda node: node.tags,
     "owner": lambda node: (node.owner,),
     "status": lambda node: (node.status,),
     "host": lambda node: (node.host,),
@@ -86,14 +84,26 @@ _NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
 }
 
 
+def _tagged(architecture: Architecture, value: str) -> Hit:
+    """Find what has a tag: itself, through its group, through a requirement that it serves, or through its host."""
+    groups = {g.id for g in architecture.groups.values() if _any(value, g.tags)}
+    requirements = {r.id for r in architecture.requirements.values() if _any(value, r.tags)}
+    hosts = {h.id for h in architecture.hosts.values() if _any(value, h.tags)}
+    components = (
+        c.id
+        for c in architecture.components.values()
+        if c.group in groups or _any(value, c.tags) or any(r.is_id and r.text in requirements for r in c.requirements)
+    )
+    nodes = (n.id for n in architecture.nodes.values() if n.host in hosts or _any(value, n.tags))
+    return Hit(frozenset(components), frozenset(nodes))
+
+
 def _with_type(architecture: Architecture, value: str) -> Iterable[str]:
-    """Name the components that send a type, expect it, or read an output of it."""
-    sending = set[str]()
-    for output in architecture.outputs.values():
-        if output.type is not None and wild(value, output.type):
-            sending.add(output.id)
-            yield output.component
-    yield from (i.component for i in architecture.inputs.values() if i.type is not None and wild(value, i.type))
+    """Name the components that send a type (or message), expect it, or read an output of it."""
+    names = {t.name for t in architecture.types.values() if wild(value, t.name) or _any(value, (t.message,))}
+    sending = {output.id for output in architecture.outputs.values() if output.type in names}
+    yield from (architecture.outputs[output].component for output in sending)
+    yield from (port.component for port in architecture.inputs.values() if port.type in names)
     yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sending)
 
 

@@ -1,0 +1,167 @@
+"""The selector language, read: `2+driving.safety_supervisor tag:safety -sensing.*`.
+
+    selector = word {blank word}
+    word     = ["-"] term
+    term     = [N]"+"atom | atom"+"[N] | [N]"+"atom"+"[N] | atom | atom".."atom
+    atom     = path | key":"value
+
+What the words mean is in `model.selector`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from archgen.suggest import closest
+
+KEYS = (
+    "tag",
+    "owner",
+    "status",
+    "type",
+    "medium",
+    "role",
+    "host",
+    "package",
+    "requirement",
+    "behaviour",
+    "finding",
+    "node",
+)
+ALL = -1
+"""As many steps as there are."""
+_WORD = re.compile(r'(?:[^\s"]|"[^"]*"?)+')
+_STEPS_BEFORE = re.compile(r"([0-9]*)\+")
+_STEPS_AFTER = re.compile(r"\+([0-9]*)")
+_ATOM = re.compile(
+    r'(?:(?P<key>[^\s:+.",]+):)?(?:"(?P<quoted>[^"]*)"|(?P<plain>(?:(?!\.\.)[^\s+":,])+))',
+)
+_DIGITS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is wrong with a selector, from `start` to `end` (in characters, from 0, the end not included)."""
+
+    message: str
+    start: int
+    end: int
+    severity: Literal["error", "warning"] = "error"
+    help: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A path (`key` None), or a key with its value."""
+
+    key: str | None
+    value: str
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """One word. `before` and `after` are numbers of steps (`ALL`, or 0 for none); `to` is the other end of `x..y`."""
+
+    atom: Atom
+    negative: bool = False
+    before: int = 0
+    after: int = 0
+    to: Atom | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Selector:
+    """A selector, read as far as it is sound."""
+
+    words: tuple[Word, ...]
+    problems: tuple[Problem, ...] = ()
+
+
+def parse(text: str) -> Selector:
+    """Read a selector; what is wrong is left out, and told."""
+    words: list[Word] = []
+    problems: list[Problem] = []
+    for match in _WORD.finditer(text):
+        read = _word(text, match.start(), match.end())
+        if isinstance(read, Problem):
+            problems.append(read)
+        else:
+            words.append(read)
+            problems += _unknown_keys(read)
+    if not words and not problems:
+        problems.append(Problem("the selector is empty", 0, len(text), help=_FORMS))
+    return Selector(tuple(words), tuple(problems))
+
+
+def _word(text: str, start: int, end: int) -> Word | Problem:
+    reserved = _reserved(text, start, end)
+    if reserved:
+        return reserved
+    negative = text[start] == "-"
+    here = start + negative
+    before = _STEPS_BEFORE.match(text, here, end)
+    here = before.end() if before else here
+    atom = _atom(text, here, end)
+    if isinstance(atom, Problem):
+        return atom
+    here = atom.end
+    to: Atom | None = None
+    after = _STEPS_AFTER.match(text, here, end)
+    if after:
+        here = after.end()
+    elif text.startswith("..", here) and not before:
+        other = _atom(text, here + 2, end)
+        if isinstance(other, Problem):
+            return other
+        to, here = other, other.end
+    if here < end:
+        return Problem(f"`{text[here:end]}` is more than a word can hold", here, end, help=_FORMS)
+    counts = [match[1] for match in (before, after) if match and len(match[1]) > _DIGITS]
+    if counts:
+        return Problem(f"`{counts[0]}` steps are too many", start, end, help="leave the number out to take all of them")
+    return Word(atom, negative, _steps(before), _steps(after), to)
+
+
+_FORMS = "a word is `x`, `+x`, `x+`, `2+x+1` or `x..y`, where x is a path or `key:value`"
+
+
+def _reserved(text: str, start: int, end: int) -> Problem | None:
+    """Find what no word may hold outside quotes: a comma, or a quote that is not closed."""
+    quoted = False
+    for position in range(start, end):
+        if text[position] == '"':
+            quoted = not quoted
+        elif text[position] == "," and not quoted:
+            return Problem("`,` is reserved", position, position + 1, help="separate words by blanks")
+    if quoted:
+        return Problem("the quote is not closed", start, end, help='write `type:"Point cloud"`')
+    return None
+
+
+def _atom(text: str, start: int, end: int) -> Atom | Problem:
+    match = _ATOM.match(text, start, end)
+    if match is None:
+        found = text[start:end]
+        message = f"a path or `key:value` is expected, not `{found}`" if found else "a path or `key:value` is missing"
+        return Problem(message, start if found else max(start - 1, 0), end, help=_FORMS)
+    value = match["quoted"] if match["quoted"] is not None else match["plain"]
+    return Atom(match["key"], value, match.start(), match.end())
+
+
+def _steps(match: re.Match[str] | None) -> int:
+    if match is None:
+        return 0
+    return int(match[1]) if match[1] else ALL
+
+
+def _unknown_keys(word: Word) -> Iterator[Problem]:
+    for atom in (word.atom, word.to):
+        if atom and atom.key is not None and atom.key not in KEYS:
+            guess = closest(atom.key, KEYS)
+            help_line = f"did you mean `{guess}:`?" if guess else f"keys are {', '.join(KEYS)}"
+            yield Problem(f"no key `{atom.key}`", atom.start, atom.start + len(atom.key), help=help_line)
