@@ -82,7 +82,7 @@ def _item(draft: Draft, item: _Item) -> Iterator[Piece]:
         case Paragraph():
             yield text.said(draft, item.block)
         case Markdown():
-            yield from chapters.chapter(draft, item.block, item.section.anchor, appendix=item.appendix)
+            yield from chapters.chapter(draft, item.block, item.section.anchor, item.level, appendix=item.appendix)
         case Figure():
             yield from figures.figure(draft, item.block)
         case Bullets():

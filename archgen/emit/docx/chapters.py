@@ -32,16 +32,19 @@ class _Place:
 
     chapter: Markdown
     anchor: str
+    level: int
     appendix: bool
+    open: list[tuple[int, int]]
+    """The headings that the place stands below: the level that each asked for, and the level that it got."""
     lists: int = 0
     quotes: int = 0
     sign: tuple[int, bool] | None = None
 
 
-def chapter(draft: Draft, shape: Markdown, anchor: str, *, appendix: bool) -> Iterator[Piece]:
-    """Give a chapter's pieces. `anchor` is that of its section; headings in it get their own below it."""
+def chapter(draft: Draft, shape: Markdown, anchor: str, level: int, *, appendix: bool) -> Iterator[Piece]:
+    """Give a chapter's pieces. `anchor` and `level` are those of its section; headings in it get their own below it."""
     root = SyntaxTreeNode(_PARSER.parse(shape.text))
-    yield from _blocks(draft, root, _Place(shape, anchor, appendix))
+    yield from _blocks(draft, root, _Place(shape, anchor, level, appendix, []))
 
 
 def _blocks(draft: Draft, parent: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
@@ -69,8 +72,13 @@ def _block(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]
 
 
 def _heading(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Piece:
-    title = plain(_inlines(draft, node, place))
-    level = max(1, int(node.tag[1:]) + place.chapter.shift)
+    """Give a heading. No level is left out: below a section of level 1 the first one has level 2, whatever it asks for."""
+    title = plain(span for span in _inlines(draft, node, place, pictures=False) if isinstance(span, Text))
+    asked = max(1, int(node.tag[1:]) + place.chapter.shift)
+    while place.open and place.open[-1][0] >= asked:
+        place.open.pop()
+    level = min(asked, (place.open[-1][1] if place.open else place.level) + 1)
+    place.open.append((asked, level))
     return text.heading(draft, f"{place.anchor}#{title}", title, level, appendix=place.appendix)
 
 

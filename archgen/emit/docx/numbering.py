@@ -12,7 +12,7 @@ from archgen.emit.docx.styles import HEADINGS, Styles, tag
 _BULLETS = "•–▪"
 _ORDERED = ("decimal", "lowerLetter", "lowerRoman")
 _INDENT = 360
-_HEADING_INDENTS = (510, 680, 850, 1020, 1190, 1360, 1530, 1700, 1870)
+_HEADING_INDENTS = (567, 851, 1021, 1191, 1361, 1531, 1701, 1871, 2041)
 _ROMAN = ((1000, "m"), (900, "cm"), (500, "d"), (400, "cd"), (100, "c"), (90, "xc"), (50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, "i"))  # fmt: skip
 _FORMATS = ("decimal",) * HEADINGS
 LEVELS = 9
