@@ -100,6 +100,7 @@ class Box:
         "container",
         "partner",
         "fold",
+        "link",
     ] = "component"
     emphasis: Literal["subject", "normal", "neighbour"] = "normal"
     status: Literal["existing", "adapted", "planned"] | None = None

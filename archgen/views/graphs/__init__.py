@@ -1,0 +1,65 @@
+"""Pictures of an architecture, as graphs: which there are, and what each shows.
+
+| id | shows |
+|---|---|
+| `overview` | the groups |
+| `components` | all groups with their components |
+| `groups/G` | a group with its neighbours |
+| `components/G.C` | a component with its ports |
+| `implementation/G.C` | a component's nodes and topics |
+| `ros` | all nodes |
+| `hosts` | hosts, containers and links |
+| `views/V` | a view of the project |
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from archgen.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.selector import Selection, select
+from archgen.views.graphs import selected
+from archgen.views.graphs.component import component
+from archgen.views.graphs.folding import fold
+from archgen.views.graphs.group import group
+from archgen.views.graphs.hosts import hosts
+from archgen.views.graphs.implementation import implementation
+from archgen.views.graphs.overview import components, overview
+from archgen.views.graphs.ros import ros
+from archgen.views.index import Index, index
+from archgen.views.shapes import Graph
+
+__all__ = ["all_graphs", "component", "components", "group", "hosts", "implementation", "overview", "ros", "selected"]
+
+
+def all_graphs(
+    architecture: Architecture, selection: Selection | None = None, findings: Iterable[Diagnostic] = ()
+) -> tuple[Graph, ...]:
+    """Make all pictures; with a selection, one of the selection and those of what is selected."""
+    return tuple(graph for graph in _all(index(architecture, findings), selection) if graph.boxes)
+
+
+def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
+    architecture = view.architecture
+    shown = list(architecture.components.values())
+    if selection is None:
+        yield fold(overview(view))
+        yield fold(components(view))
+    else:
+        shown = [component for component in shown if component.id in selection.components]
+        yield selected.functional(view, "overview", "The selected part", selection.components)
+    for name in dict.fromkeys(each.group for each in shown):
+        yield fold(group(view, name))
+    for each in shown:
+        yield component(view, each.id)
+        yield implementation(view, each.id)
+    if selection is None:
+        yield ros(view)
+        yield hosts(view)
+    else:
+        yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
+    for asked in architecture.views.values():
+        chosen, _ = select(asked.show, architecture)
+        yield selected.of_view(view, asked, chosen)
