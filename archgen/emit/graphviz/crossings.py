@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from archgen.emit.graphviz.labels import along
-from archgen.emit.graphviz.scene import Line, Point
+from archgen.emit.graphviz.scene import Line, Point, Rectangle, meet
 
 Segment = tuple[Point, Point]
 
@@ -15,13 +15,21 @@ Segment = tuple[Point, Point]
 def crossings(lines: Sequence[Line]) -> int:
     """Count the crossings of all pairs of lines."""
     paths = [_segments(line) for line in lines]
+    spans = [_span(path) for path in paths]
     return sum(
         _cross(one, other)
         for at, first in enumerate(paths)
-        for second in paths[at + 1 :]
+        for to in range(at + 1, len(paths))
+        if meet(spans[at], spans[to])
         for one in first
-        for other in second
+        for other in paths[to]
     )
+
+
+def _span(path: Sequence[Segment]) -> Rectangle:
+    points = [point for segment in path for point in segment] or [(0.0, 0.0)]
+    xs, ys = zip(*points, strict=True)
+    return (min(xs), min(ys), max(xs), max(ys))
 
 
 def length(line: Line) -> float:

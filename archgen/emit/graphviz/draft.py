@@ -34,16 +34,16 @@ class Draft:
         name = self.names[item.id]
         return f"{name} [{written(self.boxes[name])}];"
 
-    def edge(self, at: int, item: Arrow, extra: str = "") -> str:
-        """Write an arrow as DOT, with its text for the layout to find room for."""
+    def edge(self, at: int, item: Arrow, *, text: bool = True) -> str:
+        """Write an arrow as DOT, with its text if the layout is to find room for it."""
         ends = [self.names[item.tail] + self._port(item.tail, item.tail_port)]
         ends.append(self.names[item.head] + self._port(item.head, item.head_port))
         attributes = self.arrows[f"e{at}"][1]
         if "dir" in attributes:
             ends.reverse()
-        label = f" label={self.labels[f'e{at}']['label']}" if f"e{at}" in self.labels else ""
+        label = f" label={self.labels[f'e{at}']['label']}" if text and f"e{at}" in self.labels else ""
         kept = {name: attributes[name] for name in _SIZES if name in attributes}
-        return f'{" -> ".join(ends)} [id="e{at}"{label} {written(kept)} {extra}];'
+        return f'{" -> ".join(ends)} [id="e{at}"{label} {written(kept)}];'
 
     def _port(self, box: str, port: str | None) -> str:
         """Write where at a box with ports an arrow ends: inputs at its left, outputs at its right."""
@@ -139,7 +139,7 @@ def title(item: Cluster) -> Attributes:
 
 def frame_fill(item: Cluster) -> str:
     """Choose the ground of a frame."""
-    return palette.tint(palette.hue(item.colour)) if item.emphasis != "neighbour" else "#f7f7f7"
+    return palette.tint(palette.hue(item.colour)) if item.emphasis != "neighbour" else palette.GREY_TINT
 
 
 def frame(item: Cluster, link: Link) -> Attributes:

@@ -8,6 +8,7 @@ from archgen.emit.graphviz import engine, flow, twostep
 from archgen.emit.graphviz.decorations import decorated
 from archgen.emit.graphviz.draft import Draft, draft
 from archgen.emit.graphviz.legend import below
+from archgen.emit.graphviz.png import png
 from archgen.emit.graphviz.scene import Scene
 from archgen.emit.graphviz.svg import drawn_edges, finished
 from archgen.emit.picture import Picture
@@ -16,7 +17,6 @@ from archgen.views.shapes import Graph
 _LAYOUTS = {"flow": flow.flow, "group": flow.group, "two-step": twostep.two_step, "overview": twostep.two_step}
 _FORMATS = {"svg_outlines": "svg:cairo", "pdf": "pdf"}
 _LOOK = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
-_DPI = 150
 
 
 def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tuple[Draft, Scene]:
@@ -30,6 +30,13 @@ def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tu
         raise engine.LayoutError(message)
     boxes = {drafted.names[box.id]: box for box in graph.boxes}
     return drafted, below(decorated(laid_out, boxes), graph)
+
+
+_FEW = 2
+
+
+def _hues(graph: Graph) -> int:
+    return len({item.colour for item in (*graph.boxes, *graph.clusters, *graph.arrows)} - {None})
 
 
 def picture(
@@ -46,13 +53,12 @@ def picture(
     if lost:
         message = f"{len(lost)} arrows were not drawn"
         raise engine.LayoutError(message)
-    png = engine.render(laid_out.dot(graph.id, _LOOK, _DPI), ["png:cairo"])[0] if "png" in formats else None
     return Picture(
         graph.id,
         right - left,
         top - bottom,
         svg=finished(text, graph) if "svg" in formats else None,
-        png=png,
+        png=png(laid_out, graph.id, _LOOK, quick=_hues(graph) <= _FEW) if "png" in formats else None,
         dot=dot,
         warning=warning,
         **dict(zip(wanted, others, strict=True)),

@@ -55,7 +55,7 @@ def _laid_out(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered]) 
         return Scene(parts=(Part(name, drafted.boxes[name], width / 2, height / 2, width, height),))
     direction = "LR" if drafted.graph.direction == "left-right" else "TB"
     lines = [drafted.node(box) for box in boxes]
-    lines += [drafted.edge(at, arrow) for at, arrow in arrows if arrow.tail in names and arrow.head in names]
+    lines += [drafted.edge(at, arrow, text=False) for at, arrow in arrows if arrow.tail in names and arrow.head in names]
     settings = f'rankdir="{direction}" nodesep="0.12" ranksep="0.3"'
     return read(drafted, engine.layout(document(settings, lines)))
 

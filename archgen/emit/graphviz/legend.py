@@ -70,7 +70,8 @@ def _entries(key: str) -> Iterator[tuple[Scene, str]]:
 
 
 def _box(item: Box) -> Scene:
-    width, height = _SAMPLE
+    double = 6 if item.style in {"fold", "action"} else 0  # the second frame stands outside
+    width, height = _SAMPLE[0] - double, _SAMPLE[1] - double
     attributes = {
         **marks.box(item, lambda _: None),
         "label": '""',
@@ -79,7 +80,7 @@ def _box(item: Box) -> Scene:
         "height": f"{height / 72:.4f}",
         "tooltip": '" "',
     }
-    return decorated(Scene(parts=(Part("s", attributes, width / 2, 0, width, height),)), {"s": item})
+    return decorated(Scene(parts=(Part("s", attributes, _SAMPLE[0] / 2, 0, width, height),)), {"s": item})
 
 
 def _swatch(index: int) -> Scene:

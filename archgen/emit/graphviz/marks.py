@@ -76,7 +76,7 @@ def colours(item: Box) -> tuple[str, str]:
 def _margin(item: Box) -> str:
     if item.style in _SHAPES:
         return '"0.03,0.02"'
-    return '"0.13,0.04"' if item.style in {"source", "sink"} else '"0.08,0.04"'
+    return '"0.13,0.04"' if item.style in {"source", "sink", "topic"} else '"0.08,0.04"'
 
 
 def _pen(item: Box) -> str:

@@ -14,6 +14,7 @@ SUBJECT = "#0072b2"
 PAPER = "#ffffff"
 NEIGHBOUR_FILL = "#eeeeee"
 NEIGHBOUR_FRAME = "#8a8a8a"
+GREY_TINT = "#f7f7f7"
 TOPIC_FILL = "#fff6dc"
 TOPIC_FRAME = "#a67c00"
 SERVICE_FILL = "#efe6f7"
@@ -63,6 +64,7 @@ _DARK = {
     PAPER: _DARK_PAPER,
     NEIGHBOUR_FILL: "#2a3138",
     NEIGHBOUR_FRAME: "#808a93",
+    GREY_TINT: "#1a1f24",
     TOPIC_FILL: "#332b12",
     TOPIC_FRAME: "#d9b33f",
     SERVICE_FILL: "#2c2338",

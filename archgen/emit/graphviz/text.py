@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 
 LONGEST = 400
 """A text longer than this many characters is cut, with an ellipsis; pages and tables have it whole."""
@@ -19,14 +20,16 @@ _UNFIT = re.compile(
     "[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff0-\uffff]"
 )
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]*):")
-_BREAKS = re.compile(r"(?<=[-_/.:,;])")
+_BREAKS = (re.compile(r"(?=/)"), re.compile(r"(?<=[-_.:,;])"))
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\\": "&#92;"})
 
 
 def clean(text: str, longest: int = LONGEST) -> str:
     """Give the text on one line, without what no picture can hold."""
     text = _BLANKS.sub(" ", text)
-    text = "".join(c for c in _UNFIT.sub("", text) if unicodedata.category(c) != "Cn").strip()
+    if not text.isprintable():
+        text = "".join(c for c in _UNFIT.sub("", text) if unicodedata.category(c) != "Cn")
+    text = text.strip()
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
@@ -64,10 +67,13 @@ def wrapped(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
 
 
 def _pieces(text: str, width: int) -> list[str]:
-    """Cut a text where a line may end: after blanks; within longer words after signs; else anywhere."""
-    pieces: list[str] = []
-    for word in re.findall(r"\S+\s*", text):
-        parts = _BREAKS.split(word) if len(word.rstrip()) > width else [word]
-        for part in parts:
-            pieces += [part[at : at + width] for at in range(0, len(part), width)] or []
-    return pieces
+    """Cut a text where a line may end: after blanks; in longer words after `/`, then after other signs; else anywhere."""
+    return [piece for word in re.findall(r"\S+\s*", text) for piece in _cut(word, width, _BREAKS)]
+
+
+def _cut(word: str, width: int, breaks: Sequence[re.Pattern[str]]) -> list[str]:
+    if len(word.rstrip()) <= width:
+        return [word]
+    if not breaks:
+        return [word[at : at + width] for at in range(0, len(word), width)]
+    return [piece for part in breaks[0].split(word) if part for piece in _cut(part, width, breaks[1:])]

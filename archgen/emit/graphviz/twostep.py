@@ -99,8 +99,10 @@ def _candidates(
         f"{' constraint=false' if place[a.tail] > place[a.head] else ''}];"
         for at, a in arrows
     ]
+    lines = max((item.label.count("\n") + 1 for _, item in arrows if item.label), default=0)
     for direction in ("TB", "LR"):
-        settings = f'rankdir="{direction}" nodesep="0.35" ranksep="0.5" splines="spline"'
+        ranksep = 0.5 + 0.16 * lines if direction == "TB" else 0.5 + 0.9 * bool(lines)
+        settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain
         yield settings, onward
         lengths = {name: tile.width if direction == "TB" else tile.height for name, tile in tiles.items()}
