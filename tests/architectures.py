@@ -18,10 +18,16 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.quantity import parse
 
 ROBOT: Mapping[str, tuple[str, ...]] = {
-    "Sensors and User Input": (
-        "RGB-D Head Camera|RGB-D Hand Camera|Front Laser Scanner|Rear Laser Scanner|Microphone Array|"
-        "Touch Display Input|Wheel and Joint Encoders|Smart Home Sensors"
-    ).split("|"),  # type: ignore[dict-item]
+    "Sensors and User Input": [
+        "RGB-D Head Camera",
+        "RGB-D Hand Camera",
+        "Front Laser Scanner",
+        "Rear Laser Scanner",
+        "Microphone Array",
+        "Touch Display Input",
+        "Wheel and Joint Encoders",
+        "Smart Home Sensors",
+    ],  # type: ignore[dict-item]
     "Robot State": ("Localisation", "Arm State Estimator", "Hand Tactile Monitor", "Battery and Fault Monitor"),
     "Environment State": (
         "Object Recognition",
@@ -48,14 +54,28 @@ ROBOT: Mapping[str, tuple[str, ...]] = {
     ),
     "Robot Task Scheduler": ("Task Sequencer", "Resource Arbiter"),
     "Communication Planner": ("Dialogue Manager", "Speech Synthesis", "Projector and Display Presenter"),
-    "Robot Action Planner": tuple(
-        (
-            "Global Path Planner|Human-aware Local Planner|Base Controller|Docking Behaviour|Grasp Planner|"
-            "Grasp Quality Check|Arm Motion Planner|Arm Trajectory Follower|Hand Synergy Controller|"
-            "Hand Force Controller|Elevation Controller|Handover Planner|Handover Monitor|Placing Planner|"
-            "Appliance Manipulation|Gaze Controller|Speed and Separation Monitor|Collision Checker|"
-            "Emergency Stop Handler|Action Monitor|Recovery Behaviours"
-        ).split("|")
+    "Robot Action Planner": (
+        "Global Path Planner",
+        "Human-aware Local Planner",
+        "Base Controller",
+        "Docking Behaviour",
+        "Grasp Planner",
+        "Grasp Quality Check",
+        "Arm Motion Planner",
+        "Arm Trajectory Follower",
+        "Hand Synergy Controller",
+        "Hand Force Controller",
+        "Elevation Controller",
+        "Handover Planner",
+        "Handover Monitor",
+        "Placing Planner",
+        "Appliance Manipulation",
+        "Gaze Controller",
+        "Speed and Separation Monitor",
+        "Collision Checker",
+        "Emergency Stop Handler",
+        "Action Monitor",
+        "Recovery Behaviours",
     ),
 }
 _PAIRS = (
@@ -96,16 +116,48 @@ def generated(seed: int, groups: int, components: int, connections: int) -> Arch
     wires = set[tuple[tuple[int, int], tuple[int, int]]]()
     for _ in range(connections * 4):
         tail = chooser.choice(everyone)
-        near = [one for one in everyone if one[0] == tail[0]] if chooser.random() < 0.4 else everyone  # noqa: PLR2004
+        near = [one for one in everyone if one[0] == tail[0]] if chooser.random() < 0.4 else everyone
         head = chooser.choice(near)
         if tail != head and len(wires) < connections:
             wires.add((tail, head))
     return assemble(made, sorted(wires), chooser)
 
 
-_NOUNS = "perception|planning|control of the left and the right arm|models|safety|speech|driving|memory".split("|")
-_WORDS = "Fast|Object|Human|Scene|Long-term|Grasp|Map|Person|Trajectory|Audio|Collision-free|Force".split("|")
-_TASKS = "Tracker|Estimator|Planner|Monitor|Recognition|Store|Controller|Arbiter|Interface and Display".split("|")
+_NOUNS = [
+    "perception",
+    "planning",
+    "control of the left and the right arm",
+    "models",
+    "safety",
+    "speech",
+    "driving",
+    "memory",
+]
+_WORDS = [
+    "Fast",
+    "Object",
+    "Human",
+    "Scene",
+    "Long-term",
+    "Grasp",
+    "Map",
+    "Person",
+    "Trajectory",
+    "Audio",
+    "Collision-free",
+    "Force",
+]
+_TASKS = [
+    "Tracker",
+    "Estimator",
+    "Planner",
+    "Monitor",
+    "Recognition",
+    "Store",
+    "Controller",
+    "Arbiter",
+    "Interface and Display",
+]
 
 
 def _title(chooser: random.Random, group: int, at: int) -> str:
@@ -119,16 +171,12 @@ def _robot_wires(chooser: random.Random, sizes: Sequence[int]) -> list[tuple[tup
         tail, head = (int(end) for end in ends.split(">"))
         while sum(w[0][0] == tail and w[1][0] == head for w in wires) < int(count):
             wires.add(((tail, chooser.randrange(sizes[tail])), (head, chooser.randrange(sizes[head]))))
-    for group, count in enumerate(_INSIDE):
-        while sum(w[0][0] == group == w[1][0] for w in wires) < count:
+    for group, inside in enumerate(_INSIDE):
+        while sum(w[0][0] == group == w[1][0] for w in wires) < inside:
             one, other = chooser.sample(range(sizes[group]), 2)
-            forward = chooser.random() < 0.9  # noqa: PLR2004
-            wires.add(
-                (
-                    (group, min(one, other) if forward else max(one, other)),
-                    (group, max(one, other) if forward else min(one, other)),
-                )
-            )
+            forward = chooser.random() < 0.9
+            first, last = sorted((one, other), reverse=not forward)
+            wires.add(((group, first), (group, last)))
     return sorted(wires)
 
 
@@ -184,7 +232,7 @@ def _wire(
     head: str,
 ) -> None:
     output = chooser.choice(list(outputs.values()))
-    whole = chooser.random() < 0.1  # noqa: PLR2004
+    whole = chooser.random() < 0.1
     name = f"{tail.split('.')[1]}_{output.name}"[:60]
     carried = tuple(outputs[key].id for key in outputs) if whole else (output.id,)
     connection = Connection(
@@ -196,7 +244,7 @@ def _wire(
         head,
         (connection,),
         optional=chooser.random() < 0.1,
-        from_written=True,  # noqa: PLR2004
+        from_written=True,
     )
 
 
@@ -231,7 +279,7 @@ def _with_nodes(architecture: Architecture, chooser: random.Random) -> Architect
             namespace=f"/{each.group}",
             kinds=(chooser.choice(("node", "lifecycle", "composable")),),
             status=chooser.choice(("existing", "adapted", "planned")),
-            container="vision" if chooser.random() < 0.1 else None,  # noqa: PLR2004
+            container="vision" if chooser.random() < 0.1 else None,
             host=chooser.choice(("main_pc", "arm_pc", "vision_pc", None)),
         )
         for each in architecture.components.values()

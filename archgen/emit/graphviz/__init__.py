@@ -27,7 +27,7 @@ FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
 """The formats that can be asked for, by Picture's fields; `dot` is always there."""
 
 
-def draw(
+def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     graphs: Sequence[Graph],
     formats: Sequence[str],
     *,
@@ -70,7 +70,8 @@ def _keep(cache: Path, drawn: dict[str, Picture], formats: Sequence[str], count:
 
 def _links(graph: Graph, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
     """Give the address of each ref in a graph that has one."""
-    for item in (*graph.boxes, *graph.arrows, *graph.clusters):
-        href = link(item.ref) if item.ref else None
-        if item.ref and href:
-            yield item.ref, href
+    refs = [box.ref for box in graph.boxes] + [arrow.ref for arrow in graph.arrows] + [c.ref for c in graph.clusters]
+    for ref in dict.fromkeys(refs):
+        href = link(ref) if ref else None
+        if ref and href:
+            yield ref, href

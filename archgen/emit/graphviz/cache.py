@@ -55,7 +55,7 @@ def load(folder: Path, name: str, formats: Sequence[str]) -> Picture | None:
             float(head["height"]),
             dot=(parts.pop("dot") or b"").decode(),
             warning=head["warning"],
-            **parts,  # type: ignore[arg-type]
+            **parts,
         )
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None

@@ -21,7 +21,7 @@ def decorated(scene: Scene, boxes: Mapping[str, Box]) -> Scene:
 
 
 def _marks(part: Part, item: Box) -> Iterator[Part]:
-    left, bottom, right, top = part.rectangle
+    left, _, right, top = part.rectangle
     if item.style in {"source", "sink"}:
         x = right - _BAR / 2 - 0.4 if item.style == "source" else left + _BAR / 2 + 0.4
         yield Part(f"{part.name}bar", _bar(item, part.height), x, part.y, _BAR, part.height, "mark")

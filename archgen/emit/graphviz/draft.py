@@ -100,10 +100,15 @@ def read(drafted: Draft, layout: dict[str, object]) -> Scene:
     }
     sizes = measure([drafted.labels[edge] for edge in spots])
     labels = tuple(
-        Part(f"l{edge[1:]}", drafted.labels[edge], *(float(n) for n in spot.split(",")), *size, kind="label")
+        Part(f"l{edge[1:]}", drafted.labels[edge], *_spot(spot), *size, kind="label")
         for (edge, spot), size in zip(spots.items(), sizes, strict=True)
     )
     return scene.joined(Scene(parts=labels))
+
+
+def _spot(text: str) -> tuple[float, float]:
+    x, y = text.split(",")
+    return float(x), float(y)
 
 
 def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:

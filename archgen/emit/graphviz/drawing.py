@@ -36,7 +36,8 @@ _FEW = 2
 
 
 def _hues(graph: Graph) -> int:
-    return len({item.colour for item in (*graph.boxes, *graph.clusters, *graph.arrows)} - {None})
+    hues = {box.colour for box in graph.boxes} | {arrow.colour for arrow in graph.arrows}
+    return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
 def picture(

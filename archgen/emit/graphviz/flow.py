@@ -82,8 +82,7 @@ def _framed(drafted: Draft, inner: Cluster, scene: Scene, inside: set[str]) -> S
     spare = max(width + 2 * _MARGIN - (right - left), 2 * _MARGIN) / 2
     rim = Frame("c0", frame(inner, drafted.link), (left - spare, bottom, right + spare, top))
     part = Part("t0", heading, left - spare + 8 + width / 2, top - 5 - height / 2, width, height, kind="title")
-    framed = scene.joined(Scene(frames=(rim,), parts=(part,)))
-    return framed
+    return scene.joined(Scene(frames=(rim,), parts=(part,)))
 
 
 def simple(drafted: Draft) -> Scene:

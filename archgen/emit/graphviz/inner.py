@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 from archgen.emit.graphviz import engine
@@ -26,7 +27,7 @@ def inside(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered], sha
 def _cost(scene: Scene, shape: float) -> float:
     left, bottom, right, top = scene.bounds()
     width, height = right - left, top - bottom
-    return max(width, height * shape) * (width * height) ** 0.5
+    return max(width, height * shape) * math.sqrt(width * height)
 
 
 def _connected(boxes: Sequence[Box], arrows: Sequence[Numbered]) -> list[list[Box]]:
@@ -55,7 +56,9 @@ def _laid_out(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered]) 
         return Scene(parts=(Part(name, drafted.boxes[name], width / 2, height / 2, width, height),))
     direction = "LR" if drafted.graph.direction == "left-right" else "TB"
     lines = [drafted.node(box) for box in boxes]
-    lines += [drafted.edge(at, arrow, text=False) for at, arrow in arrows if arrow.tail in names and arrow.head in names]
+    lines += [
+        drafted.edge(at, arrow, text=False) for at, arrow in arrows if arrow.tail in names and arrow.head in names
+    ]
     settings = f'rankdir="{direction}" nodesep="0.12" ranksep="0.3"'
     return read(drafted, engine.layout(document(settings, lines)))
 

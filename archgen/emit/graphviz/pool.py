@@ -61,7 +61,7 @@ def command() -> Command:
     return (sys.executable, "-P", "-c", _START.format(root=root))
 
 
-def draw(
+def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     tasks: Sequence[Task],
     folder: Path,
     *,

@@ -86,5 +86,5 @@ def label(item: Arrow, link: Link, *, merged: bool = False, at: int = 20) -> Att
         "height": "0.05",
         "fontname": f'"{FONT}"',
         "label": f'<<FONT POINT-SIZE="8" COLOR="{ink}">{rows}</FONT>>',
-        **{name: value for name, value in linked(item.ref, "\n".join(item.flows) or text, link).items()},
+        **linked(item.ref, "\n".join(item.flows) or text, link),
     }

@@ -1,6 +1,6 @@
-"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
+r"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
 
-Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\\N` is
+Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\N` is
 replaced by Graphviz; in a quoted string `"` ends it, and a character reference would be read as one. Both are
 escaped here and nowhere else. Control characters make an SVG that is no XML, and the marks that turn the direction of
 writing make a text look like another: neither gets into a picture.

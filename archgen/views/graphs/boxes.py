@@ -11,7 +11,7 @@ from archgen.views.index import Index
 from archgen.views.shapes import Box, Cluster
 from archgen.views.words import plural
 
-_SEVERITIES = ("error", "warning", "note")
+_SEVERITIES: tuple[Literal["error", "warning", "note"], ...] = ("error", "warning", "note")
 
 
 def component(view: Index, item: Component, *, lines: tuple[str, ...] = ()) -> Box:
@@ -30,7 +30,7 @@ def component(view: Index, item: Component, *, lines: tuple[str, ...] = ()) -> B
 
 
 def _style(item: Component) -> Literal["component", "source", "sink", "reactive"]:
-    return item.role if item.role in {"source", "sink", "reactive"} else "component"  # type: ignore[return-value]
+    return "component" if item.role is None or item.role == "filter" else item.role
 
 
 def _tooltip(view: Index, item: Component) -> str:
@@ -55,7 +55,7 @@ def hue(view: Index, group: str) -> int:
 def badge(view: Index, element: str) -> Literal["error", "warning", "note"] | None:
     """Give the worst finding of an element."""
     severities = {str(finding.severity) for finding in view.findings_of.get(element, ())}
-    return next((each for each in _SEVERITIES if each in severities), None)  # type: ignore[return-value]
+    return next((each for each in _SEVERITIES if each in severities), None)
 
 
 def neighbour(view: Index, item: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import Literal
 
 from archgen.views.graphs import boxes
 from archgen.views.graphs.flows import Flow, flows, merged
@@ -60,7 +61,7 @@ def _outer(component: str, side: str, *, fold: bool) -> str:
 def _neighbours(view: Index, placed: Sequence[tuple[Flow, str, str]], mine: set[str], *, fold: bool) -> Iterable[Box]:
     names = dict.fromkeys(end for _, tail, head in placed for end in (tail, head) if end not in mine)
     for name in names:
-        side = "left" if name[0] == "<" else "right"
+        side: Literal["left", "right"] = "left" if name[0] == "<" else "right"
         if fold:
             members = {flow.tail if side == "left" else flow.head for flow, *ends in placed if name in ends}
             titles = [c.title for c in view.architecture.components.values() if c.id in members]
@@ -69,7 +70,7 @@ def _neighbours(view: Index, placed: Sequence[tuple[Flow, str, str]], mine: set[
             )
         else:
             component = view.architecture.components[name[1:]]
-            yield replace(boxes.neighbour(view, component, side), id=name)  # type: ignore[arg-type]
+            yield replace(boxes.neighbour(view, component, side), id=name)
 
 
 def _listed(titles: Sequence[str]) -> tuple[str, ...]:

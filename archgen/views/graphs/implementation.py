@@ -38,7 +38,7 @@ def implementation(view: Index, name: str) -> Graph:
     component = view.architecture.components[name]
     subjects = {node.id for node in view.nodes_of.get(name, ())}
     ends = list(dict.fromkeys(_ends(view, subjects)))
-    stars = _stars(view, subjects, ends)
+    stars = _stars(view, ends)
     drawn = [replace(end, topic=stars.get(end.topic, end.topic)) for end in ends]
     arrows = tuple(_arrow(end) for end in dict.fromkeys(drawn))
     topics = {box.id: box for box in _topics(view, ends, stars, subjects)}
@@ -85,7 +85,7 @@ def _style(endpoint: Endpoint) -> str:
     return "internal" if endpoint.internal else "data"
 
 
-def _stars(view: Index, subjects: set[str], ends: list[_End]) -> dict[str, str]:
+def _stars(view: Index, ends: list[_End]) -> dict[str, str]:
     """Find the neighbours all of whose topics go to the same subjects; give each such topic its common name."""
     found: dict[str, str] = {}
     for neighbour in dict.fromkeys(end.node for end in ends if end.node[0] == "<" and end.style == "data"):
@@ -131,6 +131,7 @@ def _arrow(end: _End) -> Arrow:
 
 def _alt(title: str, subjects: list[str], topics: list[str]) -> str:
     said = f"{title} is implemented by {', '.join(subjects)}." if subjects else f"No node implements {title}."
-    return f"{said} It uses {plural(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}" + (
-        f": {', '.join(topics)}." if topics else " topics."
+    return (
+        f"{said} It uses {plural(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}"
+        + (f": {', '.join(topics)}." if topics else " topics.")
     )

@@ -111,7 +111,7 @@ def implementation(view: Index, name: str, title: str, chosen: Collection[str]) 
         style = "data" if each.topic.flow == "topic" else each.topic.flow
         box = f"topic {each.topic.name}"
         for tail, head in ((each.tail, box), (box, each.head)):
-            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))  # type: ignore[arg-type]
+            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))
             arrows[arrow.id] = arrow
     graph = Graph(
         name,
@@ -143,9 +143,7 @@ def coloured(view: Index, graph: Graph, by: str) -> Graph:
     values = {box.id: value for box in graph.boxes if (value := _value(view, box, by)) and box.emphasis != "neighbour"}
     hues = {value: at % 10 for at, value in enumerate(dict.fromkeys(values.values()))}
     painted = tuple(
-        replace(box, colour=hues[values[box.id]] if box.id in values else None)
-        if box.emphasis != "neighbour"
-        else box
+        replace(box, colour=hues[values[box.id]] if box.id in values else None) if box.emphasis != "neighbour" else box
         for box in graph.boxes
     )
     plain = tuple(replace(cluster, colour=None) for cluster in graph.clusters)

@@ -1,0 +1,164 @@
+"""Every layout draws every arrow, and lets no box, title or text meet another."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+
+from archgen.emit.graphviz import drawing
+from archgen.emit.graphviz.scene import Scene, meet, meetings
+from archgen.model.architecture import View
+from archgen.views.graphs import all_graphs, group
+from archgen.views.index import index
+from archgen.views.shapes import Arrow, Box, Cluster, Graph
+from tests.architectures import generated, robot
+
+ROBOT = all_graphs(robot(1))
+
+
+def faults(graph: Graph) -> list[str]:
+    """Say what is wrong with a drawing: what meets, what lies in a frame that is not its own, what is missing."""
+    drafted, scene = drawing.scene(graph, {})
+    wrong = [f"{one} meets {other}" for one, other in meetings(scene)]
+    frames = [(frame.name, frame.rectangle) for frame in scene.frames]
+    wrong += [f"{a} meets {b}" for (a, one), (b, two) in combinations(frames, 2) if meet(one, two, -0.5)]
+    home = {drafted.names[box.id]: box.cluster for box in graph.boxes}
+    names = {f"c{at}": cluster.id for at, cluster in enumerate(graph.clusters)}
+    for part in scene.parts:
+        if part.name in home:
+            inside = [names[name] for name, rectangle in frames if meet(part.rectangle, rectangle, -0.5)]
+            own = home[part.name] if home[part.name] in names.values() else None
+            if inside != ([own] if own else []):
+                wrong.append(f"{part.name} lies in {inside}, not in {own}")
+    missing = {arrow.id for arrow in graph.arrows} - {line.arrow for line in scene.lines}
+    boxes = {box.id for box in graph.boxes} - {
+        box.id for box in graph.boxes if drafted.names[box.id] in {part.name for part in scene.parts}
+    }
+    return [*wrong, *(f"{name} is not drawn" for name in sorted(missing | boxes))]
+
+
+@pytest.mark.parametrize("graph", ROBOT, ids=[graph.id for graph in ROBOT])
+def test_pictures_of_a_robot(graph: Graph) -> None:
+    assert faults(graph) == []
+    assert sum(arrow.count for arrow in graph.arrows) == graph.asked
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_two_hundred_groups(seed: int) -> None:
+    view = index(generated(seed, 10, 3 + seed % 10, 40 + 6 * seed))
+    wrong = [(name, faults(group(view, name))) for name in view.architecture.groups]
+    assert [each for each in wrong if each[1]] == []
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_other_architectures_as_a_whole(seed: int) -> None:
+    architecture = generated(seed, 2 + 2 * seed, 9, 30 + 10 * seed)
+    whole = [graph for graph in all_graphs(architecture) if graph.layout in {"two-step", "overview"}]
+    assert [graph.id for graph in whole] == ["overview", "components", "ros", "hosts"]
+    assert [(graph.id, faults(graph)) for graph in whole if faults(graph)] == []
+
+
+def test_every_connection_is_accounted_for_in_the_widest_picture() -> None:
+    architecture = robot(1)
+    (graph,) = (graph for graph in ROBOT if graph.id == "components")
+    inside = [arrow for arrow in graph.arrows if "." in arrow.tail]
+    assert sum(arrow.count for arrow in inside) == 58
+    assert sum(arrow.count for arrow in graph.arrows) == len(architecture.connections) == 138
+
+
+HOSTILE = (
+    "<b>bold</b> & <script>alert(1)</script>",
+    '"]; evil [label="x',
+    r"\N \G {a|b} \l",
+    "\x00\x07\x1b[31mred\u202e",
+    "שלום עולם ومرحبا بالعالم",
+    "🤖🚀 机器人 emoji",
+    "two hundred letters in one word " + "w" * 200,
+    "many words " * 20,
+    "",
+    "&lt;&#x41;&nbsp;",
+)
+
+
+def hostile(layout: str) -> Graph:
+    boxes = tuple(
+        Box(f"b{at}", text, (text,), ref=text, tooltip=text, cluster=f"c{at % 2}" if layout != "flow" else None)
+        for at, text in enumerate(HOSTILE)
+    )
+    if layout == "group":
+        boxes = tuple(
+            Box(b.id, b.title, b.lines, ref=b.ref, cluster="c0" if at < 6 else None, side=None if at < 6 else "right")
+            for at, b in enumerate(boxes)
+        )
+    arrows = tuple(
+        Arrow(f"a{at}", f"b{at}", f"b{(at + 3) % 10}", text, ref=text, flows=(text, text))
+        for at, text in enumerate(HOSTILE)
+    )
+    titles = (HOSTILE[0], HOSTILE[1])[: 1 if layout == "group" else 2]
+    clusters = tuple(Cluster(f"c{at}", text, (text,), tooltip=text) for at, text in enumerate(titles))
+    return Graph(
+        f"hostile/{layout}",
+        HOSTILE[0],
+        layout,  # type: ignore[arg-type]
+        boxes,
+        arrows,
+        () if layout == "flow" else clusters,
+        notes=HOSTILE[:3],
+        alt=HOSTILE[3],
+    )
+
+
+@pytest.mark.parametrize("layout", ["flow", "group", "two-step", "overview"])
+def test_hostile_texts(layout: str) -> None:
+    from lxml import etree
+
+    graph = hostile(layout)
+    assert faults(graph) == []
+    links = dict.fromkeys(HOSTILE, "javascript:alert(1)")
+    made = drawing.picture(graph, links, ("svg", "svg_outlines", "pdf", "png"))
+    assert made.svg is not None
+    assert made.svg_outlines is not None
+    root = etree.fromstring(made.svg)
+    etree.fromstring(made.svg_outlines)
+    texts = ["".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert "<b>bold</b> & " in " ".join(texts).replace("  ", " ")
+    assert not list(root.iter("{http://www.w3.org/2000/svg}script", "{http://www.w3.org/2000/svg}a"))
+    assert b"javascript" not in made.svg
+
+
+def test_a_box_with_ports_takes_arrows_at_its_ports() -> None:
+    subject = Box("s", "Subject", ports_in=(("in a", "a"), ("in b", "b")), ports_out=(("out a", "a"),))
+    boxes = (subject, Box("l", "Left", side="left"), Box("r", "Right", side="right"))
+    arrows = (
+        Arrow("1", "l", "s", "Type", head_port="in b"),
+        Arrow("2", "s", "r", head_port=None, tail_port="out a"),
+        Arrow("3", "s", "l", tail_port="in a", style="service"),
+    )
+    graph = Graph("ports", "Ports", "flow", boxes, arrows)
+    assert faults(graph) == []
+    drafted, scene = drawing.scene(graph, {})
+    by_arrow = {line.arrow: line for line in scene.lines}
+    assert by_arrow["3"].tail == drafted.names["l"], "laid out from left to right"
+    assert by_arrow["3"].attributes["dir"] == '"back"', "and drawn from client to server"
+
+
+def test_views_of_the_project_in_either_size() -> None:
+    from dataclasses import replace
+
+    views = {
+        "small": View("small", "Small", "human_state.fall_detector", colour="owner"),
+        "large": View("large", "Large", "human_state robot_state robot_action_planner"),
+        "low": View("low", "Low", "robot_state", level="implementation", colour="status"),
+    }
+    graphs = {graph.id: graph for graph in all_graphs(replace(robot(1), views=views))}
+    drawn = [graphs[f"views/{name}"] for name in views]
+    assert [graph.layout for graph in drawn] == ["flow", "two-step", "two-step"]
+    assert [(graph.id, faults(graph)) for graph in drawn if faults(graph)] == []
+
+
+def test_meetings_are_found() -> None:
+    from archgen.emit.graphviz.scene import Part
+
+    parts = (Part("a", {}, 0, 0, 10, 10), Part("b", {}, 6, 6, 10, 10, "label"), Part("c", {}, 0, 0, 4, 4, "mark"))
+    assert list(meetings(Scene(parts=parts))) == [("a", "b")]
