@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from archgen.emit.graphviz import engine, flow, twostep
 from archgen.emit.graphviz.decorations import decorated
@@ -10,7 +11,7 @@ from archgen.emit.graphviz.draft import Draft, draft
 from archgen.emit.graphviz.legend import below
 from archgen.emit.graphviz.png import png
 from archgen.emit.graphviz.scene import Scene
-from archgen.emit.graphviz.svg import drawn_edges, finished
+from archgen.emit.graphviz.svg import drawn_edges, finished, steady
 from archgen.emit.picture import Picture
 from archgen.views.shapes import Graph
 
@@ -29,7 +30,24 @@ def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tu
         message = f"{len(wanted - drawn)} of {len(wanted)} arrows were lost"
         raise engine.LayoutError(message)
     boxes = {drafted.names[box.id]: box for box in graph.boxes}
-    return drafted, below(decorated(laid_out, boxes), graph)
+    return drafted, below(decorated(laid_out, boxes), _noted(drafted, laid_out))
+
+
+def _noted(drafted: Draft, laid_out: Scene) -> Graph:
+    """Say below the picture how many texts beside arrows found no place in it."""
+    lost = len(drafted.labels) - sum(part.kind == "label" for part in laid_out.parts)
+    if not lost:
+        return drafted.graph
+    note = f"{lost} of the texts beside arrows had no place here; the tables have them all."
+    return replace(drafted.graph, notes=(*drafted.graph.notes, note))
+
+
+_FEW = 2
+
+
+def _hues(graph: Graph) -> int:
+    hues = {box.colour for box in graph.boxes} | {arrow.colour for arrow in graph.arrows}
+    return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
 _FEW = 2
@@ -62,5 +80,5 @@ def picture(
         png=png(laid_out, graph.id, _LOOK, quick=_hues(graph) <= _FEW) if "png" in formats else None,
         dot=dot,
         warning=warning,
-        **dict(zip(wanted, others, strict=True)),
+        **{form: steady(data) if form == "svg_outlines" else data for form, data in zip(wanted, others, strict=True)},
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -18,10 +19,18 @@ _CONFIGURATION = """<?xml version="1.0"?>
 
 
 def configure(folder: Path) -> Path:
-    """Write a fontconfig file that knows this font and no other; give its path."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write a fontconfig file that knows this font and no other; give its path.
+
+    It knows a copy: some versions of fontconfig leave a file of theirs beside the fonts that they read.
+    """
+    copies = folder / "fonts"
+    copies.mkdir(parents=True, exist_ok=True)
+    for font in sorted(FOLDER.glob("*.ttf")):
+        copy = copies / font.name
+        if not copy.is_file() or copy.stat().st_size != font.stat().st_size:
+            shutil.copyfile(font, copy)
     file = folder / "fonts.conf"
-    text = _CONFIGURATION.format(fonts=escape(str(FOLDER)), cache=escape(str(folder / "fontconfig")))
+    text = _CONFIGURATION.format(fonts=escape(str(copies)), cache=escape(str(folder / "fontconfig")))
     if not file.is_file() or file.read_text("utf-8") != text:
         file.write_text(text, "utf-8")
     return file

@@ -117,11 +117,11 @@ class Scene:
         extra = {**attributes, **({"dpi": str(dpi)} if dpi else {})}
         lines = [f"digraph {quoted(name)} {{", f'graph [outputorder="edgesfirst" {_pairs(extra)}];', DEFAULTS]
         lines += [
-            f'subgraph "cluster_{frame.name}" {{ graph [{_pairs(frame.attributes)} bb="{_numbers(*frame.rectangle)}"]; }}'
+            f'subgraph "cluster_{frame.name}" {{ graph [id="{frame.name}" {_pairs(frame.attributes)} bb="{_numbers(*frame.rectangle)}"]; }}'
             for frame in self.frames
         ]
         lines += [
-            f'{quoted(part.name)} [{_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];' for part in self.parts
+            f'{quoted(part.name)} [id="{part.name}" {_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];' for part in self.parts
         ]
         lines += [
             f'{quoted(line.tail)} -> {quoted(line.head)} [id="e{line.edge}" {_pairs(line.attributes)} pos="{line.spline}"];'

@@ -21,12 +21,19 @@ _GROUP = re.compile(r'(<g id="[^"]*" class="(?:node|edge|cluster)[^"]*">\n)<titl
 _LINK = re.compile(
     r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL
 )
+_SURFACE = re.compile(rb"\bsurface[0-9]+")
 _DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
 
 
 def drawn_edges(svg: str) -> set[str]:
     """Name the edges that have a line."""
     return set(_DRAWN.findall(svg))
+
+
+def steady(outlines: bytes) -> bytes:
+    """Number cairo's surfaces from 1: it goes on counting from one picture to the next."""
+    numbers: dict[bytes, bytes] = {}
+    return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
 
 
 def finished(svg: str, graph: Graph) -> bytes:

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator
 
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.selection import Selection, select
+from archgen.model.selector import Selection, select
 from archgen.views.graphs import selected
 from archgen.views.graphs.component import component
 from archgen.views.graphs.folding import fold

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from archgen.model.architecture import View
 from archgen.model.component import Component
-from archgen.model.selection import Selection
+from archgen.model.selector import Selection
 from archgen.views.graphs import boxes, nodes, ros
 from archgen.views.graphs.flows import Flow, flows, merged
 from archgen.views.graphs.folding import fold

@@ -35,7 +35,12 @@ def faults(graph: Graph) -> list[str]:
     boxes = {box.id for box in graph.boxes} - {
         box.id for box in graph.boxes if drafted.names[box.id] in {part.name for part in scene.parts}
     }
+    wrong += [f"the text of {edge} is left out" for edge in drafted.labels if f"l{edge[1:]}" not in _names(scene)]
     return [*wrong, *(f"{name} is not drawn" for name in sorted(missing | boxes))]
+
+
+def _names(scene: Scene) -> set[str]:
+    return {part.name for part in scene.parts}
 
 
 @pytest.mark.parametrize("graph", ROBOT, ids=[graph.id for graph in ROBOT])
@@ -114,7 +119,7 @@ def test_hostile_texts(layout: str) -> None:
     from lxml import etree
 
     graph = hostile(layout)
-    assert faults(graph) == []
+    assert [fault for fault in faults(graph) if not (layout in {"two-step", "overview"} and "the text" in fault)] == []
     links = dict.fromkeys(HOSTILE, "javascript:alert(1)")
     made = drawing.picture(graph, links, ("svg", "svg_outlines", "pdf", "png"))
     assert made.svg is not None
@@ -125,6 +130,14 @@ def test_hostile_texts(layout: str) -> None:
     assert "<b>bold</b> & " in " ".join(texts).replace("  ", " ")
     assert not list(root.iter("{http://www.w3.org/2000/svg}script", "{http://www.w3.org/2000/svg}a"))
     assert b"javascript" not in made.svg
+
+
+def test_what_found_no_place_is_said() -> None:
+    graph = hostile("two-step")
+    made = drawing.picture(graph, {}, ("svg",))
+    lost = sum("the text" in fault for fault in faults(graph))
+    assert lost > 0
+    assert f"{lost} of the texts beside arrows had no place here" in (made.svg or b"").decode()
 
 
 def test_a_box_with_ports_takes_arrows_at_its_ports() -> None:
@@ -153,7 +166,7 @@ def test_views_of_the_project_in_either_size() -> None:
     }
     graphs = {graph.id: graph for graph in all_graphs(replace(robot(1), views=views))}
     drawn = [graphs[f"views/{name}"] for name in views]
-    assert [graph.layout for graph in drawn] == ["flow", "two-step", "two-step"]
+    assert [graph.layout for graph in drawn] == ["flow", "two-step", "flow"]
     assert [(graph.id, faults(graph)) for graph in drawn if faults(graph)] == []
 
 
