@@ -19,7 +19,7 @@ from archgen import outputs, pipeline
 from archgen.analyses import size as size_analysis
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.selection import Selection
+from archgen.model.selector import Selection
 from archgen.outputs import Ask
 from archgen.pipeline import Checked
 from archgen.views import record

@@ -12,9 +12,9 @@ from archgen.diagnostic import Diagnostic
 from archgen.emit import tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
-from archgen.model import selection
-from archgen.model.selection import Selection
-from archgen.model.selector import Problem
+from archgen.model import selector
+from archgen.model.selector import Selection
+from archgen.model.selector_words import Problem
 from archgen.pipeline import Checked
 from archgen.revision import revision
 from archgen.views import graphs, pages, record, statistics
@@ -43,7 +43,7 @@ class Ask:
 
 def select(checked: Checked, words: str) -> tuple[Selection, tuple[Problem, ...]]:
     """Evaluate a selector against a project; `finding:` sees its findings."""
-    return selection.select(words, checked.architecture, _found(checked))
+    return selector.select(words, checked.architecture, _found(checked))
 
 
 def _found(checked: Checked) -> Mapping[str, frozenset[str]]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.model.mapping import flow_of
-from archgen.model.selection import select
+from archgen.model.selector import select
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator

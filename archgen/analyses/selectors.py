@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostic import Diagnostic, Severity
-from archgen.model.selection import select
-from archgen.model.selector import Problem
+from archgen.model.selector import select
+from archgen.model.selector_words import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,7 +16,7 @@ import click
 from archgen.diagnostic import Diagnostic, Severity
 
 if TYPE_CHECKING:
-    from archgen.model.selection import Selection
+    from archgen.model.selector import Selection
     from archgen.pipeline import Checked
 
 ERROR = Severity.ERROR

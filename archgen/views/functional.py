@@ -106,8 +106,10 @@ def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlin
         ("Group", words.text(words.group_link(architecture, component.group))),
         ("Owner", words.partner_link(architecture, component.owner)),
         ("Role", words.maybe(component.role)),
-        *words.timing_rows(component.timing),
     ]
+    timing = words.timing_sentence(component.timing)
+    if timing:
+        rows.append(("Timing", words.text(timing)))
     nodes = view.nodes_of.get(component.id, ())
     rows.append(("Implemented by", words.joined((words.node_link(node),) for node in nodes) or words.UNKNOWN))
     if component.tags:

@@ -46,25 +46,33 @@ def node_blocks(view: Index, node: Node) -> tuple[Block, ...]:
 
 def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
     found = view.architecture
+    kind = ", ".join(words.KINDS[kind] for kind in node.kinds)
     rows = [
         ("Implements", words.joined((words.component_link(found.components[c]),) for c in node.implements)),
         ("ROS name", words.text(Text(node.full_name, code=True))),
-        ("Kind", words.text(", ".join(words.KINDS[kind] for kind in node.kinds))),
-        ("Status", words.maybe(node.status)),
-        ("Package", words.maybe(node.package)),
-        ("Executable", words.text(Text(node.executable, code=True)) if node.executable else ()),
-        ("Plugin", words.text(Text(node.plugin, code=True)) if node.plugin else ()),
+        ("Kind, status", words.text(f"{kind}, ", *words.maybe(node.status))),
+        ("Package", (*words.maybe(node.package), *_program(node))),
         ("Owner", words.partner_link(found, node.owner) if node.owner else ()),
-        ("Container", _linked(node.container, "container")),
-        ("Host", _linked(node.host, "host") or words.UNKNOWN),
+        ("Runs on", _place(node)),
         ("Parameter files", words.joined((Text(name, code=True),) for name in node.parameter_files)),
         ("Tags", words.text(", ".join(node.tags)) if node.tags else ()),
         ("Links", words.urls(node.urls.items())),
     ]
     for component, timing in node.timing.items():
-        name = f" ({component.rsplit('.', 1)[-1]})" if len(node.timing) > 1 and component else ""
-        rows += [(f"{label}{name}", value) for label, value in words.timing_rows(timing)]
+        name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
+        said = words.timing_sentence(timing)
+        rows.append((name, words.text(said) if said else ()))
     return [(name, value) for name, value in rows if value]
+
+
+def _program(node: Node) -> Inlines:
+    parts = (("executable", node.executable), ("plugin", node.plugin))
+    return tuple(part for name, value in parts if value for part in (Text(f", {name} "), Text(value, code=True)))
+
+
+def _place(node: Node) -> Inlines:
+    host = _linked(node.host, "host") or words.UNKNOWN
+    return (*host, Text(", in the process "), *_linked(node.container, "container")) if node.container else host
 
 
 def _linked(name: str | None, kind: str) -> Inlines:

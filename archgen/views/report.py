@@ -92,7 +92,7 @@ class _Chapters:
 
     def _own(self, chapter: Chapter) -> Section:
         title, text = split_title(chapter)
-        return Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder, 1),), page_break=True)
+        return Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder),), page_break=True)
 
     def _overview(self) -> list[Section]:
         project = self.view.architecture.project

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import chain
 
 from archgen.model.architecture import Architecture
@@ -135,35 +135,38 @@ def qos_cell(qos: Qos) -> Inlines:
     return (Text(qos_words(qos)),) if qos.written else (Text("default", muted=True),)
 
 
-def timing_rows(timing: Timing | None) -> Sequence[tuple[str, Inlines]]:
-    """Write out what a timing says, one row for each key that somebody wrote."""
+def timing_sentence(timing: Timing | None) -> str:
+    """Write out what a timing says in one line; empty where nobody wrote anything."""
     if timing is None:
-        return ()
-    rows: list[tuple[str, str | None]] = [
-        ("Behaviour", BEHAVIOURS.get(timing.behaviour) if timing.behaviour else None),
-        ("Period", str(timing.period) if timing.period else None),
-        ("Rate", str(timing.rate) if timing.rate else None),
-        ("Jitter", str(timing.jitter) if timing.jitter else None),
-        ("Execution time, worst", str(timing.wcet) if timing.wcet else None),
-        ("Execution time, best", str(timing.bcet) if timing.bcet else None),
-        ("Response time, declared", str(timing.response) if timing.response else None),
-        ("Trigger", _trigger(timing)),
-        ("Fires at each", f"{timing.every}th" if timing.every else None),
-        ("Smallest gap", str(timing.throttle) if timing.throttle else None),
-        ("Publishes only at times", ", ".join(_outputs(timing)) or None),
-        (
-            "Calls for each activation",
-            ", ".join(f"{i.rsplit('.', 1)[-1]}: {n}" for i, n in timing.calls.items()) or None,
-        ),
-        ("Priority", str(timing.priority) if timing.priority is not None else None),
-        ("Core", str(timing.core) if timing.core is not None else None),
-    ]
-    return [(name, text(value)) for name, value in rows if value]
+        return ""
+    span = f"{timing.bcet} to {timing.wcet}" if timing.bcet and timing.wcet else ""
+    parts = (
+        BEHAVIOURS[timing.behaviour] if timing.behaviour else "",
+        f"period {timing.period}" if timing.period else "",
+        f"{timing.rate}" if timing.rate else "",
+        f"jitter {timing.jitter}" if timing.jitter else "",
+        f"triggered by {_trigger(timing)}" if timing.trigger else "",
+        f"fires at each {timing.every}th" if timing.every else "",
+        f"at least {timing.throttle} apart" if timing.throttle else "",
+        f"execution {span}" if span else "",
+        f"execution up to {timing.wcet}" if timing.wcet and not span else "",
+        f"execution at least {timing.bcet}" if timing.bcet and not span else "",
+        f"declared response {timing.response}" if timing.response else "",
+        f"publishes only at times: {', '.join(_outputs(timing))}" if timing.outputs else "",
+        f"calls for each activation: {', '.join(_calls(timing))}" if timing.calls else "",
+        f"priority {timing.priority}" if timing.priority is not None else "",
+        f"core {timing.core}" if timing.core is not None else "",
+    )
+    return "; ".join(part for part in parts if part)
 
 
-def _trigger(timing: Timing) -> str | None:
+def _calls(timing: Timing) -> list[str]:
+    return [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
+
+
+def _trigger(timing: Timing) -> str:
     if timing.trigger is None:
-        return None
+        return ""
     if timing.trigger.inputs is None:
         return f"{timing.trigger.mode} of the inputs"
     names = ", ".join(name.rsplit(".", 1)[-1] for name in timing.trigger.inputs)

@@ -132,7 +132,9 @@ def grid(  # noqa: PLR0913 - all that a table is
     short = top + sum(heights) <= _SHORT
     shade = _SHADE if draft.styles.id(style) == draft.styles.id("Table Grid") else ""
     starts = [_start(twips(width)) for width in widths]
-    rows = [_row(starts, header, draft.styles.id(kind.heading), "<w:tblHeader/>", "", shade, whole=True)] if header else []
+    rows = (
+        [_row(starts, header, draft.styles.id(kind.heading), "<w:tblHeader/>", "", shade, whole=True)] if header else []
+    )
     last = len(body) - 1
     for index, row in enumerate(body):
         keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
@@ -187,10 +189,15 @@ def _height(cells: Sequence[_Cell], widths: Sequence[float], face: Face) -> floa
     return most * face.line + face.before + face.after + 0.5
 
 
-def _needs(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], kind: _Type) -> tuple[list[float], list[float]]:
+def _needs(
+    draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], kind: _Type
+) -> tuple[list[float], list[float]]:
     """Give the width of each column's longest word and of its longest line, with the cell's margins."""
     text, head = draft.styles.face(kind.text), draft.styles.face(kind.heading)
-    words = [max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor for column in columns]
+    words = [
+        max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor
+        for column in columns
+    ]
     whole = list(words)
     for row in rows:
         for index, cell in enumerate(row[: len(words)]):
@@ -209,7 +216,9 @@ def _fits(draft: Draft, shape: Table, sheet: Sheet, kind: _Type, most: float) ->
     return sum(min(width, sheet.text_width * most) for width in longest) <= sheet.text_width
 
 
-def _widths(draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], total: float, kind: _Type) -> list[float]:
+def _widths(
+    draft: Draft, columns: Sequence[Column], rows: Sequence[Sequence[Inlines]], total: float, kind: _Type
+) -> list[float]:
     """Share the width by the columns' weights, but give each the room of its longest word, as far as there is any."""
     words, whole = _needs(draft, columns, rows, kind)
     least = [min(width, total * _WIDEST_WORD) for width in words]
