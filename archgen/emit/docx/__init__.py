@@ -32,14 +32,16 @@ def write(
     document = opened(template)
     titled = "title" in names_in(document.before)
     unknown = fill(document, titlepage.values(outline))
-    draft = assembly.draft(document, pictures, chapter_files, body.anchors(outline), language=outline.language if template is None else "")
+    draft = assembly.draft(
+        document, pictures, chapter_files, body.anchors(outline), language=outline.language if template is None else ""
+    )
     if template is not None:
         assembly.report_template(draft, unknown)
     first = tuple(titlepage.pieces(draft, outline, titled=titled))
     main = tuple(body.sections(draft, outline))
     base = draft.sheets.base
     cover = 1 if document.before else 0
-    known = flow.pages(flow.settle((*first, *contents.front(draft, {}), *main), base), base)
+    known = flow.pages((*first, *flow.settle((*contents.front(draft, {}), *main), base)), base, section=len(first))
     numbers = {mark: page + cover for mark, page in known.items()}
     whole = flow.settle((*contents.front(draft, numbers), *main), base)
     assembly.finish(document, draft, first, whole)

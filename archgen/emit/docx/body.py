@@ -78,7 +78,9 @@ def _item(draft: Draft, item: _Item) -> Iterator[Piece]:
     match item.block:
         case None:
             section = item.section
-            yield text.heading(draft, section.anchor, section.title, item.level, appendix=item.appendix, new_page=item.new_page)
+            yield text.heading(
+                draft, section.anchor, section.title, item.level, appendix=item.appendix, new_page=item.new_page
+            )
         case Paragraph():
             yield text.said(draft, item.block)
         case Markdown():

@@ -26,7 +26,9 @@ def figure(draft: Draft, shape: Figure) -> Iterator[Piece]:
     """Give a drawn picture with its caption below, or a sentence where there is no picture."""
     picture = draft.pictures.get(shape.graph)
     if picture is None or not (picture.png or picture.svg_outlines):
-        draft.warn(f"the report lacks the picture `{shape.graph}`: {(picture.warning if picture else None) or 'it was not drawn'}")
+        draft.warn(
+            f"the report lacks the picture `{shape.graph}`: {(picture.warning if picture else None) or 'it was not drawn'}"
+        )
         yield from missing(draft, shape)
         return
     sheet, scale = fitting(draft, picture.width, picture.height)
@@ -46,7 +48,13 @@ def missing(draft: Draft, shape: Figure) -> Iterator[Piece]:
     text = f"This picture could not be drawn. {shape.alt}".strip()
     face = draft.styles.face("Note Box")
     rows = (face.line,) * face.lines(text, draft.sheets.base.text_width)
-    yield Piece(paragraph(draft.styles.id("Note Box"), run(text), "<w:keepNext/>"), rows, face.before, face.after, keep_next=True)
+    yield Piece(
+        paragraph(draft.styles.id("Note Box"), run(text), "<w:keepNext/>"),
+        rows,
+        face.before,
+        face.after,
+        keep_next=True,
+    )
     yield caption(draft, shape.anchor, shape.caption, None)
 
 
@@ -54,7 +62,13 @@ def note(draft: Draft, text: str, sheet: Sheet | None) -> Piece:
     """Give what must be said about a picture."""
     face = draft.styles.face("Note Box")
     width = (sheet or draft.sheets.base).text_width
-    return Piece(paragraph(draft.styles.id("Note Box"), run(text)), (face.line,) * face.lines(text, width), face.before, face.after, sheet=sheet)
+    return Piece(
+        paragraph(draft.styles.id("Note Box"), run(text)),
+        (face.line,) * face.lines(text, width),
+        face.before,
+        face.after,
+        sheet=sheet,
+    )
 
 
 def fitting(draft: Draft, width: float, height: float) -> tuple[Sheet | None, float]:
@@ -78,7 +92,14 @@ def picture_piece(draft: Draft, content: str, height: float, sheet: Sheet | None
     """Give a paragraph that holds a picture alone."""
     face = draft.styles.face("Figure")
     properties = "" if keep_next else '<w:keepNext w:val="0"/>'
-    return Piece(paragraph(draft.styles.id("Figure"), content, properties), (height + 2,), face.before, face.after, keep_next=keep_next, sheet=sheet)
+    return Piece(
+        paragraph(draft.styles.id("Figure"), content, properties),
+        (height + 2,),
+        face.before,
+        face.after,
+        keep_next=keep_next,
+        sheet=sheet,
+    )
 
 
 def caption(draft: Draft, anchor: str, text: str, sheet: Sheet | None, kind: str = "Figure") -> Piece:
@@ -107,7 +128,11 @@ def drawing(draft: Draft, relations: tuple[str, str], size: tuple[float, float],
     """Give the run that shows a picture: the raster's relationship, and the drawing's where there is one."""
     raster, vector = relations
     number, across, down = draft.number(), round(size[0] * _EMU), round(size[1] * _EMU)
-    extension = f'<a:extLst><a:ext uri="{_SVG}"><asvg:svgBlip xmlns:asvg="{_DRAWING}" r:embed="{vector}"/></a:ext></a:extLst>' if vector else ""
+    extension = (
+        f'<a:extLst><a:ext uri="{_SVG}"><asvg:svgBlip xmlns:asvg="{_DRAWING}" r:embed="{vector}"/></a:ext></a:extLst>'
+        if vector
+        else ""
+    )
     return (
         f'<w:r><w:drawing><wp:inline distT="0" distB="0" distL="0" distR="0"><wp:extent cx="{across}" cy="{down}"/>'
         f'<wp:docPr id="{number}" name="Picture {number}" descr="{escape(alt)}"/>'
@@ -122,10 +147,10 @@ def drawing(draft: Draft, relations: tuple[str, str], size: tuple[float, float],
 
 def chapter_image(draft: Draft, path: str, alt: str) -> tuple[str, float, float, Sheet | None] | None:
     """Give a chapter's picture as a run, with its size and sheet; None (and a warning) if it cannot be shown."""
-    data = draft.chapter_files(path)
+    data = None if "://" in path else draft.chapter_files(path)
     image = recognise(data) if data else None
     if data is None or image is None:
-        why = "is not there" if data is None else "is no PNG, JPEG, GIF or SVG"
+        why = "is not a file of the project" if data is None else "is no PNG, JPEG, GIF or SVG"
         draft.warn(f"the picture `{path}` {why}: its text stands in its place")
         return None
     scale = _scale(draft.sheets.base, image.width, image.height)
@@ -133,7 +158,9 @@ def chapter_image(draft: Draft, path: str, alt: str) -> tuple[str, float, float,
     if image.kind == "svg":
         raster = draft.chapter_files(path.rpartition(".")[0] + ".png")
         if raster is None or (beside := recognise(raster)) is None or beside.kind != "png":
-            draft.warn(f"the picture `{path}` has no PNG of the same name beside it: programs that know no SVG show an empty frame")
+            draft.warn(
+                f"the picture `{path}` has no PNG of the same name beside it: programs that know no SVG show an empty frame"
+            )
             raster = stand_in(image.width, image.height)
         relations = (draft.image(f"chapter:{path}", "png", raster), draft.image(f"chapter:{path}", "svg", data))
     else:

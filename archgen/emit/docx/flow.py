@@ -39,7 +39,9 @@ class Piece:
     @property
     def first(self) -> float:
         """Give the height of what stands on the first page at least."""
-        return self.before + (sum(self.rows) if self.whole or len(self.rows) <= _TOGETHER + 1 else sum(self.rows[:_TOGETHER]))
+        return self.before + (
+            sum(self.rows) if self.whole or len(self.rows) <= _TOGETHER + 1 else sum(self.rows[:_TOGETHER])
+        )
 
 
 def settle(pieces: Sequence[Piece], base: Sheet) -> tuple[Piece, ...]:
@@ -73,13 +75,13 @@ def _runs(pieces: Sequence[Piece], sheets: Sequence[Sheet], base: Sheet) -> list
     return found
 
 
-def pages(pieces: Sequence[Piece], base: Sheet) -> dict[str, int]:
-    """Estimate the page of every bookmark. The pieces have their sheets."""
+def pages(pieces: Sequence[Piece], base: Sheet, section: int = 0) -> dict[str, int]:
+    """Estimate the page of every bookmark. The pieces have their sheets; at the one numbered `section` a section begins."""
     found: dict[str, int] = {}
     page, used, gap, sheet = 1, 0.0, 0.0, base
     for index, piece in enumerate(pieces):
         height = (piece.sheet or base).text_height
-        turned = (piece.sheet or base) != sheet and index > 0
+        turned = index > 0 and (index == section or (piece.sheet or base) != sheet)
         sheet = piece.sheet or base
         space = max(gap, piece.before)
         if turned or (piece.new_page and used) or (used and used + space + _needed(pieces, index) > height):

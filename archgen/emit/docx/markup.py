@@ -26,7 +26,7 @@ NAMESPACES = {
 # What XML 1.0 cannot hold (control characters, halves of surrogate pairs, two non-characters), and the C1 controls, which nobody sees.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": " ", "\r": " "})
-_NEEDS_CARE = re.compile("[&<>\"\n\r\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_NEEDS_CARE = re.compile('[&<>"\n\r\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]')
 
 
 def clean(text: str) -> str:

@@ -80,16 +80,20 @@ class Package:
             external = item.get("TargetMode") == "External"
             target = item.get("Target", "")
             found.append(
-                Relation(item.get("Id", ""), item.get("Type", ""), target if external else _inside(folder, target), external)
+                Relation(
+                    item.get("Id", ""), item.get("Type", ""), target if external else _inside(folder, target), external
+                )
             )
         return found
 
     def relate(self, name: str, relations: list[Relation]) -> None:
         """Write the relationships of a part."""
-        root = etree.Element(f"{{{_RELATIONS}}}Relationships", nsmap={None: _RELATIONS})
+        root = _root(_RELATIONS, "Relationships")
         for relation in relations:
             target = relation.target if relation.external else "/" + relation.target
-            item = etree.SubElement(root, f"{{{_RELATIONS}}}Relationship", Id=relation.id, Type=relation.type, Target=target)
+            item = etree.SubElement(
+                root, f"{{{_RELATIONS}}}Relationship", Id=relation.id, Type=relation.type, Target=target
+            )
             if relation.external:
                 item.set("TargetMode", "External")
         self.parts[relations_name(name)] = xml_bytes(root)
@@ -103,13 +107,15 @@ def relations_name(name: str) -> str:
 
 def parse(data: bytes, name: str) -> etree._Element:
     """Parse a part of a stranger's file: no document type, no entity, nothing fetched."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True)
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
+    )
     try:
         root = etree.fromstring(data, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
         message = f"the template is damaged: its part `{name}` is not well-formed XML ({error})"
         raise TemplateError(message) from None
-    if root.getroottree().docinfo.doctype:
+    if root.getroottree().docinfo.internalDTD is not None:
         message = f"the template is refused: its part `{name}` declares a document type, which Word never writes"
         raise TemplateError(message)
     return root
@@ -118,6 +124,11 @@ def parse(data: bytes, name: str) -> etree._Element:
 def xml_bytes(root: etree._Element) -> bytes:
     """Give an element as the bytes of a part."""
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", standalone=True)
+
+
+def _root(namespace: str, name: str) -> etree._Element:
+    """Give an empty element whose namespace needs no prefix."""
+    return etree.fromstring(f'<{name} xmlns="{namespace}"/>')
 
 
 def unpack(data: bytes) -> Package:
@@ -186,8 +197,12 @@ def _typed(parts: dict[str, bytes]) -> Package:
 
 
 def _content_types(package: Package) -> bytes:
-    root = etree.Element(f"{{{_TYPES}}}Types", nsmap={None: _TYPES})
-    endings = {**package.endings, "rels": "application/vnd.openxmlformats-package.relationships+xml", "xml": "application/xml"}
+    root = _root(_TYPES, "Types")
+    endings = {
+        **package.endings,
+        "rels": "application/vnd.openxmlformats-package.relationships+xml",
+        "xml": "application/xml",
+    }
     for ending, content_type in sorted(endings.items()):
         etree.SubElement(root, f"{{{_TYPES}}}Default", Extension=ending, ContentType=content_type)
     for name, content_type in sorted(package.types.items()):

@@ -104,7 +104,18 @@ def _write(section: etree._Element, sheet: Sheet) -> None:
     size, margins = etree.Element(tag("pgSz")), etree.Element(tag("pgMar"))
     for item, values in (
         (size, {"w": sheet.width, "h": sheet.height}),
-        (margins, {"top": sheet.top, "right": sheet.right, "bottom": sheet.bottom, "left": sheet.left, "header": 34, "footer": 34, "gutter": 0}),
+        (
+            margins,
+            {
+                "top": sheet.top,
+                "right": sheet.right,
+                "bottom": sheet.bottom,
+                "left": sheet.left,
+                "header": 34,
+                "footer": 34,
+                "gutter": 0,
+            },
+        ),
     ):
         for name, value in values.items():
             item.set(tag(name), str(twips(value)))

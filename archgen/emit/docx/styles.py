@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from lxml import etree
 
-from archgen.emit.docx.markup import W
+from archgen.emit.docx.markup import W, escape
 from archgen.emit.docx.metrics import BOLD, Face, font_factor
 
 HEADINGS = 9
@@ -88,8 +88,12 @@ def settle(root: etree._Element, own: etree._Element) -> Styles:
                 found = _add(styles, spare[part])
                 added.append(part)
             styles.ids[part] = found.get(tag("styleId"), "")
-    report_table = _find([item for item in root.iterfind(tag("style")) if item.get(tag("type")) == "table"], _REPORT_TABLE)
-    styles.ids[_REPORT_TABLE] = styles.ids["Table Grid"] if report_table is None else report_table.get(tag("styleId"), "")
+    report_table = _find(
+        [item for item in root.iterfind(tag("style")) if item.get(tag("type")) == "table"], _REPORT_TABLE
+    )
+    styles.ids[_REPORT_TABLE] = (
+        styles.ids["Table Grid"] if report_table is None else report_table.get(tag("styleId"), "")
+    )
     styles.added = tuple(part for part in added if part not in _SILENT)
     return styles
 
@@ -97,7 +101,8 @@ def settle(root: etree._Element, own: etree._Element) -> Styles:
 def _find(known: list[etree._Element], part: str) -> etree._Element | None:
     """Find the style for a part: by name, by another of its names, by id, and by what it does."""
     wanted = part.casefold()
-    known = [item for item in known if item.get(tag("styleId"))]
+    # An id that would have to be escaped is none that Word writes.
+    known = [item for item in known if (name := item.get(tag("styleId"))) and escape(name) == name]
     for item in known:
         if _value(item, "name").casefold() == wanted:
             return item
@@ -105,7 +110,9 @@ def _find(known: list[etree._Element], part: str) -> etree._Element | None:
         aliases = f"{_value(item, 'name')},{_value(item, 'aliases')}".casefold().split(",")
         if wanted in aliases or item.get(tag("styleId"), "").casefold() == wanted.replace(" ", ""):
             return item
-    return _default(known) if part in {"Normal", "Default Paragraph Font", "Normal Table"} else _by_purpose(known, wanted)
+    return (
+        _default(known) if part in {"Normal", "Default Paragraph Font", "Normal Table"} else _by_purpose(known, wanted)
+    )
 
 
 def _default(known: list[etree._Element]) -> etree._Element | None:
@@ -131,8 +138,12 @@ def _add(styles: Styles, spare: etree._Element) -> etree._Element:
     while style in taken:
         style += "Archgen"
     new.set(tag("styleId"), style)
-    if any(item.get(tag("type")) == new.get(tag("type")) for item in styles.root.iterfind(tag("style")) if item.get(tag("default"))):
-        new.attrib.pop(tag("default"), None)
+    if any(
+        item.get(tag("type")) == new.get(tag("type"))
+        for item in styles.root.iterfind(tag("style"))
+        if item.get(tag("default"))
+    ):
+        new.attrib.pop(tag("default"), "")
     for reference in ("basedOn", "next"):
         item = new.find(tag(reference))
         if item is not None:

@@ -112,7 +112,11 @@ def fill(template: Template, values: Mapping[str, str]) -> tuple[str, ...]:
 
 def names_in(elements: Sequence[etree._Element]) -> frozenset[str]:
     """Give the names in double braces that stand in some elements."""
-    text = "\n".join("".join(item.text or "" for item in paragraph.iter(tag("t"))) for element in elements for paragraph in element.iter(tag("p")))
+    text = "\n".join(
+        "".join(item.text or "" for item in paragraph.iter(tag("t")))
+        for element in elements
+        for paragraph in element.iter(tag("p"))
+    )
     return frozenset(match.casefold() for match in _NAME.findall(text))
 
 
@@ -123,10 +127,14 @@ def settings(template: Template) -> etree._Element:
     for name in _UNWANTED:
         for item in root.findall(tag(name)):
             root.remove(item)
-    name = template.part("settings")
-    if name:
-        kept = [item for item in template.package.relations(name) if item.kind not in {"attachedTemplate", "mailMergeSource", "mailMergeHeaderSource"}]
-        template.package.relate(name, kept)
+    part = template.part("settings")
+    if part:
+        kept = [
+            item
+            for item in template.package.relations(part)
+            if item.kind not in {"attachedTemplate", "mailMergeSource", "mailMergeHeaderSource"}
+        ]
+        template.package.relate(part, kept)
     return root
 
 
@@ -155,7 +163,10 @@ def _around(children: list[etree._Element]) -> tuple[tuple[etree._Element, ...],
     if not any(item.tag in {tag(name) for name in _SEES} for child in children for item in child.iter()):
         return (), ()
     for index, child in enumerate(children):
-        if child.tag == tag("p") and "".join(item.text or "" for item in child.iter(tag("t"))).strip().casefold() == _HERE:
+        if (
+            child.tag == tag("p")
+            and "".join(item.text or "" for item in child.iter(tag("t"))).strip().casefold() == _HERE
+        ):
             return tuple(children[:index]), tuple(children[index + 1 :])
     return tuple(children), ()
 
