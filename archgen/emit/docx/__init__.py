@@ -41,7 +41,7 @@ def write(
     main = tuple(body.sections(draft, outline))
     base = draft.sheets.base
     cover = 1 if document.before else 0
-    known = flow.pages(flow.settle((*first, *contents.front(draft, {}), *main), base), base)
+    known = flow.pages((*first, *flow.settle((*contents.front(draft, {}), *main), base)), base, section=len(first))
     numbers = {mark: page + cover for mark, page in known.items()}
     whole = flow.settle((*contents.front(draft, numbers), *main), base)
     assembly.finish(document, draft, first, whole)

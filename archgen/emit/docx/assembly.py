@@ -12,7 +12,6 @@ from archgen.emit.docx.draft import Draft
 from archgen.emit.docx.flow import Piece
 from archgen.emit.docx.markup import MC, NAMESPACES, R
 from archgen.emit.docx.package import relations_name
-from archgen.emit.docx.sheets import Sheet
 from archgen.emit.docx.styles import tag
 from archgen.emit.docx.template import Template, own_styles, settings
 from archgen.emit.picture import Picture
@@ -131,9 +130,9 @@ def _text(element: etree._Element) -> str:
 
 def _frame(root: etree._Element) -> bytes:
     """Give the document element with an empty body: the template's namespaces and ours."""
-    names: dict[str | None, str] = {
-        key: value for key, value in root.nsmap.items() if key and key not in NAMESPACES
-    } | dict(NAMESPACES)
+    names: dict[str, str] = {key: value for key, value in root.nsmap.items() if key and key not in NAMESPACES} | dict(
+        NAMESPACES
+    )
     frame = etree.Element(tag("document"), nsmap=names)
     # Word skips what it does not know only where the prefixes in mc:Ignorable are declared, and refuses the file otherwise.
     ignorable = [prefix for prefix in root.get(f"{{{MC}}}Ignorable", "").split() if prefix in names]

@@ -68,7 +68,7 @@ def _block(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]
         yield from _table(draft, node, place)
     elif node.type == "hr":
         rule = '<w:pBdr><w:bottom w:val="single" w:sz="4" w:space="1" w:color="A9B4BD"/></w:pBdr>'
-        yield text.flowing(draft, "", "", properties=rule)
+        yield text.flowing(draft, text.Words("", ""), properties=rule)
 
 
 def _heading(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Piece:
@@ -90,16 +90,13 @@ def _paragraph(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Pi
             yield from shown
             return
     spans = _inlines(draft, node, place)
-    content, height = _content(draft, spans)
-    words = plain(span for span in spans if isinstance(span, Text))
+    words = _words(draft, spans)
     if place.sign is not None:
-        yield text.list_item(draft, content, words, place.sign[0], place.lists - 1, ordered=place.sign[1])
+        yield text.list_item(draft, words, place.sign[0], place.lists - 1, ordered=place.sign[1])
         return
     indent = _STEP * place.lists + 284 * max(place.quotes - 1, 0) + (284 if place.quotes and place.lists else 0)
     part = "Quote" if place.quotes else "Normal"
-    yield text.flowing(
-        draft, content, words, part, f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20, height
-    )
+    yield text.flowing(draft, words, part, _indented(indent), indent / 20)
 
 
 def _list(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
@@ -114,7 +111,7 @@ def _list(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
 def _item(draft: Draft, item: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
     """Give a list's item. One that does not begin with a paragraph gets an empty one, so that its sign is seen."""
     if place.sign is not None and (not item.children or item.children[0].type != "paragraph"):
-        yield text.list_item(draft, "", "", place.sign[0], place.lists - 1, ordered=place.sign[1])
+        yield text.list_item(draft, text.Words("", ""), place.sign[0], place.lists - 1, ordered=place.sign[1])
         place = replace(place, sign=None)
     yield from _blocks(draft, item, place)
 
@@ -123,9 +120,11 @@ def _code(draft: Draft, code: str, place: _Place) -> Piece:
     lines = code.split("\n")
     content = "<w:r><w:br/></w:r>".join(run(line) for line in lines)
     indent = _STEP * (place.lists + place.quotes)
-    return text.flowing(
-        draft, content, code, "Code Block", f'<w:ind w:left="{indent}"/>' if indent else "", indent / 20
-    )
+    return text.flowing(draft, text.Words(content, code), "Code Block", _indented(indent), indent / 20)
+
+
+def _indented(indent: int) -> str:
+    return f'<w:ind w:left="{indent}"/>' if indent else ""
 
 
 def _table(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]:
@@ -137,7 +136,7 @@ def _table(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Iterator[Piece]
         )
         for row in cells:
             words = " | ".join(plain(cell) for cell in row)
-            yield text.flowing(draft, run(words), words)
+            yield text.flowing(draft, text.Words(run(words), words))
         return
     aligns = [_ALIGN.get(str(cell.attrs.get("style", "")), "") for cell in rows[0].children]
     yield tables.simple(draft, cells[0], cells[1:], aligns)
@@ -151,9 +150,10 @@ class _Shown:
     height: float
 
 
-def _content(draft: Draft, spans: list[Text | _Shown]) -> tuple[str, float]:
+def _words(draft: Draft, spans: list[Text | _Shown]) -> text.Words:
     parts = [runs(draft, (span,)) if isinstance(span, Text) else span.xml for span in spans]
-    return "".join(parts), max((span.height for span in spans if isinstance(span, _Shown)), default=0.0)
+    height = max((span.height for span in spans if isinstance(span, _Shown)), default=0.0)
+    return text.Words("".join(parts), plain(span for span in spans if isinstance(span, Text)), height)
 
 
 def _texts(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Inlines:
@@ -162,26 +162,22 @@ def _texts(draft: Draft, node: SyntaxTreeNode, place: _Place) -> Inlines:
 
 
 def _inlines(draft: Draft, node: SyntaxTreeNode, place: _Place, *, pictures: bool = True) -> list[Text | _Shown]:
-    found: list[Text | _Shown] = []
-    for inline in node.children:
-        _walk(draft, inline, place, Text(""), found, pictures=pictures)
-    return found
+    return [span for inline in node.children for span in _walk(draft, inline, place, Text(""), pictures=pictures)]
 
 
-def _walk(
-    draft: Draft, node: SyntaxTreeNode, place: _Place, mood: Text, found: list[Text | _Shown], *, pictures: bool
-) -> None:  # noqa: PLR0913 - a walk's state
+def _walk(draft: Draft, node: SyntaxTreeNode, place: _Place, mood: Text, *, pictures: bool) -> Iterator[Text | _Shown]:
+    """Give the words and pictures below a node; `mood` is how its surroundings are set."""
     if node.type in {"text", "code_inline", "html_inline"}:
-        found.append(replace(mood, text=node.content, code=mood.code or node.type == "code_inline"))
+        yield replace(mood, text=node.content, code=mood.code or node.type == "code_inline")
     elif node.type in {"softbreak", "hardbreak"}:
-        found.append(replace(mood, text=" ") if node.type == "softbreak" else Text("", line_break=True))
+        yield replace(mood, text=" ") if node.type == "softbreak" else Text("", line_break=True)
     elif node.type == "image":
-        found.append(_inline_picture(draft, node, place) if pictures else replace(mood, text=node.content))
+        yield _inline_picture(draft, node, place) if pictures else replace(mood, text=node.content)
     else:
         mood = replace(mood, strong=mood.strong or node.type == "strong", emphasis=mood.emphasis or node.type == "em")
         mood = _linking(mood, str(node.attrs.get("href", "")), place) if node.type == "link" else mood
         for child in node.children:
-            _walk(draft, child, place, mood, found, pictures=pictures)
+            yield from _walk(draft, child, place, mood, pictures=pictures)
 
 
 def _linking(mood: Text, target: str, place: _Place) -> Text:

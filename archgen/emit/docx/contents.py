@@ -22,41 +22,36 @@ def front(draft: Draft, pages: Mapping[str, int]) -> Iterator[Piece]:
     shown = [entry for entry in draft.headings if entry.level <= _DEEPEST]
     levels = [f"toc {entry.level}" for entry in shown]
     contents = f'TOC \\o "1-{_DEEPEST}" \\h \\z \\u'
-    yield from _list(draft, "Contents", contents, list(zip(shown, levels, strict=True)), pages, new_page=True)
+    yield from _list(draft, "Contents", contents, list(zip(shown, levels, strict=True)), pages)
     for title, kind, entries in (("Figures", "Figure", draft.figures), ("Tables", "Table", draft.tables)):
         styled = [(entry, "table of figures") for entry in entries]
         yield from _list(draft, title, f'TOC \\h \\z \\c "{kind}"', styled, pages)
 
 
-def _list(  # noqa: PLR0913 - a list has these
-    draft: Draft,
-    title: str,
-    code: str,
-    entries: Sequence[tuple[Entry, str]],
-    pages: Mapping[str, int],
-    *,
-    new_page: bool = False,
+def _list(
+    draft: Draft, title: str, code: str, entries: Sequence[tuple[Entry, str]], pages: Mapping[str, int]
 ) -> Iterator[Piece]:
     if not entries:
         return
     face = draft.styles.face("TOC Heading")
     properties = '<w:numPr><w:numId w:val="0"/></w:numPr><w:outlineLvl w:val="9"/>'
     xml = paragraph(draft.styles.id("TOC Heading"), run(title), properties)
-    yield Piece(xml, (face.line,), face.before, face.after, keep_next=True, new_page=new_page)
+    yield Piece(xml, (face.line,), face.before, face.after, keep_next=True)
     last = len(entries) - 1
     for index, (entry, part) in enumerate(entries):
         before = _outer(code) if index == 0 else ""
         after = _in_word('<w:fldChar w:fldCharType="end"/>') if index == last else ""
-        yield _line(draft, entry, part, pages.get(entry.mark, 1), before, after)
+        yield _line(draft, entry, part, pages.get(entry.mark, 1), (before, after))
 
 
-def _line(draft: Draft, entry: Entry, part: str, page: int, before: str, after: str) -> Piece:  # noqa: PLR0913 - a line has these
+def _line(draft: Draft, entry: Entry, part: str, page: int, around: tuple[str, str]) -> Piece:
+    """Give an entry with the number of its page. `around` are the runs of the field that begins or ends with it."""
     face = draft.styles.face(part)
     width = draft.sheets.base.text_width
     separator = ": " if part == "table of figures" else "  " if entry.label else ""
     words = f"{entry.label}{separator}{entry.title}"
     link = run(words) + "<w:r><w:tab/></w:r>" + field(f"PAGEREF {entry.mark} \\h", str(page))
-    content = f'{before}<w:hyperlink w:anchor="{entry.mark}" w:history="1">{link}</w:hyperlink>{after}'
+    content = f'{around[0]}<w:hyperlink w:anchor="{entry.mark}" w:history="1">{link}</w:hyperlink>{around[1]}'
     tabs = f'<w:tabs><w:tab w:val="right" w:leader="dot" w:pos="{twips(width)}"/></w:tabs>'
     rows = (face.line,) * face.lines(words, width - (0 if face.right else _NUMBER_ROOM))
     return Piece(paragraph(draft.styles.id(part), content, tabs), rows, face.before, face.after, whole=True)

@@ -147,10 +147,10 @@ def drawing(draft: Draft, relations: tuple[str, str], size: tuple[float, float],
 
 def chapter_image(draft: Draft, path: str, alt: str) -> tuple[str, float, float, Sheet | None] | None:
     """Give a chapter's picture as a run, with its size and sheet; None (and a warning) if it cannot be shown."""
-    data = draft.chapter_files(path)
+    data = None if "://" in path else draft.chapter_files(path)
     image = recognise(data) if data else None
     if data is None or image is None:
-        why = "is not there" if data is None else "is no PNG, JPEG, GIF or SVG"
+        why = "is not a file of the project" if data is None else "is no PNG, JPEG, GIF or SVG"
         draft.warn(f"the picture `{path}` {why}: its text stands in its place")
         return None
     scale = _scale(draft.sheets.base, image.width, image.height)

@@ -75,13 +75,13 @@ def _runs(pieces: Sequence[Piece], sheets: Sequence[Sheet], base: Sheet) -> list
     return found
 
 
-def pages(pieces: Sequence[Piece], base: Sheet) -> dict[str, int]:
-    """Estimate the page of every bookmark. The pieces have their sheets."""
+def pages(pieces: Sequence[Piece], base: Sheet, section: int = 0) -> dict[str, int]:
+    """Estimate the page of every bookmark. The pieces have their sheets; at the one numbered `section` a section begins."""
     found: dict[str, int] = {}
     page, used, gap, sheet = 1, 0.0, 0.0, base
     for index, piece in enumerate(pieces):
         height = (piece.sheet or base).text_height
-        turned = (piece.sheet or base) != sheet and index > 0
+        turned = index > 0 and (index == section or (piece.sheet or base) != sheet)
         sheet = piece.sheet or base
         space = max(gap, piece.before)
         if turned or (piece.new_page and used) or (used and used + space + _needed(pieces, index) > height):

@@ -9,7 +9,7 @@ from lxml import etree
 from archgen.emit.docx.markup import W
 from archgen.emit.docx.styles import HEADINGS, Styles, tag
 
-_BULLETS = "•–▪"
+_BULLETS = ("•", "◦", "▪")
 _ORDERED = ("decimal", "lowerLetter", "lowerRoman")
 _INDENT = 360
 _HEADING_INDENTS = (567, 851, 1021, 1191, 1361, 1531, 1701, 1871, 2041)
@@ -39,16 +39,18 @@ class Numbering:
             f'<w:lvlOverride w:ilvl="{level}"><w:startOverride w:val="{start if level == depth else 1}"/></w:lvlOverride>'
             for level in range(LEVELS)
         )
-        return self._instance(self.ordered, overrides)
+        return self.instance(self.ordered, overrides)
 
-    def _instance(self, abstract: int, overrides: str = "") -> int:
+    def instance(self, abstract: int, overrides: str = "") -> int:
+        """Give the id of a new list that looks as a definition says."""
         number = max(self.taken, default=0) + 1
         self.taken.add(number)
         xml = f'<w:num xmlns:w="{W}" w:numId="{number}"><w:abstractNumId w:val="{abstract}"/>{overrides}</w:num>'
         _insert(self.root, etree.fromstring(xml), ("numIdMacAtCleanup",))
         return number
 
-    def _abstract(self, levels: str, kind: str = "multilevel") -> int:
+    def abstract(self, levels: str, kind: str = "multilevel") -> int:
+        """Give the id of a new definition of a list from its levels."""
         known = {
             int(text)
             for item in self.root.iterfind(tag("abstractNum"))
@@ -74,15 +76,15 @@ def settle(root: etree._Element | None, styles: Styles) -> Numbering:
         numbering.headings = tuple(zip(_FORMATS, _texts(), strict=True))
         _bind(numbering, styles)
     numbering.appendices = tuple(zip(("upperLetter", *_FORMATS[1:]), _texts(), strict=True))
-    numbering.appendix = numbering._instance(numbering._abstract(_heading_levels(numbering.appendices)))  # noqa: SLF001
+    numbering.appendix = numbering.instance(numbering.abstract(_heading_levels(numbering.appendices)))
     bullets = "".join(
-        _level(n, "bullet", _BULLETS[n % len(_BULLETS)], _INDENT * (n + 1), _INDENT) for n in range(LEVELS)
+        _level(n, "bullet", _BULLETS[n % len(_BULLETS)], (_INDENT * (n + 1), _INDENT)) for n in range(LEVELS)
     )
-    numbering.bullet = numbering._instance(numbering._abstract(bullets, "hybridMultilevel"))  # noqa: SLF001
+    numbering.bullet = numbering.instance(numbering.abstract(bullets, "hybridMultilevel"))
     ordered = "".join(
-        _level(n, _ORDERED[n % len(_ORDERED)], f"%{n + 1}.", _INDENT * (n + 1), _INDENT) for n in range(LEVELS)
+        _level(n, _ORDERED[n % len(_ORDERED)], f"%{n + 1}.", (_INDENT * (n + 1), _INDENT)) for n in range(LEVELS)
     )
-    numbering.ordered = numbering._abstract(ordered)  # noqa: SLF001
+    numbering.ordered = numbering.abstract(ordered)
     return numbering
 
 
@@ -119,20 +121,20 @@ def _heading_levels(formats: tuple[tuple[str, str], ...], styles: Styles | None 
     parts = []
     for n, (form, text) in enumerate(formats):
         style = f'<w:pStyle w:val="{styles.heading(n + 1)}"/>' if styles else ""
-        parts.append(_level(n, form, text, _HEADING_INDENTS[n], _HEADING_INDENTS[n], style))
+        parts.append(_level(n, form, text, (_HEADING_INDENTS[n], _HEADING_INDENTS[n]), style))
     return "".join(parts)
 
 
-def _level(level: int, form: str, text: str, left: int, hanging: int, style: str = "") -> str:
+def _level(level: int, form: str, text: str, indents: tuple[int, int], style: str = "") -> str:
     return (
         f'<w:lvl w:ilvl="{level}"><w:start w:val="1"/><w:numFmt w:val="{form}"/>{style}<w:lvlText w:val="{text}"/><w:lvlJc w:val="left"/>'
-        f'<w:pPr><w:ind w:left="{left}" w:hanging="{hanging}"/></w:pPr></w:lvl>'
+        f'<w:pPr><w:ind w:left="{indents[0]}" w:hanging="{indents[1]}"/></w:pPr></w:lvl>'
     )
 
 
 def _bind(numbering: Numbering, styles: Styles) -> None:
     """Make the heading styles carry the numbers."""
-    number = numbering._instance(numbering._abstract(_heading_levels(numbering.headings, styles)))  # noqa: SLF001
+    number = numbering.instance(numbering.abstract(_heading_levels(numbering.headings, styles)))
     for level in range(HEADINGS):
         style = styles.element(styles.heading(level + 1))
         if style is None:

@@ -88,7 +88,7 @@ class Package:
 
     def relate(self, name: str, relations: list[Relation]) -> None:
         """Write the relationships of a part."""
-        root = etree.Element(f"{{{_RELATIONS}}}Relationships", nsmap={None: _RELATIONS})
+        root = _root(_RELATIONS, "Relationships")
         for relation in relations:
             target = relation.target if relation.external else "/" + relation.target
             item = etree.SubElement(
@@ -115,7 +115,7 @@ def parse(data: bytes, name: str) -> etree._Element:
     except (etree.XMLSyntaxError, ValueError) as error:
         message = f"the template is damaged: its part `{name}` is not well-formed XML ({error})"
         raise TemplateError(message) from None
-    if root.getroottree().docinfo.doctype:
+    if root.getroottree().docinfo.internalDTD is not None:
         message = f"the template is refused: its part `{name}` declares a document type, which Word never writes"
         raise TemplateError(message)
     return root
@@ -124,6 +124,11 @@ def parse(data: bytes, name: str) -> etree._Element:
 def xml_bytes(root: etree._Element) -> bytes:
     """Give an element as the bytes of a part."""
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", standalone=True)
+
+
+def _root(namespace: str, name: str) -> etree._Element:
+    """Give an empty element whose namespace needs no prefix."""
+    return etree.fromstring(f'<{name} xmlns="{namespace}"/>')
 
 
 def unpack(data: bytes) -> Package:
@@ -192,7 +197,7 @@ def _typed(parts: dict[str, bytes]) -> Package:
 
 
 def _content_types(package: Package) -> bytes:
-    root = etree.Element(f"{{{_TYPES}}}Types", nsmap={None: _TYPES})
+    root = _root(_TYPES, "Types")
     endings = {
         **package.endings,
         "rels": "application/vnd.openxmlformats-package.relationships+xml",

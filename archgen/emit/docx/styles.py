@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from lxml import etree
 
-from archgen.emit.docx.markup import W
+from archgen.emit.docx.markup import W, escape
 from archgen.emit.docx.metrics import BOLD, Face, font_factor
 
 HEADINGS = 9
@@ -101,7 +101,8 @@ def settle(root: etree._Element, own: etree._Element) -> Styles:
 def _find(known: list[etree._Element], part: str) -> etree._Element | None:
     """Find the style for a part: by name, by another of its names, by id, and by what it does."""
     wanted = part.casefold()
-    known = [item for item in known if item.get(tag("styleId"))]
+    # An id that would have to be escaped is none that Word writes.
+    known = [item for item in known if (name := item.get(tag("styleId"))) and escape(name) == name]
     for item in known:
         if _value(item, "name").casefold() == wanted:
             return item
@@ -142,7 +143,7 @@ def _add(styles: Styles, spare: etree._Element) -> etree._Element:
         for item in styles.root.iterfind(tag("style"))
         if item.get(tag("default"))
     ):
-        new.attrib.pop(tag("default"), None)
+        new.attrib.pop(tag("default"), "")
     for reference in ("basedOn", "next"):
         item = new.find(tag(reference))
         if item is not None:

@@ -27,6 +27,9 @@ _SPACER = 8.0
 _SHORT = 130.0
 """Points below which a table stays on one page."""
 _NAMES = 0.27
+_WHOLE = "<w:cantSplit/>"
+_TALL = 0.8
+"""Share of a page above which a row may be split: it would not fit a page with its header."""
 _LOOK = '<w:tblLook w:val="0420" w:firstRow="1" w:lastRow="0" w:firstColumn="0" w:lastColumn="0" w:noHBand="0" w:noVBand="1"/>'
 _SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="EDF1F4"/>'
 _ALIGN = {"left": "", "right": '<w:jc w:val="right"/>', "centre": '<w:jc w:val="center"/>'}
@@ -45,6 +48,17 @@ _SMALL = _Type("Small Table Text", "Small Table Heading")
 
 
 @dataclass(frozen=True, slots=True)
+class _Frame:
+    """What a table is beside its cells: widths of columns in points, description, sheet, style and type."""
+
+    widths: Sequence[float]
+    description: str = ""
+    sheet: Sheet | None = None
+    style: str = "Report Table"
+    kind: _Type = _USUAL
+
+
+@dataclass(frozen=True, slots=True)
 class _Cell:
     """A cell before it is set: its runs, its text, how it stands."""
 
@@ -56,7 +70,7 @@ class _Cell:
 def table(draft: Draft, shape: Table) -> Iterator[Piece]:
     """Give a table, with its caption above if it is numbered."""
     header = [_Cell(run(column.title), column.title, _ALIGN[column.align]) for column in shape.columns]
-    anchors = shape.row_anchors or (None,) * len(shape.rows)
+    anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     caption_anchor = draft.fresh(shape.anchor)
     sheet, kind = fitting(draft, shape)
     if shape.numbered and shape.caption:
@@ -75,7 +89,7 @@ def table(draft: Draft, shape: Table) -> Iterator[Piece]:
         start = ""
         body.append([_Cell(mark + cells[0].content, cells[0].text, cells[0].align), *cells[1:]] if mark else cells)
     widths = _widths(draft, shape.columns, shape.rows, (sheet or draft.sheets.base).text_width, kind)
-    yield grid(draft, header, body, widths, shape.caption, sheet, kind=kind)
+    yield _grid(draft, header, body, _Frame(widths, shape.caption, sheet, kind=kind))
 
 
 def fitting(draft: Draft, shape: Table) -> tuple[Sheet | None, _Type]:
@@ -99,7 +113,7 @@ def facts(draft: Draft, shape: Facts) -> Iterator[Piece]:
         for name, value in shape.rows
     ]
     if body:
-        yield grid(draft, [], body, [left, width - left], "", None, "Report Facts")
+        yield _grid(draft, [], body, _Frame((left, width - left), style="Report Facts"))
 
 
 def simple(draft: Draft, header: Sequence[Inlines], body: Sequence[Sequence[Inlines]], aligns: Sequence[str]) -> Piece:
@@ -111,49 +125,44 @@ def simple(draft: Draft, header: Sequence[Inlines], body: Sequence[Sequence[Inli
     weights = [max(1.0, *(len(row[n].text) ** 0.5 for row in [cells, *rows])) for n in range(len(cells))]
     columns = tuple(Column(cell.text, weight) for cell, weight in zip(cells, weights, strict=True))
     texts = tuple(tuple(row) for row in body)
-    return grid(draft, cells, rows, _widths(draft, columns, texts, draft.sheets.base.text_width, _USUAL), "", None)
+    widths = _widths(draft, columns, texts, draft.sheets.base.text_width, _USUAL)
+    return _grid(draft, cells, rows, _Frame(widths))
 
 
-def grid(  # noqa: PLR0913 - all that a table is
-    draft: Draft,
-    header: Sequence[_Cell],
-    body: Sequence[Sequence[_Cell]],
-    widths: Sequence[float],
-    description: str,
-    sheet: Sheet | None,
-    style: str = "Report Table",
-    kind: _Type = _USUAL,
-) -> Piece:
+def _grid(draft: Draft, header: Sequence[_Cell], body: Sequence[Sequence[_Cell]], frame: _Frame) -> Piece:
     """Set a table, with the small empty paragraph behind it that keeps it from the next."""
-    text, head = draft.styles.face(kind.text), draft.styles.face(kind.heading)
-    heights = [_height(row, widths, text) for row in body]
-    top = _height(header, widths, head) if header else 0.0
-    height = (sheet or draft.sheets.base).text_height
+    styles, widths, kind = draft.styles, frame.widths, frame.kind
+    heights = [_height(row, widths, styles.face(kind.text)) for row in body]
+    top = _height(header, widths, styles.face(kind.heading)) if header else 0.0
+    height = (frame.sheet or draft.sheets.base).text_height
     short = top + sum(heights) <= _SHORT
-    shade = _SHADE if draft.styles.id(style) == draft.styles.id("Table Grid") else ""
-    starts = [_start(twips(width)) for width in widths]
-    rows = (
-        [_row(starts, header, draft.styles.id(kind.heading), "<w:tblHeader/>", "", shade, whole=True)] if header else []
-    )
+    shade = _SHADE if styles.id(frame.style) == styles.id("Table Grid") else ""
+    starts = [f'<w:tc><w:tcPr><w:tcW w:w="{twips(width)}" w:type="dxa"/>' for width in widths]
+    rows = []
+    if header:
+        shaded = [start + shade for start in starts]
+        rows.append(_row(shaded, header, f'<w:pStyle w:val="{styles.id(kind.heading)}"/>', _WHOLE + "<w:tblHeader/>"))
     last = len(body) - 1
     for index, row in enumerate(body):
         keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
-        rows.append(_row(starts, row, draft.styles.id(kind.text), "", keep, "", whole=heights[index] < height * 0.8))
-    total = sum(twips(width) for width in widths)
-    columns = "".join([f'<w:gridCol w:w="{twips(width)}"/>' for width in widths])
-    xml = (
-        f'<w:tbl><w:tblPr><w:tblStyle w:val="{draft.styles.id(style)}"/><w:tblW w:w="{total}" w:type="dxa"/><w:tblLayout w:type="fixed"/>'
-        f"{_LOOK if header else ''}{_described(description)}</w:tblPr>"
-        f"<w:tblGrid>{columns}</w:tblGrid>{''.join(rows)}</w:tbl>"
-        + paragraph(
-            draft.styles.id("Normal"),
-            "",
-            f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>',
-        )
+        whole = _WHOLE if heights[index] < height * _TALL else ""
+        rows.append(_row(starts, row, f'<w:pStyle w:val="{styles.id(kind.text)}"/>{keep}', whole))
+    spacing = f'<w:spacing w:before="0" w:after="0" w:line="{twips(_SPACER)}" w:lineRule="exact"/>'
+    xml = _opening(draft, frame, headed=bool(header)) + "".join(rows) + "</w:tbl>"
+    together = heights if short else heights[:2]
+    rest = heights[len(together) :]
+    spacer = paragraph(styles.id("Normal"), "", spacing)
+    return Piece(xml + spacer, (top + sum(together), *rest, _SPACER), repeat=top, sheet=frame.sheet)
+
+
+def _opening(draft: Draft, frame: _Frame, *, headed: bool) -> str:
+    total = sum(twips(width) for width in frame.widths)
+    columns = "".join([f'<w:gridCol w:w="{twips(width)}"/>' for width in frame.widths])
+    return (
+        f'<w:tbl><w:tblPr><w:tblStyle w:val="{draft.styles.id(frame.style)}"/><w:tblW w:w="{total}" w:type="dxa"/>'
+        f'<w:tblLayout w:type="fixed"/>{_LOOK if headed else ""}{_described(frame.description)}</w:tblPr>'
+        f"<w:tblGrid>{columns}</w:tblGrid>"
     )
-    first = top + sum(heights[:2]) if not short else top + sum(heights)
-    rest = [] if short else heights[2:]
-    return Piece(xml, (first, *rest, _SPACER), repeat=top, sheet=sheet)
 
 
 def _described(description: str) -> str:
@@ -164,21 +173,14 @@ def _described(description: str) -> str:
     )
 
 
-def _start(width: int) -> str:
-    return f'<w:tc><w:tcPr><w:tcW w:w="{width}" w:type="dxa"/>'
-
-
-def _row(
-    starts: Sequence[str], cells: Sequence[_Cell], style: str, kind: str, keep: str, shade: str, *, whole: bool
-) -> str:  # noqa: PLR0913 - one place
+def _row(starts: Sequence[str], cells: Sequence[_Cell], set_as: str, kind: str) -> str:
     inner = "".join(
         [
-            f'{start}{shade}</w:tcPr><w:p><w:pPr><w:pStyle w:val="{style}"/>{keep}{cell.align}</w:pPr>{cell.content}</w:p></w:tc>'
+            f"{start}</w:tcPr><w:p><w:pPr>{set_as}{cell.align}</w:pPr>{cell.content}</w:p></w:tc>"
             for start, cell in zip(starts, cells, strict=True)
         ]
     )
-    properties = ("<w:cantSplit/>" if whole else "") + kind
-    return f"<w:tr>{f'<w:trPr>{properties}</w:trPr>' if properties else ''}{inner}</w:tr>"
+    return f"<w:tr>{f'<w:trPr>{kind}</w:trPr>' if kind else ''}{inner}</w:tr>"
 
 
 def _height(cells: Sequence[_Cell], widths: Sequence[float], face: Face) -> float:

@@ -127,14 +127,14 @@ def settings(template: Template) -> etree._Element:
     for name in _UNWANTED:
         for item in root.findall(tag(name)):
             root.remove(item)
-    name = template.part("settings")
-    if name:
+    part = template.part("settings")
+    if part:
         kept = [
             item
-            for item in template.package.relations(name)
+            for item in template.package.relations(part)
             if item.kind not in {"attachedTemplate", "mailMergeSource", "mailMergeHeaderSource"}
         ]
-        template.package.relate(name, kept)
+        template.package.relate(part, kept)
     return root
 
 

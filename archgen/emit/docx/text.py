@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from archgen.emit.docx.draft import Draft, Entry
 from archgen.emit.docx.flow import Piece
@@ -17,7 +18,7 @@ _STEP = 18.0
 """Points that a list moves to the right for each level."""
 
 
-def heading(
+def heading(  # noqa: PLR0913 - two of them are marks of the section
     draft: Draft, anchor: str, title: str, level: int, *, appendix: bool = False, new_page: bool = False
 ) -> Piece:
     """Give a numbered heading; it goes into the table of contents."""
@@ -41,41 +42,42 @@ def heading(
     return Piece(xml, rows, face.before, face.after, keep_next=True, whole=True, new_page=new_page, marks=(entry.mark,))
 
 
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What stands in a paragraph: its runs, what they say, and the height that pictures among them add."""
+
+    content: str
+    text: str
+    more: float = 0
+
+
+def words(draft: Draft, inlines: Inlines) -> Words:
+    """Give runs of text with what they say."""
+    return Words(runs(draft, inlines), plain(inlines))
+
+
 def said(draft: Draft, shape: Paragraph) -> Piece:
     """Give a paragraph, plain or one that stands out."""
-    return flowing(draft, runs(draft, shape.inlines), plain(shape.inlines), _KINDS[shape.kind])
+    return flowing(draft, words(draft, shape.inlines), _KINDS[shape.kind])
 
 
-def flowing(
-    draft: Draft,
-    content: str,
-    text: str,
-    part: str = "Normal",
-    properties: str = "",
-    indent: float = 0,
-    more: float = 0,
-) -> Piece:  # noqa: PLR0913 - all of a paragraph
-    """Give a paragraph from its runs. `text` is what they say, `more` the height that pictures in it add."""
+def flowing(draft: Draft, held: Words, part: str = "Normal", properties: str = "", indent: float = 0) -> Piece:
+    """Give a paragraph."""
     face = draft.styles.face(part)
     width = draft.sheets.base.text_width - indent
-    count = sum(face.lines(line, width) for line in text.split("\n"))
-    rows = (*((face.line,) * (count - 1)), face.line + more)
-    return Piece(paragraph(draft.styles.id(part), content, properties), rows, face.before, face.after)
+    count = sum(face.lines(line, width) for line in held.text.split("\n"))
+    rows = (*((face.line,) * (count - 1)), face.line + held.more)
+    return Piece(paragraph(draft.styles.id(part), held.content, properties), rows, face.before, face.after)
 
 
 def bullets(draft: Draft, shape: Bullets) -> Iterator[Piece]:
     """Give a list, each item a paragraph."""
     number = draft.numbering.list_from(1) if shape.ordered else draft.numbering.bullet
     for item in shape.items:
-        yield listed(draft, item, number, 0, ordered=shape.ordered)
+        yield list_item(draft, words(draft, item), number, 0, ordered=shape.ordered)
 
 
-def listed(draft: Draft, item: Inlines, number: int, depth: int, *, ordered: bool) -> Piece:
+def list_item(draft: Draft, held: Words, number: int, depth: int, *, ordered: bool) -> Piece:
     """Give an item of a list."""
-    return list_item(draft, runs(draft, item), plain(item), number, depth, ordered=ordered)
-
-
-def list_item(draft: Draft, content: str, text: str, number: int, depth: int, *, ordered: bool) -> Piece:  # noqa: PLR0913 - all of an item
-    """Give an item of a list from its runs."""
     properties = f'<w:numPr><w:ilvl w:val="{depth}"/><w:numId w:val="{number}"/></w:numPr>'
-    return flowing(draft, content, text, "List Number" if ordered else "List Bullet", properties, _STEP * (depth + 1))
+    return flowing(draft, held, "List Number" if ordered else "List Bullet", properties, _STEP * (depth + 1))

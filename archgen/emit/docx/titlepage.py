@@ -21,9 +21,9 @@ def values(outline: Outline) -> dict[str, str]:
 def pieces(draft: Draft, outline: Outline, *, titled: bool) -> Iterator[Piece]:
     """Give the title page's pieces; without the title where the template's cover shows it (`titled`)."""
     if not titled:
-        yield text.flowing(draft, run(outline.title), outline.title, "Title")
+        yield text.flowing(draft, text.Words(run(outline.title), outline.title), "Title")
         if outline.subtitle:
-            yield text.flowing(draft, run(outline.subtitle), outline.subtitle, "Subtitle")
+            yield text.flowing(draft, text.Words(run(outline.subtitle), outline.subtitle), "Subtitle")
     if outline.facts:
         yield from tables.facts(draft, Facts(outline.facts))
     for notice in outline.notices:

@@ -29,7 +29,11 @@ def faults(data: bytes) -> list[str]:
     found += _tables(document)
     found += _styles(trees)
     found += [f"fields do not balance in {name}: {text}" for name, tree in trees.items() for text in _fields(tree)]
-    found += [f"picture {item.get('id')} has no alternative text" for item in document.iter(f"{_WP}docPr") if not item.get("descr")]
+    found += [
+        f"picture {item.get('id')} has no alternative text"
+        for item in document.iter(f"{_WP}docPr")
+        if not item.get("descr")
+    ]
     if "word/settings.xml" in trees and trees["word/settings.xml"].find(f"{_W}updateFields") is not None:
         found.append("Word asks whether to update fields")
     return found
@@ -79,7 +83,11 @@ def _tables(document: etree._Element) -> Iterator[str]:
         if following is None or following.tag != f"{_W}p":
             yield "no paragraph stands behind a table"
         widths = len(table.findall(f"{_W}tblGrid/{_W}gridCol"))
-        yield from ("a row has another number of cells than the table has columns" for row in table.iterfind(f"{_W}tr") if _spans(row) != widths)
+        yield from (
+            "a row has another number of cells than the table has columns"
+            for row in table.iterfind(f"{_W}tr")
+            if _spans(row) != widths
+        )
 
 
 def _spans(row: etree._Element) -> int:
@@ -88,7 +96,9 @@ def _spans(row: etree._Element) -> int:
 
 
 def _styles(trees: dict[str, etree._Element]) -> Iterator[str]:
-    listing = next(tree for name, tree in trees.items() if tree.tag == f"{_W}styles" and not name.startswith("word/glossary"))
+    listing = next(
+        tree for name, tree in trees.items() if tree.tag == f"{_W}styles" and not name.startswith("word/glossary")
+    )
     known = {(item.get(f"{_W}type", "paragraph"), item.get(f"{_W}styleId")) for item in listing.iterfind(f"{_W}style")}
     ids = {style for _, style in known}
     if len(ids) < len(listing.findall(f"{_W}style")):
@@ -96,11 +106,20 @@ def _styles(trees: dict[str, etree._Element]) -> Iterator[str]:
     for item in listing.iter(*(f"{_W}{name}" for name in _BASED)):
         if item.get(f"{_W}val") not in ids:
             yield f"a style stands on the missing style {item.get(f'{_W}val')}"
-    numbers = {item.get(f"{_W}numId") for tree in trees.values() if tree.tag == f"{_W}numbering" for item in tree.iterfind(f"{_W}num")} | {"0"}
+    numbers = {
+        item.get(f"{_W}numId")
+        for tree in trees.values()
+        if tree.tag == f"{_W}numbering"
+        for item in tree.iterfind(f"{_W}num")
+    } | {"0"}
     for name, tree in trees.items():
         for tag, kind in _STYLED.items():
             used = {item.get(f"{_W}val") for item in tree.iter(f"{_W}{tag}")}
-            yield from (f"{name} uses the missing {kind} style {style}" for style in sorted(map(str, used)) if (kind, style) not in known)
+            yield from (
+                f"{name} uses the missing {kind} style {style}"
+                for style in sorted(map(str, used))
+                if (kind, style) not in known
+            )
         used = {item.get(f"{_W}val") for item in tree.iter(f"{_W}numId")}
         yield from (f"{name} uses the missing list {number}" for number in sorted(map(str, used - numbers)))
 

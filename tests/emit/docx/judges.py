@@ -30,5 +30,7 @@ def pages(path: Path) -> list[str]:
     subprocess.run(command, check=True, capture_output=True, timeout=180)
     pdf = path.with_suffix(".pdf")
     assert pdf.exists(), "LibreOffice made no PDF of the report"
-    shown = subprocess.run(["pdftotext", "-layout", str(pdf), "-"], check=True, capture_output=True, text=True, timeout=60)
+    shown = subprocess.run(
+        ["pdftotext", "-layout", str(pdf), "-"], check=True, capture_output=True, text=True, timeout=60
+    )
     return shown.stdout.split("\f")[:-1]

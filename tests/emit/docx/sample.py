@@ -47,13 +47,19 @@ Words with ![small](pictures/red.png) a picture, ![lost](pictures/lost.png) a lo
 
 ![A drawing](pictures/plan.svg)
 """
-SVG = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 100"><rect width="200" height="100" fill="#eef"/></svg>'
+SVG = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 100"><rect width="200" height="100" fill="#eef"/></svg>'
+)
 
 
 def png(width: int, height: int) -> bytes:
     """Make a red PNG."""
     rows = (b"\0" + b"\xb3\x26\x1e" * width) * height
-    parts = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b""))
+    parts = (
+        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
+        (b"IDAT", zlib.compress(rows)),
+        (b"IEND", b""),
+    )
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in parts
     )
@@ -111,16 +117,32 @@ def component(group: int, number: int) -> Section:
         f"table:performance.g{group}.c{number}",
         f"Performance of {name}",
         (Column("Indicator", 2), Column("Accuracy"), Column("Execution time", align="right")),
-        ((_text("Recall"), _text("90 % at 1 m"), _text("200 ms")), (_text("Precision"), _text("80 %"), _text("100 ms"))),
+        (
+            (_text("Recall"), _text("90 % at 1 m"), _text("200 ms")),
+            (_text("Precision"), _text("80 %"), _text("100 ms")),
+        ),
     )
-    said = "It finds persons in the room, tells them apart, and keeps track of where each of them goes. " * (1 + number % 3)
+    said = "It finds persons in the room, tells them apart, and keeps track of where each of them goes. " * (
+        1 + number % 3
+    )
     return Section(
         f"component:g{group}.c{number}",
         name,
         (
             Markdown(said + "\n\n- first\n- second"),
-            Facts((("Owner", _text("CERTH-ITI")), ("Role", _text("filter")), ("Requirements", (Text("R-12", ref="requirement:R-12"),)))),
-            Figure(f"figure:g{group}.c{number}", "small", f"{name} and its neighbours", "A camera feeds the recognition, which feeds the planner."),
+            Facts(
+                (
+                    ("Owner", _text("CERTH-ITI")),
+                    ("Role", _text("filter")),
+                    ("Requirements", (Text("R-12", ref="requirement:R-12"),)),
+                )
+            ),
+            Figure(
+                f"figure:g{group}.c{number}",
+                "small",
+                f"{name} and its neighbours",
+                "A camera feeds the recognition, which feeds the planner.",
+            ),
             table,
             performance,
         ),
@@ -148,10 +170,22 @@ def outline(groups: int = 3, components: int = 4) -> Outline:
             ),
         ),
         *(
-            Section(f"group:g{g}", f"Group {g}", sections=tuple(component(g, c) for c in range(1, components + 1)), page_break=True)
+            Section(
+                f"group:g{g}",
+                f"Group {g}",
+                sections=tuple(component(g, c) for c in range(1, components + 1)),
+                page_break=True,
+            )
             for g in range(1, groups + 1)
         ),
-        Section("appendix:types", "Type mapping", (_wide(60),), (Section("type:objects", "Recognised objects"),), appendix=True, page_break=True),
+        Section(
+            "appendix:types",
+            "Type mapping",
+            (_wide(60),),
+            (Section("type:objects", "Recognised objects"),),
+            appendix=True,
+            page_break=True,
+        ),
         Section("appendix:open", "Open points", (Paragraph(_text("None.")),), appendix=True),
     ]
     facts = (
@@ -174,14 +208,60 @@ def hostile() -> Outline:
     """Give a report of texts that break out of XML, fields, links and names, or that no XML can hold."""
     bad = "a<b>&\"'</w:t>]]>\x00\x08\x1b\ud800\udfff\ufffe\u202e \t\n{{title}} \u00e9\U0001f600 " + "x" * 400
     anchor = bad * 2
-    inlines = (Text(bad, url="http://exa mple.org/<>\""), Text(bad, ref=anchor), Text(bad, url="javascript:alert(1)"), Text("", code=True), Text(bad, line_break=True))
-    urls = ("http://[::1", "https://", "https://user@host:99999999/%zz", "mailto:", "http://h/\ud800", "file:///etc/passwd", "https://é.org/é", "https://ok.org/a b|c")
+    inlines = (
+        Text(bad, url='http://exa mple.org/<>"'),
+        Text(bad, ref=anchor),
+        Text(bad, url="javascript:alert(1)"),
+        Text("", code=True),
+        Text(bad, line_break=True),
+    )
+    urls = (
+        "http://[::1",
+        "https://",
+        "https://user@host:99999999/%zz",
+        "mailto:",
+        "http://h/\ud800",
+        "file:///etc/passwd",
+        "https://é.org/é",
+        "https://ok.org/a b|c",
+    )
     links = tuple(Text(url, url=url) for url in urls)
-    markdown = "\n\n".join((bad, "> " * 40 + "deep", "- " * 40 + "deep", "|" + "a|" * 70 + "\n|" + "-|" * 70 + "\n|" + "b|" * 70, "# " + bad, "99999999999. x", "![a](../../etc/passwd)", "- ```\n  code", "[x][y]", "1.\n2.", "<script>"))
+    markdown = "\n\n".join(
+        (
+            bad,
+            "> " * 40 + "deep",
+            "- " * 40 + "deep",
+            "|" + "a|" * 70 + "\n|" + "-|" * 70 + "\n|" + "b|" * 70,
+            "# " + bad,
+            "99999999999. x",
+            "![a](../../etc/passwd)",
+            "- ```\n  code",
+            "[x][y]",
+            "1.\n2.",
+            "<script>",
+        )
+    )
     rows = ((inlines, links, ()), ((), (), ()))
     table = Table(anchor, bad, (Column(bad), Column("", 0), Column("z", -5)), rows, (anchor, "x"))
-    blocks = (Paragraph(inlines), Paragraph(()), Markdown(markdown, "../..", 12), Bullets(((), inlines)), Facts(((bad, inlines), ("", ()))), table, table, Figure(anchor, bad, bad, bad), Figure(anchor, "small", bad, bad))
+    blocks = (
+        Paragraph(inlines),
+        Paragraph(()),
+        Markdown(markdown, "../..", 12),
+        Bullets(((), inlines)),
+        Facts(((bad, inlines), ("", ()))),
+        table,
+        table,
+        Figure(anchor, bad, bad, bad),
+        Figure(anchor, "small", bad, bad),
+    )
     deep = Section("deep", bad, blocks)
     for level in range(12):
         deep = Section(f"level{level % 3}", bad, (), (deep,), appendix=level % 2 == 0)
-    return Outline(bad, bad, ((bad, inlines), ("", ())), (Paragraph(inlines, "error"),), (deep, replace(deep, appendix=True)), language="x<y")
+    return Outline(
+        bad,
+        bad,
+        ((bad, inlines), ("", ())),
+        (Paragraph(inlines, "error"),),
+        (deep, replace(deep, appendix=True)),
+        language="x<y",
+    )

@@ -28,7 +28,9 @@ def words(xml: str) -> str:
     return re.sub(r"<[^>]+>", "", xml)
 
 
-@pytest.mark.parametrize("outline", [sample.outline(), sample.hostile(), Outline("Empty")], ids=["whole", "hostile", "empty"])
+@pytest.mark.parametrize(
+    "outline", [sample.outline(), sample.hostile(), Outline("Empty")], ids=["whole", "hostile", "empty"]
+)
 def test_no_judge_finds_a_fault(outline: Outline, tmp_path: Path) -> None:
     data = report(outline)
     assert inspection.faults(data) == []
@@ -92,21 +94,32 @@ def test_headings_are_numbered_and_appendices_lettered() -> None:
 
 
 def test_references_lead_to_bookmarks_or_stay_text() -> None:
-    inlines = (Text("there", ref="b"), Text("nowhere", ref="gone"), Text("out", url="https://example.org/?a=1&b=2"), Text("trap", url="javascript:x"))
+    inlines = (
+        Text("there", ref="b"),
+        Text("nowhere", ref="gone"),
+        Text("out", url="https://example.org/?a=1&b=2"),
+        Text("trap", url="javascript:x"),
+    )
     outline = Outline("T", sections=(Section("a", "A", (Paragraph(inlines),)), Section("b", "B")))
     data = report(outline)
     body = document(data).partition("PAGEREF")[2]
-    assert len(re.findall(r'<w:hyperlink [^>]*>(?:(?!</w:hyperlink>).)*there', body)) == 1
+    assert len(re.findall(r"<w:hyperlink [^>]*>(?:(?!</w:hyperlink>).)*there", body)) == 1
     assert re.search(r"<w:r><w:t [^>]*>nowhere</w:t></w:r><w:hyperlink r:id=", body)
     assert re.search(r"<w:r><w:t [^>]*>trap</w:t></w:r>", body)
-    assert 'Target="https://example.org/?a=1&amp;b=2" TargetMode="External"' in document(data, "word/_rels/document.xml.rels")
+    assert 'Target="https://example.org/?a=1&amp;b=2" TargetMode="External"' in document(
+        data, "word/_rels/document.xml.rels"
+    )
 
 
 def test_captions_are_fields_and_stand_in_their_lists() -> None:
     table = Table("t", "Ports", (Column("a"),), (((Text("x"),),),))
     outline = Outline("T", sections=(Section("a", "A", (Figure("f", "small", "Picture", "alt"), table)),))
     xml = document(report(outline))
-    assert [words(found) for found in re.findall(r'w:history="1">(.*?)<w:r><w:tab/>', xml)] == ["1  A", "Figure 1: Picture", "Table 1: Ports"]
+    assert [words(found) for found in re.findall(r'w:history="1">(.*?)<w:r><w:tab/>', xml)] == [
+        "1  A",
+        "Figure 1: Picture",
+        "Table 1: Ports",
+    ]
     assert re.findall(r" (SEQ \w+ \\\* ARABIC) ", xml) == ["SEQ Figure \\* ARABIC", "SEQ Table \\* ARABIC"]
     codes = [html.unescape(code).strip() for code in re.findall(r"> (TOC [^<]*)<", xml)]
     assert codes == ['TOC \\o "1-3" \\h \\z \\u', 'TOC \\h \\z \\c "Figure"', 'TOC \\h \\z \\c "Table"']
@@ -144,7 +157,12 @@ def test_pictures_are_sharp_and_described() -> None:
 
 def test_a_row_that_others_refer_to_has_a_bookmark() -> None:
     table = Table("t", "Requirements", (Column("id"),), (((Text("R-12"),),),), row_anchors=("requirement:R-12",))
-    outline = Outline("T", sections=(Section("a", "A", (Paragraph((Text("see R-12", ref="requirement:R-12"),)), table)),))
+    outline = Outline(
+        "T", sections=(Section("a", "A", (Paragraph((Text("see R-12", ref="requirement:R-12"),)), table)),)
+    )
     data = report(outline)
     assert inspection.faults(data) == []
-    assert re.search(r"<w:hyperlink w:anchor=\"_ag\w+\"[^>]*><w:r><w:rPr><w:rStyle w:val=\"Hyperlink\"/></w:rPr><w:t [^>]*>see R-12", document(data))
+    assert re.search(
+        r"<w:hyperlink w:anchor=\"_ag\w+\"[^>]*><w:r><w:rPr><w:rStyle w:val=\"Hyperlink\"/></w:rPr><w:t [^>]*>see R-12",
+        document(data),
+    )

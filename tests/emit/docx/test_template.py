@@ -58,7 +58,17 @@ def a5(document: Any) -> None:
 
 def without_styles(document: Any) -> None:
     styles = document.styles
-    for name in ("Caption", "Table Grid", "Title", "Subtitle", "List Bullet", "List Number", "Quote", "TOC Heading", "Heading 4"):
+    for name in (
+        "Caption",
+        "Table Grid",
+        "Title",
+        "Subtitle",
+        "List Bullet",
+        "List Number",
+        "Quote",
+        "TOC Heading",
+        "Heading 4",
+    ):
         styles[name].delete()
 
 
@@ -141,7 +151,10 @@ def test_no_judge_finds_a_fault(name: str, tmp_path: Path) -> None:
     assert judges.validated(path) == []
 
 
-@pytest.mark.parametrize(("name", "size", "width"), [("letter", (12240, 15840), 8640), ("a5", (8391, 11906), 6690), ("broken paper", (11906, 16838), 9072)])
+@pytest.mark.parametrize(
+    ("name", "size", "width"),
+    [("letter", (12240, 15840), 8640), ("a5", (8391, 11906), 6690), ("broken paper", (11906, 16838), 9072)],
+)
 def test_the_paper_decides_the_widths(name: str, size: tuple[int, int], width: int) -> None:
     xml = part(report(TEMPLATES[name])[0])
     assert f'<w:pgSz w:w="{size[0]}" w:h="{size[1]}"' in xml
@@ -163,7 +176,17 @@ def test_own_heading_and_caption_styles_are_used() -> None:
 def test_missing_styles_are_added_and_named() -> None:
     data, warnings = report(TEMPLATES["missing styles"])
     said = next(warning for warning in warnings if "has no style" in warning)
-    for name in ("Title", "Subtitle", "heading 4", "caption", "Table Grid", "TOC Heading", "toc 1", "table of figures", "Hyperlink"):
+    for name in (
+        "Title",
+        "Subtitle",
+        "heading 4",
+        "caption",
+        "Table Grid",
+        "TOC Heading",
+        "toc 1",
+        "table of figures",
+        "Hyperlink",
+    ):
         assert f"`{name}`" in said
     assert '<w:name w:val="table of figures"/>' in part(data, "word/styles.xml")
 
@@ -173,7 +196,11 @@ def test_cover_header_and_closing_words_stay_and_are_filled_in() -> None:
     xml = part(data)
     texts = re.findall(r"<w:t[ >][^<]*", xml)
     flat = "".join(text.partition(">")[2] for text in texts)
-    assert flat.index("ACME deliverable") < flat.index("Architecture of a robot that helps, version 1.0, ") < flat.index("Contents")
+    assert (
+        flat.index("ACME deliverable")
+        < flat.index("Architecture of a robot that helps, version 1.0, ")
+        < flat.index("Contents")
+    )
     assert flat.endswith("The end of the deliverable")
     assert "{{" not in flat
     assert flat.count("Architecture of a robot that helps") == 1
@@ -211,7 +238,10 @@ def zipped(**parts: str) -> bytes:
 
 def bomb() -> bytes:
     target = io.BytesIO()
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("word/document.xml", "w", force_zip64=True) as stream:
+    with (
+        zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("word/document.xml", "w", force_zip64=True) as stream,
+    ):
         for _ in range(210):
             stream.write(b"\0" * 1_000_000)
     return target.getvalue()
