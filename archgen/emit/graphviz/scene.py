@@ -121,7 +121,8 @@ class Scene:
             for frame in self.frames
         ]
         lines += [
-            f'{quoted(part.name)} [id="{part.name}" {_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];' for part in self.parts
+            f'{quoted(part.name)} [id="{part.name}" {_pairs(part.attributes)} pos="{_numbers(part.x, part.y)}"];'
+            for part in self.parts
         ]
         lines += [
             f'{quoted(line.tail)} -> {quoted(line.head)} [id="e{line.edge}" {_pairs(line.attributes)} pos="{line.spline}"];'
