@@ -15,7 +15,7 @@ from pathlib import Path
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import aftermath, rules, suppress
-from archgen.link import chapters, interfaces, shipped
+from archgen.link import chapters, interfaces, merge, shipped
 from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
