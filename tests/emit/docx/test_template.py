@@ -271,3 +271,28 @@ def test_what_is_no_template_is_refused(template: bytes, message: str) -> None:
     with pytest.raises(TemplateError) as error:
         report(template, Outline("T", facts=(("Version", (Text("1"),)),)))
     assert message in str(error.value)
+
+
+def test_a_damaged_template_is_refused_or_used_but_never_a_traceback() -> None:
+    outline = Outline("T", facts=(("Version", (Text("1"),)),), sections=(Section("a", "A"),))
+    source = zipfile.ZipFile(io.BytesIO(TEMPLATES["cover"]))
+    parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
+    used = 0
+    for name, content in parts.items():
+        values = [match.span() for match in re.finditer(r'"[^"<>]*"', content)][:: max(1, content.count('"') // 12)]
+        damaged = [content[:start] + new + content[end:] for start, end in values for new in ('""', '"-1"', '"NaN"')]
+        for text in ("", content[: len(content) // 2], *damaged):
+            try:
+                report(packed({**parts, name: text}), outline)
+                used += 1
+            except TemplateError as error:
+                assert str(error).startswith("the template is")  # noqa: PT017 - either outcome is right
+    assert used
+
+
+def packed(parts: dict[str, str]) -> bytes:
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name, text in parts.items():
+            archive.writestr(name, text.encode("latin-1"))
+    return target.getvalue()
