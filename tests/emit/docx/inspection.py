@@ -69,8 +69,8 @@ def _relationships(trees: dict[str, etree._Element], parts: dict[str, bytes]) ->
             continue
         folder, file = posixpath.split(name)
         relations = trees.get(posixpath.join(folder, "_rels", f"{file}.rels"))
-        known = set() if relations is None else {item.get("Id") for item in relations}
-        used = {value for item in tree.iter() for key, value in item.attrib.items() if str(key).startswith(_R)}
+        known = set() if relations is None else {str(item.get("Id")) for item in relations}
+        used = {str(value) for item in tree.iter() for key, value in item.attrib.items() if str(key).startswith(_R)}
         yield from (f"{name} uses the missing relationship {value}" for value in sorted(used - known))
 
 

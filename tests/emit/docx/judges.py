@@ -14,7 +14,9 @@ _VALIDATOR = Path(__file__).parents[2] / "judges" / "node_modules" / ".bin" / "o
 def validated(path: Path) -> list[dict[str, Any]]:
     """Give what Microsoft's validator says against a .docx."""
     assert _VALIDATOR.exists(), "Microsoft's validator is missing: run `npm ci` in tests/judges (it needs Node.js)"
-    result = subprocess.run([_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=120)
+    result = subprocess.run(  # noqa: S603 - a judge of our own choice
+        [_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=120
+    )
     assert result.returncode in {0, 1}, f"the validator could not run: {result.stdout}{result.stderr}"
     answer = json.loads(result.stdout)
     errors: list[dict[str, Any]] = answer["errors"]
@@ -23,14 +25,18 @@ def validated(path: Path) -> list[dict[str, Any]]:
 
 def pages(path: Path) -> list[str]:
     """Give the text of each page that LibreOffice makes of a .docx."""
-    for program, package in (("soffice", "libreoffice-writer-nogui"), ("pdftotext", "poppler-utils")):
-        assert shutil.which(program), f"`{program}` is missing: install Debian's {package}"
+    soffice, pdftotext = _program("soffice", "libreoffice-writer-nogui"), _program("pdftotext", "poppler-utils")
     profile = f"-env:UserInstallation=file://{path.parent / 'libreoffice'}"
-    command = ["soffice", profile, "--headless", "--convert-to", "pdf", "--outdir", str(path.parent), str(path)]
-    subprocess.run(command, check=True, capture_output=True, timeout=180)
+    command = [soffice, profile, "--headless", "--convert-to", "pdf", "--outdir", str(path.parent), str(path)]
+    subprocess.run(command, check=True, capture_output=True, timeout=180)  # noqa: S603 - a judge of our own choice
     pdf = path.with_suffix(".pdf")
     assert pdf.exists(), "LibreOffice made no PDF of the report"
-    shown = subprocess.run(
-        ["pdftotext", "-layout", str(pdf), "-"], check=True, capture_output=True, text=True, timeout=60
-    )
+    command = [pdftotext, "-layout", str(pdf), "-"]
+    shown = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60)  # noqa: S603 - the same
     return shown.stdout.split("\f")[:-1]
+
+
+def _program(name: str, package: str) -> str:
+    found = shutil.which(name)
+    assert found, f"`{name}` is missing: install Debian's {package}"
+    return found

@@ -7,11 +7,10 @@ import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import docx
 import pytest
-from docx.enum.style import WD_STYLE_TYPE
+from docx.document import Document
 from docx.oxml import OxmlElement
 from docx.oxml.ns import qn
 from docx.shared import Mm
@@ -20,7 +19,7 @@ from archgen.emit.docx import TemplateError, write
 from archgen.views.shapes import Outline, Section, Text
 from tests.emit.docx import inspection, judges, sample
 
-Change = Callable[[Any], None]
+Change = Callable[[Document], None]
 
 
 def saved(*changes: Change) -> bytes:
@@ -50,13 +49,13 @@ def dotx(data: bytes) -> bytes:
     return rewritten(data, "[Content_Types].xml", f"{kind}document.main+xml", f"{kind}template.main+xml")
 
 
-def a5(document: Any) -> None:
+def a5(document: Document) -> None:
     section = document.sections[0]
     section.page_width, section.page_height = Mm(148), Mm(210)
     section.left_margin = section.right_margin = Mm(15)
 
 
-def without_styles(document: Any) -> None:
+def without_styles(document: Document) -> None:
     styles = document.styles
     for name in (
         "Caption",
@@ -72,7 +71,7 @@ def without_styles(document: Any) -> None:
         styles[name].delete()
 
 
-def own_names(document: Any) -> None:
+def own_names(document: Document) -> None:
     """Headings and captions under names that Word does not know, found by outline level and by what captions are called."""
     for level in range(1, 10):
         style = document.styles[f"Heading {level}"]
@@ -86,7 +85,7 @@ def own_names(document: Any) -> None:
     caption.set(qn("w:styleId"), "PBeschriftung")
 
 
-def covered(document: Any) -> None:
+def covered(document: Document) -> None:
     document.add_heading("ACME deliverable", 0)
     document.add_paragraph("{{title}}, version {{ Version }}, {{unheard of}}")
     document.add_table(1, 2)
@@ -95,11 +94,11 @@ def covered(document: Any) -> None:
     document.add_paragraph("The end of the deliverable")
 
 
-def broken_paper(document: Any) -> None:
+def broken_paper(document: Document) -> None:
     document.sections[0].left_margin = Mm(400)
 
 
-def numbered(document: Any) -> None:
+def numbered(document: Document) -> None:
     """Give the first heading a number in Roman letters, as the template's own."""
     numbering = document.part.numbering_part.element
     abstract, num = OxmlElement("w:abstractNum"), OxmlElement("w:num")
@@ -209,7 +208,7 @@ def test_cover_header_and_closing_words_stay_and_are_filled_in() -> None:
 
 
 def test_a_name_that_word_cut_into_runs_is_filled_in() -> None:
-    def cut(document: Any) -> None:
+    def cut(document: Document) -> None:
         paragraph = document.add_paragraph("by {{ti")
         paragraph.add_run("tle}}")
 
@@ -222,7 +221,7 @@ def test_own_numbers_of_headings_stay() -> None:
 
 
 def test_settings_that_ask_or_fetch_are_taken_out() -> None:
-    def asking(document: Any) -> None:
+    def asking(document: Document) -> None:
         document.settings.element.insert(0, OxmlElement("w:updateFields"))
 
     assert "updateFields" not in part(report(saved(asking))[0], "word/settings.xml")
@@ -272,3 +271,28 @@ def test_what_is_no_template_is_refused(template: bytes, message: str) -> None:
     with pytest.raises(TemplateError) as error:
         report(template, Outline("T", facts=(("Version", (Text("1"),)),)))
     assert message in str(error.value)
+
+
+def test_a_damaged_template_is_refused_or_used_but_never_a_traceback() -> None:
+    outline = Outline("T", facts=(("Version", (Text("1"),)),), sections=(Section("a", "A"),))
+    source = zipfile.ZipFile(io.BytesIO(TEMPLATES["cover"]))
+    parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
+    used = 0
+    for name, content in parts.items():
+        values = [match.span() for match in re.finditer(r'"[^"<>]*"', content)][:: max(1, content.count('"') // 12)]
+        damaged = [content[:start] + new + content[end:] for start, end in values for new in ('""', '"-1"', '"NaN"')]
+        for text in ("", content[: len(content) // 2], *damaged):
+            try:
+                report(packed({**parts, name: text}), outline)
+                used += 1
+            except TemplateError as error:
+                assert str(error).startswith("the template is")  # noqa: PT017 - either outcome is right
+    assert used
+
+
+def packed(parts: dict[str, str]) -> bytes:
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name, text in parts.items():
+            archive.writestr(name, text.encode("latin-1"))
+    return target.getvalue()
