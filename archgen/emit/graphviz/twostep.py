@@ -23,7 +23,7 @@ from archgen.views.shapes import Arrow
 
 _PAGE = (1105.0, 728.0)
 """A landscape A3 page without its margins, in points: what a drawing's text size is judged on."""
-_TURNED = 1.1
+_TURNED = 1.2
 _MARGIN = 12.0
 _UNSEEN = {"style": '"invis"', "label": '""', "shape": '"point"'}
 """The ends of arrows between frames: lines need nodes to end at."""
@@ -47,9 +47,18 @@ def two_step(drafted: Draft) -> Scene:
     inner = [(at, arrow) for at, arrow in numbered if home[arrow.tail] == home[arrow.head]]
     tiles = {tile.name: tile for tile in _tiles(drafted, home, inner)}
     ends = [(at, replace(arrow, tail=home[arrow.tail], head=home[arrow.head])) for at, arrow in outer]
+    order = forward(tuple(tiles), _weights(ends))
+    tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
     tries = [_composed(drafted, tiles, ends, statements) for statements in _candidates(drafted, tiles, ends)]
     best = min(tries, key=lambda scene: _cost(scene, ends))
     return declutter(on_lines(drafted, best))
+
+
+def _weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
+    weights: dict[tuple[str, str], int] = {}
+    for _, arrow in arrows:
+        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
+    return weights
 
 
 def _homes(drafted: Draft) -> dict[str, str]:
@@ -89,11 +98,7 @@ def _candidates(
     drafted: Draft, tiles: dict[str, Tile], arrows: Sequence[tuple[int, Arrow]]
 ) -> Iterator[tuple[str, list[str]]]:
     """Give the ways to lay out the outer graph that are worth a try: settings, and statements."""
-    weights: dict[tuple[str, str], int] = {}
-    for _, arrow in arrows:
-        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
-    order = forward(tuple(tiles), weights)
-    place = {name: at for at, name in enumerate(order)}
+    place = {name: at for at, name in enumerate(tiles)}
     names = {name: f"o{at}" for at, name in enumerate(tiles)}
     plain = [f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_pen(drafted, at)}];' for at, a in arrows]
     onward = [
@@ -107,7 +112,7 @@ def _candidates(
         settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain
         yield settings, onward
-        for rows in folds(order, partial(_guess, tiles, [item for _, item in arrows], direction)):
+        for rows in folds(tuple(tiles), partial(_guess, tiles, [item for _, item in arrows], direction)):
             yield settings, [*_rows(rows, names), *onward]
 
 
@@ -177,7 +182,7 @@ def _cost(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
     missing = len(arrows) - len(outer)
     back = _backward(scene, arrows)
     run = sum(length(line) for line in outer) / (sum(_PAGE) * max(len(outer), 1))
-    return size * (1 + 0.02 * crossings(outer) + 0.5 * run + 0.5 * back) + 10 * missing
+    return size * (1 + 0.02 * crossings(outer) + 0.5 * run + 0.6 * back) + 10 * missing
 
 
 def _backward(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
