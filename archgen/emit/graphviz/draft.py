@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from archgen.emit.graphviz import engine, marks, palette, strokes
 from archgen.emit.graphviz.engine import written
+from archgen.emit.graphviz.labels import along
 from archgen.emit.graphviz.marks import FONT, Link
 from archgen.emit.graphviz.scene import DEFAULTS, Part, Scene, placed
 from archgen.emit.graphviz.text import html, quoted, wrapped
@@ -35,7 +36,8 @@ class Draft:
         return f"{name} [{written(self.boxes[name])}];"
 
     def edge(self, at: int, item: Arrow, *, text: bool = True) -> str:
-        """Write an arrow as DOT, with its text if the layout is to find room for it."""
+        """Write an arrow as DOT, with its text if the layout is to find room for it; a number stands on the line."""
+        text = text and not item.label.isdigit()
         ends = [self.names[item.tail] + self._port(item.tail, item.tail_port)]
         ends.append(self.names[item.head] + self._port(item.head, item.head_port))
         attributes = self.arrows[f"e{at}"][1]
@@ -106,6 +108,20 @@ def read(drafted: Draft, layout: dict[str, object]) -> Scene:
     return scene.joined(Scene(parts=labels))
 
 
+def on_lines(drafted: Draft, scene: Scene) -> Scene:
+    """Set each text that has no place yet on the middle of its arrow."""
+    done = {part.name for part in scene.parts if part.kind == "label"}
+    lines = [line for line in scene.lines if f"e{line.edge}" in drafted.labels and f"l{line.edge}" not in done]
+    sizes = measure([drafted.labels[f"e{line.edge}"] for line in lines])
+    parts = []
+    for line, size in zip(lines, sizes, strict=True):
+        points = list(along(line))
+        parts.append(
+            Part(f"l{line.edge}", drafted.labels[f"e{line.edge}"], *points[len(points) // 2], *size, kind="label")
+        )
+    return scene.joined(Scene(parts=tuple(parts)))
+
+
 def _spot(text: str) -> tuple[float, float]:
     x, y = text.split(",")
     return float(x), float(y)
@@ -125,7 +141,11 @@ def title(item: Cluster) -> Attributes:
     """Give the look of a frame's title, a text on the frame's own ground."""
     ink = palette.MUTED if item.emphasis == "neighbour" else palette.hue(item.colour)
     rows = "<BR/>".join(f"<B>{html(row)}</B>" for row in wrapped(item.title, 40, 2))
-    small = "".join(f'<BR/><FONT POINT-SIZE="7.5" COLOR="{palette.MUTED}">{html(line)}</FONT>' for line in item.lines)
+    small = '<BR ALIGN="LEFT"/>'.join(
+        f'<FONT POINT-SIZE="7.5" COLOR="{palette.MUTED}">{html(line)}</FONT>' for line in item.lines
+    )
+    if small:
+        rows, small = f'{rows}<BR ALIGN="LEFT"/>', small + '<BR ALIGN="LEFT"/>'
     return {
         "shape": '"box"',
         "style": '"filled"',

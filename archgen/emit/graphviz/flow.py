@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from archgen.emit.graphviz import engine
-from archgen.emit.graphviz.draft import Draft, document, frame, measure, read, title
+from archgen.emit.graphviz.draft import Draft, document, frame, measure, on_lines, read, title
 from archgen.emit.graphviz.engine import written
 from archgen.emit.graphviz.labels import along, declutter
 from archgen.emit.graphviz.scene import Frame, Part, Scene
@@ -23,7 +23,7 @@ def flow(drafted: Draft) -> Scene:
     lines = [drafted.node(item) for item in graph.boxes] + _sides(drafted)
     lines += [drafted.edge(at, item) for at, item in enumerate(graph.arrows)]
     scene = read(drafted, engine.layout(document(_settings(drafted, 0.25), lines)))
-    return declutter(scene)
+    return declutter(on_lines(drafted, scene))
 
 
 def group(drafted: Draft) -> Scene:
@@ -38,7 +38,8 @@ def group(drafted: Draft) -> Scene:
     lines = [drafted.node(item) for item in graph.boxes] + _sides(drafted) + _held_between(drafted, inside)
     lines += [drafted.edge(at, item) for at, item in enumerate(graph.arrows)]
     scene = read(drafted, engine.layout(document(_settings(drafted, 0.16), lines)))
-    return declutter(_framed(drafted, inner, scene, {drafted.names[item.id] for item in inside}))
+    framed = _framed(drafted, inner, scene, {drafted.names[item.id] for item in inside})
+    return declutter(on_lines(drafted, framed))
 
 
 def _settings(drafted: Draft, nodesep: float) -> str:

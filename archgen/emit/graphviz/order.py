@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 Weights = Mapping[tuple[str, str], int]
+Rows = tuple[tuple[str, ...], ...]
+_ROWS = range(2, 8)
 _EXACT = 12
 """Up to so many items the best order is found by looking at all sets (2 to this power)."""
 
@@ -53,28 +56,29 @@ def _greedy(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
     return tuple(order)
 
 
-def folded(order: Sequence[str], lengths: Mapping[str, float], rows: int, gap: float) -> tuple[tuple[str, ...], ...]:
-    """Cut an order into so many runs that the longest is as short as can be."""
-
-    def runs(limit: float) -> list[list[str]]:
-        found: list[list[str]] = [[]]
-        used = 0.0
-        for item in order:
-            if found[-1] and used + lengths[item] > limit:
-                found.append([])
-                used = 0.0
-            found[-1].append(item)
-            used += lengths[item] + gap
-        return found
-
-    limits = sorted(set(_spans(order, lengths, gap)))
-    best = next((found for limit in limits if len(found := runs(limit)) <= rows), [list(order)])
-    return tuple(tuple(run) for run in best)
+def folds(order: Sequence[str], judge: Callable[[Rows], float]) -> list[Rows]:
+    """Cut an order into two to seven rows, for each number the cut that is judged best; long orders only evenly."""
+    count = len(order)
+    if count > _EXACT:
+        return [_even(order, rows) for rows in _ROWS]
+    best: dict[int, tuple[float, Rows]] = {}
+    for marks in range(1, 1 << max(count - 1, 0)):
+        rows = _cut(order, marks)
+        if len(rows) in _ROWS and (worth := judge(rows)) < best.get(len(rows), (math.inf,))[0]:
+            best[len(rows)] = (worth, rows)
+    return [best[rows][1] for rows in sorted(best)]
 
 
-def _spans(order: Sequence[str], lengths: Mapping[str, float], gap: float) -> Iterator[float]:
-    for first in range(len(order)):
-        used = -gap
-        for item in order[first:]:
-            used += lengths[item] + gap
-            yield used + 0.01
+def _cut(order: Sequence[str], marks: int) -> Rows:
+    """Begin a new row after each item whose bit is set."""
+    rows: list[list[str]] = [[]]
+    for at, item in enumerate(order):
+        rows[-1].append(item)
+        if marks >> at & 1:
+            rows.append([])
+    return tuple(tuple(row) for row in rows)
+
+
+def _even(order: Sequence[str], rows: int) -> Rows:
+    size = -(-len(order) // rows)
+    return tuple(tuple(order[at : at + size]) for at in range(0, len(order), size))

@@ -19,7 +19,7 @@ Point = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
 """Left, bottom, right, top."""
 
-DEFAULTS = 'node [fontname="DejaVu Sans" fontsize="9"]; edge [fontname="DejaVu Sans" fontsize="8"];'
+DEFAULTS = 'node [fontname="DejaVu Sans" fontsize="9" fontcolor="#1b2127"]; edge [fontname="DejaVu Sans" fontsize="8"];'
 _POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 

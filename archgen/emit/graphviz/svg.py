@@ -31,7 +31,7 @@ def drawn_edges(svg: str) -> set[str]:
 
 
 def steady(outlines: bytes) -> bytes:
-    """Number cairo's surfaces from 1: it goes on counting from one picture to the next."""
+    """Give the surfaces numbers from 1 on: cairo goes on counting from one picture to the next."""
     numbers: dict[bytes, bytes] = {}
     return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
 

@@ -9,19 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from archgen.emit.graphviz import engine
 from archgen.emit.graphviz.crossings import crossings, length
-from archgen.emit.graphviz.draft import Draft, document, frame, measure, title
+from archgen.emit.graphviz.draft import Draft, document, frame, measure, on_lines, title
 from archgen.emit.graphviz.engine import written
 from archgen.emit.graphviz.inner import inside
-from archgen.emit.graphviz.labels import along, declutter
-from archgen.emit.graphviz.order import folded, forward
+from archgen.emit.graphviz.labels import declutter
+from archgen.emit.graphviz.order import Rows, folds, forward
 from archgen.emit.graphviz.scene import Frame, Part, Scene, placed
 from archgen.views.shapes import Arrow
 
 _PAGE = (1105.0, 728.0)
 """A landscape A3 page without its margins, in points: what a drawing's text size is judged on."""
+_TURNED = 1.2
 _MARGIN = 12.0
 _UNSEEN = {"style": '"invis"', "label": '""', "shape": '"point"'}
 """The ends of arrows between frames: lines need nodes to end at."""
@@ -45,9 +47,18 @@ def two_step(drafted: Draft) -> Scene:
     inner = [(at, arrow) for at, arrow in numbered if home[arrow.tail] == home[arrow.head]]
     tiles = {tile.name: tile for tile in _tiles(drafted, home, inner)}
     ends = [(at, replace(arrow, tail=home[arrow.tail], head=home[arrow.head])) for at, arrow in outer]
+    order = forward(tuple(tiles), _weights(ends))
+    tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
     tries = [_composed(drafted, tiles, ends, statements) for statements in _candidates(drafted, tiles, ends)]
     best = min(tries, key=lambda scene: _cost(scene, ends))
-    return declutter(best.joined(_labels(drafted, best)))
+    return declutter(on_lines(drafted, best))
+
+
+def _weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
+    weights: dict[tuple[str, str], int] = {}
+    for _, arrow in arrows:
+        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
+    return weights
 
 
 def _homes(drafted: Draft) -> dict[str, str]:
@@ -87,11 +98,7 @@ def _candidates(
     drafted: Draft, tiles: dict[str, Tile], arrows: Sequence[tuple[int, Arrow]]
 ) -> Iterator[tuple[str, list[str]]]:
     """Give the ways to lay out the outer graph that are worth a try: settings, and statements."""
-    weights: dict[tuple[str, str], int] = {}
-    for _, arrow in arrows:
-        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
-    order = forward(tuple(tiles), weights)
-    place = {name: at for at, name in enumerate(order)}
+    place = {name: at for at, name in enumerate(tiles)}
     names = {name: f"o{at}" for at, name in enumerate(tiles)}
     plain = [f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_pen(drafted, at)}];' for at, a in arrows]
     onward = [
@@ -105,10 +112,30 @@ def _candidates(
         settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain
         yield settings, onward
-        lengths = {name: tile.width if direction == "TB" else tile.height for name, tile in tiles.items()}
-        for rows in range(2, min(7, len(tiles))):
-            runs = folded(order, lengths, rows, 28.0)
-            yield settings, [*_rows(runs, names), *onward]
+        for rows in folds(tuple(tiles), partial(_guess, tiles, [item for _, item in arrows], direction)):
+            yield settings, [*_rows(rows, names), *onward]
+
+
+def _guess(tiles: dict[str, Tile], arrows: Sequence[Arrow], direction: str, rows: Rows) -> float:
+    """Judge rows before they are laid out: how large it gets, and how many arrows must pass a box."""
+    sizes = {
+        name: (tile.width, tile.height) if direction == "TB" else (tile.height, tile.width)
+        for name, tile in tiles.items()
+    }
+    along_rows = max(sum(sizes[item][0] + 30 for item in row) for row in rows)
+    across = sum(max(sizes[item][1] for item in row) + 40 for row in rows)
+    wide, high = (along_rows, across) if direction == "TB" else (across, along_rows)
+    place = {item: (at, to) for at, row in enumerate(rows) for to, item in enumerate(row)}
+    passing = 0
+    for arrow in arrows:
+        (row, column), (other, to) = place[arrow.tail], place[arrow.head]
+        passing += max(abs(column - to) - 1, 0) if row == other else abs(row - other) - 1
+    return _scale(wide, high) * (1 + 0.05 * passing)
+
+
+def _scale(width: float, height: float) -> float:
+    """Say how many times too large a drawing is for a page, which may be turned; screens like it wide."""
+    return min(max(width / _PAGE[0], height / _PAGE[1]), _TURNED * max(width / _PAGE[1], height / _PAGE[0]))
 
 
 def _rows(runs: Sequence[Sequence[str]], names: dict[str, str]) -> list[str]:
@@ -147,23 +174,23 @@ def _composed(
 
 
 def _cost(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
-    """Judge a drawing: how small it must be made for the page, how many arrows cross, how far they run."""
+    """Judge a drawing: how small it gets on the page, how many arrows cross, how far they run, how many run back."""
     left, bottom, right, top = scene.bounds()
-    wide, high = (right - left) / _PAGE[0], (top - bottom) / _PAGE[1]
+    size = _scale(right - left, top - bottom)
     edges = {f"{at}" for at, _ in arrows}
     outer = [line for line in scene.lines if line.edge in edges]
     missing = len(arrows) - len(outer)
+    back = _backward(scene, arrows)
     run = sum(length(line) for line in outer) / (sum(_PAGE) * max(len(outer), 1))
-    return max(wide, high) * (1 + 0.02 * crossings(outer) + 0.5 * run) + 10 * missing
+    return size * (1 + 0.02 * crossings(outer) + 0.5 * run + 0.6 * back) + 10 * missing
 
 
-def _labels(drafted: Draft, scene: Scene) -> Scene:
-    """Set each arrow's text on the middle of the arrow."""
-    lines = [line for line in scene.lines if f"e{line.edge}" in drafted.labels]
-    sizes = measure([drafted.labels[f"e{line.edge}"] for line in lines])
-    parts = []
-    for line, size in zip(lines, sizes, strict=True):
-        points = list(along(line))
-        x, y = points[len(points) // 2]
-        parts.append(Part(f"l{line.edge}", drafted.labels[f"e{line.edge}"], x, y, *size, kind="label"))
-    return Scene(parts=tuple(parts))
+def _backward(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
+    """Give the share of the flows that run upwards and to the left, against the direction of reading."""
+    ends = {line.edge: (line.curve[0], line.curve[-1]) for line in scene.lines if line.curve}
+    total = sum(arrow.count for _, arrow in arrows) or 1
+    back = 0
+    for at, arrow in arrows:
+        (x, y), (to_x, to_y) = ends.get(str(at), ((0.0, 0.0), (0.0, 0.0)))
+        back += arrow.count * ((to_x - x) + (y - to_y) < 0)
+    return back / total

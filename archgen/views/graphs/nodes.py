@@ -51,7 +51,7 @@ def _lines(view: Index, item: Node) -> tuple[str, ...]:
     kinds = " ".join(item.kinds) if item.kinds != ("node",) else ""
     timings = dict.fromkeys(short_timing(timing) for timing in item.timing.values())
     host = view.architecture.hosts.get(item.host or "")
-    words = [[kinds, item.status or ""], [*timings, host.title if host else ""]]
+    words = [[kinds, item.status or ""], list(timings), [host.title if host else ""]]
     return tuple(line for line in (" · ".join(word for word in row if word) for row in words) if line)
 
 

@@ -126,7 +126,7 @@ def test_hostile_texts(layout: str) -> None:
     assert made.svg_outlines is not None
     root = etree.fromstring(made.svg)
     etree.fromstring(made.svg_outlines)
-    texts = ["".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")]
+    texts = ["".join(str(part) for part in each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")]
     assert "<b>bold</b> & " in " ".join(texts).replace("  ", " ")
     assert not list(root.iter("{http://www.w3.org/2000/svg}script", "{http://www.w3.org/2000/svg}a"))
     assert b"javascript" not in made.svg
