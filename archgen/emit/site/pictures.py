@@ -81,10 +81,9 @@ def _address(target: str, href: Href) -> str | None:
 
 
 def style_embedded() -> str:
-    """Give the style of pictures in pages: dark where the reader or the system wants it, as pages are."""
-    dark = _dark(":root[data-theme=dark]")
-    system = _dark(":root:not([data-theme=light])")
-    return f"{dark}\n@media (prefers-color-scheme: dark) {{\n{system}}}\n"
+    """Give the style of pictures in pages: dark where the reader or the system wants it, light on paper."""
+    chosen, system = _dark(":root[data-theme=dark]"), _dark(":root:not([data-theme=light])")
+    return f"@media screen {{\n{chosen}@media (prefers-color-scheme: dark) {{\n{system}}}\n}}\n"
 
 
 def style_alone(root: str) -> str:
@@ -96,10 +95,11 @@ def style_alone(root: str) -> str:
             (700, "DejaVu Sans Bold", "dejavusans-bold.ttf"),
         )
     )
-    return f"{faces}@media (prefers-color-scheme:dark){{svg{{background:#14181c}}{_dark('').replace(chr(10), '')}}}"
+    return f"{faces}@media screen and (prefers-color-scheme:dark){{svg{{background:#14181c}}{_dark('').replace(chr(10), '')}}}"
 
 
 def _dark(scope: str) -> str:
+    """Give the rules that turn a picture dark: its colours, and text that has none (which is black)."""
     from archgen.emit.graphviz.palette import dark_rules
 
-    return dark_rules(scope)
+    return f"{dark_rules(scope)}{scope} svg.archgen text:not([fill]){{fill:#e6eaee}}\n"

@@ -140,6 +140,16 @@ def test_pictures_follow_light_and_dark(visit: Open) -> None:
     assert page.evaluate(colour) == "rgb(20, 24, 28)"
 
 
+def test_paper_is_light(visit: Open) -> None:
+    page = visit("index.html", scheme="dark")
+    page.get_by_role("button", name="Light").click()
+    page.get_by_role("button", name="Dark").click()
+    page.emulate_media(media="print", color_scheme="dark")
+    assert page.evaluate("getComputedStyle(document.body).color") == "rgb(27, 33, 39)"
+    assert page.evaluate("getComputedStyle(document.querySelector('.canvas svg polygon')).fill") == "rgb(255, 255, 255)"
+    assert not page.locator("#navigation").is_visible()
+
+
 def test_links_in_pictures_work(visit: Open) -> None:
     page = visit("index.html")
     page.locator(".canvas a").nth(1).click()
