@@ -95,13 +95,9 @@ class References:
         what = _possible(kinds, words.count(".") + 1)
         own = f"{component}.{words}"
         if component and (own in self.places["output"] or component.endswith(f".{words}")):
-            path = ".".join(own.split(".")[1:]) if own in self.places["output"] else component
-            help_line = (
-                f"one word never means the component that writes it or its own output: write `{path}` for a loop"
-            )
-            return Diagnostic(
-                "unknown-reference", f"no other {what} named `{words}`", written.at, help=help_line, element=element
-            )
+            help_line = "one word never means the writer itself or its own output: a loop is written `component.output`"
+            message = f"no other {what} named `{words}`"
+            return Diagnostic("unknown-reference", message, written.at, help=help_line, element=element)
         inputs = self.names.ending("input", words)
         if "output" in kinds and inputs:
             label = (Label(self.places["input"][inputs[0]], "an input"),)
@@ -233,7 +229,8 @@ class Ports:
             return Diagnostic(
                 "unknown-reference", message, at, labels=(label,), help=f"`{words}` is an {other}", element=self.owner
             )
-        guess = self.references.guess(words, tuple(self.names.ends(kind)))
+        clear = [path for path in self.names.ends(kind) if len(self.names.ending(kind, path)) == 1]
+        guess = self.references.guess(words, clear)
         meant = self.names.find(guess, (kind,)).one if guess else None
         self.references.suspects.update([meant.id] if meant else ())
         labels = (Label(self._place(meant), "declared here"),) if meant else self._declared()

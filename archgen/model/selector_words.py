@@ -90,9 +90,10 @@ def parse(text: str) -> Selector:
         read = _word(text, match.start(), match.end())
         if isinstance(read, Problem):
             problems.append(read)
-        else:
-            words.append(read)
-            problems += _unknown_keys(read)
+            continue
+        unknown = tuple(_unknown_keys(read))
+        problems += unknown
+        words += () if unknown else (read,)
     if not words and not problems:
         problems.append(Problem("the selector is empty", 0, len(text), help=_FORMS))
     return Selector(tuple(words), tuple(problems))
@@ -149,6 +150,8 @@ def _atom(text: str, start: int, end: int) -> Atom | Problem:
         found = text[start:end]
         message = f"a path or `key:value` is expected, not `{found}`" if found else "a path or `key:value` is missing"
         return Problem(message, start if found else max(start - 1, 0), end, help=_FORMS)
+    if text.startswith(":", match.end()) and match.end() < end:
+        return Problem(f"`{match[0]}:` needs a value", start, end, help='write `tag:safety` or `type:"Point cloud"`')
     value = match["quoted"] if match["quoted"] is not None else match["plain"]
     return Atom(match["key"], value, match.start(), match.end())
 

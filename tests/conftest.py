@@ -1,0 +1,65 @@
+"""Fixtures that turn a project in one short text into an architecture, with the real reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from archgen.diagnostic import Diagnostic
+from archgen.link import link, merge
+from archgen.model.architecture import Architecture
+from archgen.model.interfaces import Interfaces
+from archgen.model.mapping import Type
+from archgen.schema import normalise, validate
+from archgen.syntax import yaml
+from archgen.transform import transform
+
+Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
+SHIPPED = {
+    "Laser scan": Type("Laser scan", "sensor_msgs/msg/LaserScan"),
+    "Pose": Type("Pose", "geometry_msgs/msg/Pose"),
+}
+
+
+def _link(text: str) -> tuple[Architecture, tuple[Diagnostic, ...]]:
+    document, found = yaml.parse("a.yaml", text)
+    assert document is not None, found
+    assert (validate(document), normalise(document)) == ((), ())
+    table, _ = merge([document])
+    return link(table, default_id="robot", default_title="Robot", shipped=SHIPPED, interfaces=Interfaces("jazzy"))
+
+
+@pytest.fixture
+def linked() -> Linked:
+    """Read, merge and link a text; the types `Laser scan` and `Pose` are shipped."""
+    return _link
+
+
+@pytest.fixture
+def told() -> Callable[[str], list[str]]:
+    """Give the findings of linking: `line:column rule: message (labelled places) | help`."""
+
+    def tell(text: str) -> list[str]:
+        return [_line(diagnostic) for diagnostic in _link(text)[1]]
+
+    return tell
+
+
+def _line(diagnostic: Diagnostic) -> str:
+    places = ", ".join(f"{label.span.line}:{label.span.column} {label.text}" for label in diagnostic.labels)
+    where = f"{diagnostic.span.line}:{diagnostic.span.column}"
+    labels = f" ({places})" if places else ""
+    return f"{where} {diagnostic.rule}: {diagnostic.message}{labels} | {diagnostic.help}"
+
+
+@pytest.fixture
+def derived() -> Callable[[str], Architecture]:
+    """Read, link without a finding, and derive the low level."""
+
+    def derive(text: str) -> Architecture:
+        architecture, found = _link(text)
+        assert [_line(diagnostic) for diagnostic in found] == []
+        return transform(architecture)
+
+    return derive
