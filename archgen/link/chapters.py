@@ -78,9 +78,12 @@ class Chapters:
         for chapter in self.texts.values():
             for name in shown(chapter.text):
                 clean = posixpath.normpath(posixpath.join(chapter.folder, name))
-                data = self.picture(clean)
-                if data is not None:
-                    found[clean] = data
+                stem = clean.removesuffix(".svg")
+                # A PNG beside an SVG is what programs show that know no SVG.
+                for path in (clean, f"{stem}.png") if stem != clean else (clean,):
+                    data = self.picture(path)
+                    if data is not None:
+                        found[path] = data
         return found
 
 

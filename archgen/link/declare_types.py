@@ -26,10 +26,21 @@ def declare_types(
     while True:
         name = waiting.pop() if waiting else next(names, None)
         if name is None:
-            return types
+            return _in_order(types)
         if name not in types:
             types[name] = _from_outside(name, shipped)
             waiting += _inside(types[name])
+
+
+def _in_order(types: dict[str, Type]) -> dict[str, Type]:
+    """Put the project's own first, as written, then the shipped and the unmapped ones by name: a packed file keeps this."""
+    ranks = {"project": 0, "shipped": 1, "message": 2}
+    own = [one for one in types.values() if one.origin == "project" and one.at.file]
+    rest = sorted(
+        (one for one in types.values() if one.origin != "project" or not one.at.file),
+        key=lambda one: (ranks[one.origin] or 2, one.name),
+    )
+    return {one.name: one for one in (*own, *rest)}
 
 
 def _declared(entry: Entry, below: Table) -> Type:
