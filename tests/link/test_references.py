@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.diagnostic import Diagnostic
-from archgen.link import link
+from archgen.link.declare import link
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
 from archgen.schema import normalise, validate
