@@ -7,7 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from archgen.diagnostic import Diagnostic
-from archgen.link import link, merge
+from archgen.link.declare import link
+from archgen.link.merge import merge
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
 from archgen.model.mapping import Type

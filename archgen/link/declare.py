@@ -68,6 +68,7 @@ def link(  # noqa: PLR0913 - all by name
         views=declare_rest.views(table),
         policies=declare_rest.policies(table),
         interfaces=interfaces,
+        partial=bool(lost),
         suspects=frozenset(references.suspects),  # last: complete only now
     )
     return architecture, tuple(found)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from archgen.diagnostic import Diagnostic, Label
-from archgen.model.names import Found, Named, Names
+from archgen.model.names import NOTHING, Found, Named, Names
 from archgen.source import NOWHERE, Span
 from archgen.suggest import closest
 from archgen.syntax.tree import Scalar
@@ -105,8 +105,9 @@ class References:
             help_line = "name the output that the data comes from"
             return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
         guess = self._guess_path(words, kinds)
-        meant = self.names.find(guess, kinds, component=component).one if guess else None
-        self.suspects.update([meant.id] if meant else ())
+        candidates = self.names.find(guess, kinds, component=component) if guess else NOTHING
+        self.suspects.update(name.id for name in candidates.elements)
+        meant = candidates.one
         return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:

@@ -115,7 +115,7 @@ class Selecting:
     def _word(self, word: Word, problems: list[Problem]) -> Hit:
         hit = self._atom(word.atom, problems)
         if word.to:
-            return self._between(hit, self._atom(word.to, problems), word, problems)
+            return self._between(hit, self._atom(word.to, problems))
         if word.before or word.after:
             hit = self._spread(hit, _limit(word.before), _limit(word.after))
         return self._both_levels(hit)
@@ -137,7 +137,7 @@ class Selecting:
         starts = (reader for output in hit.outputs for reader in self.readers.get(output, ()))
         return graph.reach(self.components.after, starts, None if steps is None else steps - 1)
 
-    def _between(self, first: Hit, last: Hit, word: Word, problems: list[Problem]) -> Hit:
+    def _between(self, first: Hit, last: Hit) -> Hit:
         """Give all ways from one to the other: what the first feeds of what feeds the last."""
         named = (*first.named, *last.named)
         if first.of_nodes and last.of_nodes:
@@ -151,9 +151,6 @@ class Selecting:
             if first.outputs and way:
                 way |= first.components
             hit = Hit(frozenset(way), frozenset(), named)
-        if word.to and not way and all(end.components or end.nodes for end in (first, last)):
-            message = f"nothing leads from `{word.atom.value}` to `{word.to.value}`"
-            problems.append(Problem(message, word.atom.start, word.to.end, "warning"))
         return self._both_levels(hit)
 
     def _both_levels(self, hit: Hit) -> Hit:
@@ -167,13 +164,13 @@ class Selecting:
         if atom.key is not None:
             hit = by_key(self.architecture, atom.key, atom.value, self.findings)
             if not hit.components and not hit.nodes:
-                message = f"`{atom.key}:{atom.value}` selects nothing"
+                message = f"nothing has `{atom.key}:{atom.value}`"
                 problems.append(Problem(message, atom.start, atom.end, "warning"))
             return hit
         if "*" in atom.value:
             hit = self._hit(self._matching(atom.value))
             if not hit.named:
-                problems.append(Problem(f"`{atom.value}` selects nothing", atom.start, atom.end, "warning"))
+                problems.append(Problem(f"nothing fits `{atom.value}`", atom.start, atom.end, "warning"))
             return hit
         return self._path(atom, problems)
 

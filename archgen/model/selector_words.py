@@ -138,7 +138,7 @@ def _reserved(text: str, start: int, end: int) -> Problem | None:
         if text[position] == '"':
             quoted = not quoted
         elif text[position] == "," and not quoted:
-            return Problem("`,` is reserved", position, position + 1, help="separate words by blanks")
+            return Problem("`,` is reserved; words are separated by blanks", position, position + 1)
     if quoted:
         return Problem("the quote is not closed", start, end, help='write `type:"Point cloud"`')
     return None

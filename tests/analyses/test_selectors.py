@@ -39,7 +39,7 @@ def test_what_was_found_is_known_only_later() -> None:
 
 def test_a_policy_is_judged_like_a_view() -> None:
     assert _found('policies: {p: {forbid: {from: camera, to: "x,y"}}}') == [
-        "6:44-47 error[wrong-selector] in the selector of the policy `p`: `,` is reserved; words are separated by blanks"
+        "6:45-46 error[wrong-selector] in the selector of the policy `p`: `,` is reserved; words are separated by blanks"
     ]
 
 

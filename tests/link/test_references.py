@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.diagnostic import Diagnostic
-from archgen.link import link
+from archgen.link.declare import link
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
 from archgen.schema import normalise, validate
@@ -153,10 +153,11 @@ def test_what_a_file_that_could_not_be_read_may_declare_is_not_called_unknown() 
     assert document is not None
     assert (validate(document), normalise(document)) == ((), ())
     root = document.root
-    found = link(
+    architecture, found = link(
         root, default_id="r", default_title="R", shipped={}, interfaces=Interfaces(), lost=frozenset({"radar"})
-    )[1]
+    )
     assert found == ()
+    assert architecture.partial
 
 
 NODES = """
