@@ -13,6 +13,7 @@ from archgen.emit.site import pictures as drawing
 from archgen.emit.site.blocks import Writer
 from archgen.emit.site.chapters import ChapterFiles, Chapters
 from archgen.emit.site.links import Links, collect, here
+from archgen.emit.site.markup import clean
 from archgen.emit.site.navigation import Navigation, navigation
 from archgen.emit.tree import FileTree, tree
 from archgen.views.shapes import Page, Paragraph
@@ -47,7 +48,7 @@ def write(  # noqa: PLR0913 - what a site is made of
         path = links.files[page.path]
         writer = Writer(here(path, links), pictures, chapters)
         frame = _frame(page, writer, way, notices)
-        found.append((path, template.render(frame, title=title, revision=revision).encode()))
+        found.append((path, template.render(frame, title=clean(title), revision=clean(revision)).encode()))
     return tree((*found, *chapters.files.items()))
 
 
@@ -55,13 +56,14 @@ def _frame(page: Page, writer: Writer, way: Navigation, notices: Sequence[Paragr
     """Give what the template puts on a page."""
     place = writer.here
     return {
-        "page": page,
+        "heading": clean(page.title),
+        "lead": clean(page.lead),
         "root": place.root,
         "start": place.root + way.start,
-        "crumbs": way.crumbs(page, place.root),
+        "crumbs": [(clean(text), href) for text, href in way.crumbs(page, place.root)],
         "navigation": way.html(page, place.root),
         "notices": [writer.paragraph(notice) for notice in notices],
-        "contents": [(section.title, place.id(section.anchor)) for section in page.section.sections],
+        "contents": [(clean(section.title), place.id(section.anchor)) for section in page.section.sections],
         "content": writer.content(page.section),
     }
 
@@ -75,15 +77,12 @@ def _template(folder: Path) -> Template:
     """Compile the frame once for all pages and all runs of a process."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    from archgen.emit.site.markup import clean
-
     environment = Environment(
         loader=FileSystemLoader(folder / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        finalize=lambda value: clean(value) if type(value) is str else value,
     )
     return environment.get_template("page.html.j2")
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 from html import unescape
 from urllib.parse import unquote
 
@@ -24,7 +25,7 @@ _UNUSED = re.compile(r'\s(?:xmlns(?::\w+)?|role|aria-\w+)="[^"]*"')
 _LINK = re.compile(r"<a\b([^>]*)>|</a>")
 _TARGET = re.compile(r'(?:xlink:)?href="([^"]*)"')
 _TIP = re.compile(r'xlink:title="([^"]*)"')
-_ID = re.compile(r'(?<=<g|<a)\sid="[^"]*"|(?<=<svg)\sid="[^"]*"')
+_ID = re.compile(r'<(g|a|svg) id="[^"]*"')
 _SIZE = re.compile(r'\s(width|height)="([0-9.]+)(?:pt|px)?"')
 
 
@@ -39,7 +40,7 @@ def inline(svg: bytes, href: Href, name: str) -> str:
     Ids go: several pictures may stand on one page, and nothing refers to them.
     """
     text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
-    text = _links(_ID.sub("", text), href)
+    text = _links(_ID.sub(r"<\1", text), href)
     return _SVG.sub(lambda found: f'<svg{_kept(found[1])} role="group" aria-label="{name}">', text, count=1).strip()
 
 
@@ -86,6 +87,7 @@ def style_embedded() -> str:
     return f"@media screen {{\n{chosen}@media (prefers-color-scheme: dark) {{\n{system}}}\n}}\n"
 
 
+@cache
 def style_alone(root: str) -> str:
     """Give the style of a picture's own file: the font that it was laid out with, and the dark colours."""
     faces = "".join(

@@ -47,7 +47,7 @@ def write(
     rendered = [(str(path), str(text)) for path, text in answer["files"]]
     try:
         found = [*_assets(backend), *((path, text.encode()) for path, text in rendered)]
-    except _AssetError as error:
+    except (_AssetError, OSError) as error:
         return None, (_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
     paths = safe_paths(path for path, _ in found)
     return tree((paths[path], data) for path, data in found), ()
@@ -59,7 +59,7 @@ class _AssetError(Exception):
 
 def _ask(request: Mapping[str, Any], limits: Limits) -> Mapping[str, Any]:
     """Run the worker; it answers, or dies of one of its limits."""
-    command = [sys.executable, "-I", "-c", _START, str(_ROOT)]
+    command = [sys.executable, "-I", "-B", "-c", _START, str(_ROOT)]
     try:
         done = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
             command, input=json.dumps(request).encode(), capture_output=True, timeout=limits.waiting, check=False

@@ -243,6 +243,16 @@ def test_a_picture_is_what_its_bytes_are() -> None:
     assert [path for path in tree.files if path.startswith("pictures/")] == ["pictures/docs/b.svg"]
 
 
+def test_characters_that_html_forbids_are_shown_as_such() -> None:
+    odd = "a\x00b\x1b\ud800c"
+    sections = tuple(Section(name, odd, ()) for name in ("d", "e"))
+    child = Page("c.html", "c", odd, odd, Section("c", odd, (), sections), ((odd, "page:index"),), odd)
+    files = tree_of(page(title=odd), child, title=odd).files
+    for path in ("index.html", "c.html"):
+        assert not set("\x00\x1b") & set(files[path].decode())
+    assert files["c.html"].decode().count("a\ufffdb\ufffd\ufffdc") == 11
+
+
 HOSTILE = "</title><script>alert(1)</script>\"' {{7*7}} <img src=x onerror=alert(1)>"
 
 
