@@ -103,7 +103,16 @@ def said_by_nu(folder: Path) -> list[str]:
     jar = needed(JUDGES / "vnu-jar/build/dist/vnu.jar", "the Nu checker (`npm ci` in tests/judges)")
     pages = [str(path) for path in sorted(folder.rglob("*.html"))]
     assert len(pages) > 350
-    command = [java, "-Xss4m", "-jar", jar, "--format", "json", *pages]
+    command = [
+        java,
+        "-Xss4m",
+        "-jar",
+        jar,
+        "--no-langdetect",
+        "--format",
+        "json",
+        *pages,
+    ]  # the language it would guess from ids
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
     return [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in json.loads(done.stderr)["messages"]]
 
