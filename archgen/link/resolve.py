@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from archgen.diagnostic import Diagnostic
 from archgen.link import reading
 from archgen.link.outline import Outline
 from archgen.link.references import References
@@ -15,6 +16,10 @@ from archgen.model.names import Named
 from archgen.syntax.tree import Entry, Scalar
 
 _SOURCES = ("group", "component", "output")
+MAX_PAIRS = 500_000
+"""How many pairs of output and input references may make. 10,000 components with 23,000 connections make 30,000; only
+many references to large groups make more, and then their number grows with its square.
+"""
 
 
 @dataclass(slots=True)
@@ -26,6 +31,7 @@ class Wiring:
     types: Mapping[str, Type]
     connections: list[Connection] = field(default_factory=list)
     edges: list[Edge] = field(default_factory=list)
+    _full: bool = False
     _brought: dict[str, tuple[Output, ...]] = field(default_factory=dict)
 
     def input(self, component: str, entry: Entry) -> Input:
@@ -58,8 +64,23 @@ class Wiring:
         target = self.references.follow(written, _SOURCES, component, component)
         if target is None:
             return None
-        outputs = tuple(self._outputs(target, component))
+        outputs = () if self._full else tuple(self._outputs(target, component))
+        if len(self.edges) + len(outputs) > MAX_PAIRS:
+            self._too_many(written, component)
+            outputs = ()
         return Connection(complete, written.text, target.kind, target.id, outputs, written.at)  # type: ignore[arg-type]
+
+    def _too_many(self, written: Scalar, component: str) -> None:
+        """Report it once: what follows brings nothing either."""
+        if not self._full:
+            self._full = True
+            message = (
+                f"up to here references make more than {MAX_PAIRS:,} pairs of output and input; the rest is left out"
+            )
+            help_line = "name single outputs or components where whole groups are named"
+            self.references.found.append(
+                Diagnostic("too-large", message, written.at, help=help_line, element=component)
+            )
 
     def _outputs(self, target: Named, reader: str) -> Iterator[str]:
         """Name what a reference stands for: one output, or all that carry messages, except the reader's own."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.diagnostic import Diagnostic
+from archgen.link import resolve
 from archgen.link.declare import link
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
@@ -142,6 +143,21 @@ def test_of_very_many_candidates_the_first_are_listed_and_the_rest_counted(told:
     groups = "".join(f"  g{n}: {{components: {{camera: }}}}\n" for n in range(30))
     (line,) = told(f"groups:\n{groups}  z: {{components: {{reader: {{inputs: {{i: camera}}}}}}}}\n")
     assert "`g7.camera` or 22 more (" in line
+
+
+def test_references_that_make_too_many_pairs_are_told_and_bring_nothing(
+    linked: Linked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(resolve, "MAX_PAIRS", 10)
+    components = "".join(f"      c{n}: {{inputs: {{i: g}}, outputs: {{o: T}}}}\n" for n in range(5))
+    architecture, (only,) = linked(f"groups:\n  g:\n    components:\n{components}")
+    assert (only.rule, only.span.line, only.help) == (
+        "too-large",
+        6,
+        "name single outputs or components where whole groups are named",
+    )
+    assert len(architecture.edges) == 8
+    assert all(port.connections for port in architecture.inputs.values())
 
 
 def test_what_an_unresolved_reference_most_likely_meant_is_a_suspect(linked: Linked) -> None:
