@@ -252,11 +252,34 @@ def _site(checked: Checked, made: _Made, pictures: Mapping[str, Picture]) -> tre
 
 def _picture_files(pictures: Mapping[str, Picture], forms: Sequence[str]) -> tree.FileTree:
     found = [
-        (f"{name}.{form}", picture.dot.encode() if form == "dot" else getattr(picture, form))
+        (f"{name}.{form}", _picture_file(picture, form, pictures))
         for name, picture in pictures.items()
         for form in forms
     ]
     return tree.tree((path, data) for path, data in found if data is not None)
+
+
+def _picture_file(picture: Picture, form: str, others: Mapping[str, Picture]) -> bytes | None:
+    """Give a picture's file; the links of an SVG lead to the other pictures of the folder."""
+    from archgen.emit.site import pictures
+
+    if form == "dot":
+        return picture.dot.encode()
+    data: bytes | None = getattr(picture, form)
+    if form != "svg" or data is None:
+        return data
+    up = "../" * picture.id.count("/")
+
+    def href(anchor: str) -> str | None:
+        kind, _, name = anchor.partition(":")
+        at = f"{_FOLDERS.get(kind, kind)}/{name}"
+        return f"{up}{at}.svg" if at in others and at != picture.id else None
+
+    return pictures.alone(data, href)
+
+
+_FOLDERS = {"group": "groups", "component": "components", "view": "views"}
+"""Where the picture of an element lies, by the sort of element."""
 
 
 def _packed(checked: Checked) -> str:

@@ -80,7 +80,7 @@ groups:
     ]
 
 
-def test_types_are_the_projects_then_shipped_then_messages_then_unmapped(linked: Linked) -> None:
+def test_types_are_the_projects_then_shipped_then_the_rest_by_name(linked: Linked) -> None:
     architecture, found = linked("""
 groups:
   g:
@@ -96,11 +96,11 @@ types:
     assert [(t.name, t.message, t.origin) for t in architecture.types.values()] == [
         ("Laser scan", "my_msgs/msg/Scan", "project"),
         ("Plan on request", "my_msgs/srv/Plan", "project"),
-        ("Goal", None, "project"),
-        ("Route", None, "project"),
         ("Pose", "geometry_msgs/msg/Pose", "shipped"),
-        ("sensor_msgs/msg/Image", "sensor_msgs/msg/Image", "message"),
+        ("Goal", None, "project"),
         ("Nothing known", None, "project"),
+        ("Route", None, "project"),
+        ("sensor_msgs/msg/Image", "sensor_msgs/msg/Image", "message"),
     ]
     assert architecture.types["Plan on request"].message_at.line == 10
 

@@ -44,10 +44,12 @@ def inline(svg: bytes, href: Href, name: str) -> str:
     return _SVG.sub(lambda found: f'<svg{_kept(found[1])} role="group" aria-label="{name}">', text, count=1).strip()
 
 
-def alone(svg: bytes, href: Href, style: str) -> bytes:
-    """Make the file for a picture: as drawn, with its links and with a style that knows light and dark."""
+def alone(svg: bytes, href: Href, style: str = "") -> bytes:
+    """Make the file for a picture: as drawn, with its links and, where one is given, a style."""
     text = _HEAD.sub('<?xml version="1.0" encoding="UTF-8"?>\n', svg.decode("utf-8"), count=1)
     text = _links(_COMMENT.sub("", text), href)
+    if not style:
+        return text.encode()
     return _ROOT.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
 
 
