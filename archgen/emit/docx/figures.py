@@ -15,6 +15,7 @@ _EMU = 12700
 _TYPE = 9.0
 """Type size of the pictures that archgen draws."""
 _LEGIBLE = 6.5
+_LEGIBLE_TURNED = 5.5
 _SVG = "{96DAC541-7B7A-43D3-8B79-37D633B846F1}"
 _DRAWING = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"
 _CAPTION_ROOM = 60.0
@@ -72,15 +73,18 @@ def note(draft: Draft, text: str, sheet: Sheet | None) -> Piece:
 
 
 def fitting(draft: Draft, width: float, height: float) -> tuple[Sheet | None, float]:
-    """Choose the sheet for a picture with small type, and its scale: the first on which it can be read, else the one on which it is largest."""
+    """Choose the sheet for a picture, and its scale: the usual one while its type can be read there, else a turned one,
+    else the large one on which it is largest (few printers have such paper, so less must do on the turned one).
+    """
     sheets = draft.sheets
     best: tuple[Sheet | None, float] = (None, _scale(sheets.base, width, height))
-    for sheet in (sheets.wide, *sheets.large):
-        if best[1] * _TYPE >= _LEGIBLE:
+    for enough, others in ((_LEGIBLE, (sheets.wide,)), (_LEGIBLE_TURNED, sheets.large)):
+        if best[1] * _TYPE >= enough:
             break
-        scale = _scale(sheet, width, height)
-        if scale > best[1] * _BARELY:
-            best = (sheet, scale)
+        for sheet in others:
+            scale = _scale(sheet, width, height)
+            if scale > best[1] * _BARELY:
+                best = (sheet, scale)
     return best
 
 

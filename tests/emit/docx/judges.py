@@ -13,7 +13,9 @@ _VALIDATOR = Path(__file__).parents[2] / "judges" / "node_modules" / ".bin" / "o
 
 def validated(path: Path) -> list[dict[str, Any]]:
     """Give what Microsoft's validator says against a .docx."""
-    assert _VALIDATOR.exists(), "Microsoft's validator is missing: run `npm ci` in tests/judges (it needs Node.js)"
+    assert _VALIDATOR.exists(), (
+        "Microsoft's validator is missing: run `npm install --prefix tests/judges --no-package-lock` (it needs Node.js)"
+    )
     result = subprocess.run(  # noqa: S603 - a judge of our own choice
         [_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=120
     )

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from archgen.emit.docx import write
+from archgen.emit.picture import Picture
 from archgen.views.shapes import Column, Figure, Markdown, Outline, Paragraph, Section, Table, Text
 from tests.emit.docx import inspection, judges, sample
 
@@ -167,3 +168,27 @@ def test_a_row_that_others_refer_to_has_a_bookmark() -> None:
         r"<w:hyperlink w:anchor=\"_ag\w+\"[^>]*><w:r><w:rPr><w:rStyle w:val=\"Hyperlink\"/></w:rPr><w:t [^>]*>see R-12",
         document(data),
     )
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "paper", "type_size"),
+    [
+        (300, 100, "A4", 9.0),
+        (600, 300, "A4", 6.8),
+        (700, 300, "A4 turned", 9.0),
+        (1100, 200, "A4 turned", 5.7),
+        (1400, 1000, "A3 turned", 5.8),
+        (600, 1800, "A3", 4.9),
+        (200, 900, "A4", 6.4),
+    ],
+)
+def test_a_picture_gets_the_paper_on_which_it_can_be_read(
+    width: int, height: int, paper: str, type_size: float
+) -> None:
+    picture = Picture("p", width, height, png=sample.png(2, 2))
+    outline = Outline("T", sections=(Section("a", "A", (Figure("f", "p", "Picture", "alt"),)),))
+    xml = document(write(outline, {"p": picture}, chapter_files=sample.FILES.get)[0])
+    papers = {"11906": "A4", "16838": "A4 turned" if 'w:w="16838" w:h="11906"' in xml else "A3", "23812": "A3 turned"}
+    assert papers[re.findall(r'<w:pgSz w:w="(\d+)"', xml)[-1]] == paper
+    shown = int(re.findall(r'<wp:extent cx="(\d+)"', xml)[0]) / 12700
+    assert round(9 * shown / width, 1) == type_size
