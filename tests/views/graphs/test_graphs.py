@@ -1,0 +1,352 @@
+"""The graphs of an architecture: which there are, and what each shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from archgen.diagnostic import Diagnostic, Severity
+from archgen.model.architecture import Architecture, Edge, ProjectInfo, View
+from archgen.model.component import Component, Connection, Group, Input, Layout, Output
+from archgen.model.deployment import Container, Host, Link
+from archgen.model.mapping import Type
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.selector import Selection
+from archgen.source import NOWHERE
+from archgen.views.graphs import all_graphs, component, components, group, hosts, implementation, overview, ros
+from archgen.views.graphs.folding import ARROWS, BOXES, fold
+from archgen.views.graphs.selected import functional
+from archgen.views.index import Index, index
+from archgen.views.shapes import Arrow, Box, Cluster, Graph
+from tests.architectures import generated, robot, topics
+
+
+def make(groups: str, wires: str, types: str = "") -> Architecture:
+    """Build an architecture from `g: a b, h: c`, `g.a.x > h.c.y` and `Type of x = pkg/srv/Name`."""
+    parts = {name.strip(): members.split() for name, members in (each.split(":") for each in groups.split(","))}
+    pairs = [tuple(end.strip() for end in wire.split(">")) for wire in wires.split("|") if wire.strip()]
+    inputs: dict[str, Input] = {}
+    outputs: dict[str, Output] = {}
+    for name, _ in pairs:
+        if name.count(".") == 2:
+            outputs[name] = Output(name, name.split(".")[2], name.rsplit(".", 1)[0], type=f"T {name.split('.')[2]}")
+    for source, target in pairs:
+        carried = tuple(name for name in outputs if name == source or name.startswith(f"{source}."))
+        kind = ("group", "component", "output")[source.count(".")]
+        connection = Connection(target, source, kind, source, carried)  # type: ignore[arg-type]
+        known = inputs.get(target, Input(target, target.split(".")[2], target.rsplit(".", 1)[0]))
+        inputs[target] = replace(known, connections=(*known.connections, connection))
+    made = {
+        f"{g}.{c}": Component(
+            f"{g}.{c}",
+            c,
+            g,
+            c.capitalize(),
+            inputs={port.name: port for port in inputs.values() if port.component == f"{g}.{c}"},
+            outputs={port.name: port for port in outputs.values() if port.component == f"{g}.{c}"},
+        )
+        for g, members in parts.items()
+        for c in members
+    }
+    mapped = dict(each.split(" = ") for each in types.split("|") if each)
+    connections = tuple(one for port in inputs.values() for one in port.connections)
+    return Architecture(
+        ProjectInfo("p", "Project"),
+        groups={
+            g: Group(g, g.capitalize(), components={c: made[f"{g}.{c}"] for c in members})
+            for g, members in parts.items()
+        },
+        components=made,
+        inputs=inputs,
+        outputs=outputs,
+        connections=connections,
+        edges=tuple(Edge(output, one.input) for one in connections for output in one.outputs),
+        types={name: Type(name, message) for name, message in mapped.items()},
+    )
+
+
+def text(graph: Graph) -> list[str]:
+    """Write a graph's arrows as `tail > head: label [style] (count)`."""
+    return [
+        f"{a.tail} > {a.head}"
+        + (f": {a.label}" if a.label else "")
+        + (f" [{a.style}]" if a.style != "data" else "")
+        + (f" ({a.count})" if a.count > 1 else "")
+        for a in graph.arrows
+    ]
+
+
+SMALL = make("g: a b, h: c d", "g.a.x > g.b.i | g.a.x > h.c.i | g.b.y > h.c.j | h.c.z > g.a.k | g > h.d.all")
+
+
+def view(architecture: Architecture = SMALL) -> Index:
+    return index(architecture)
+
+
+def test_the_ids_of_all_graphs() -> None:
+    assert [graph.id for graph in all_graphs(SMALL)] == [
+        "overview",
+        "components",
+        "groups/g",
+        "groups/h",
+        "components/g.a",
+        "components/g.b",
+        "components/h.c",
+        "components/h.d",
+    ]
+
+
+def test_overview_counts_connections_between_groups() -> None:
+    graph = overview(view())
+    assert text(graph) == ["g > h (3)", "h > g"]
+    assert graph.asked == 4
+    assert graph.alt == "2 groups of components. Most runs from G to H (3); H to G (1)."
+
+
+def test_components_draws_inside_one_by_one_and_between_merged() -> None:
+    graph = components(view())
+    assert text(graph) == ["g.a > g.b", "g > h (3)", "h > g"]
+    assert graph.arrows[1].flows == (
+        "A · x (T x) → C · i",
+        "B · y (T y) → C · j",
+        "A · x (T x) → D · all",
+    )
+
+
+def test_a_group_has_neighbours_left_and_right() -> None:
+    graph = group(view(), "g")
+    assert text(graph) == [
+        "g.a > g.b: T x",
+        "g.a > >h.c: T x",
+        "g.b > >h.c: T y",
+        "<h.c > g.a: T z",
+        "g.a > >h.d: T x",
+        "g.b > >h.d: T y",
+    ]
+    sides = {box.id: (box.side, box.emphasis) for box in graph.boxes}
+    assert sides["<h.c"] == ("left", "neighbour")
+    assert sides[">h.c"] == ("right", "neighbour")
+    assert sides["g.a"] == (None, "normal")
+    assert graph.alt == "G with 2 components and 1 flow among them. It is fed by H. It is read by H."
+
+
+def test_many_flows_fold_the_neighbours() -> None:
+    wires = "|".join(f"h.c{at}.x > g.a.i{at}" for at in range(46))
+    graph = group(index(make("g: a, h: " + " ".join(f"c{at}" for at in range(46)), wires)), "g")
+    assert text(graph) == ["<h > g.a: 46 (46)"]
+    assert graph.boxes[1].lines == ("C0", "C1", "C2", "C3", "C4", "and 41 more")
+    assert graph.notes == ("Neighbours are folded: a box for each group, with the number of flows.",)
+
+
+def test_a_component_has_its_ports() -> None:
+    graph = component(view(), "h.c")
+    assert graph.boxes[0].ports_in == (("in i", "i"), ("in j", "j"))
+    assert graph.boxes[0].ports_out == (("out z", "z"),)
+    assert text(graph) == ["<g.a > h.c: T x", "<g.b > h.c: T y", "h.c > >g.a: T z"]
+    assert [(arrow.tail_port, arrow.head_port) for arrow in graph.arrows] == [
+        (None, "in i"),
+        (None, "in j"),
+        ("out z", None),
+    ]
+
+
+def test_a_whole_group_as_source_has_an_asterisk() -> None:
+    graph = component(view(), "h.d")
+    assert text(graph) == ["<g > h.d: * 2 types"]
+    assert graph.boxes[1].lines == ("whole group", "T x", "T y")
+    assert "star" in graph.legend
+
+
+def test_one_type_is_written_once_for_an_output() -> None:
+    architecture = make("g: a b c", "g.a.x > g.b.i | g.a.x > g.c.i")
+    assert text(component(view(architecture), "g.a")) == ["g.a > >g.b: T x", "g.a > >g.c"]
+
+
+@pytest.mark.parametrize("kind", ["srv", "action"])
+def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
+    style = {"srv": "service", "action": "action"}[kind]
+    architecture = make("g: server client", "g.server.ask > g.client.call", f"T ask = pkg/{kind}/Ask")
+    assert text(components(view(architecture))) == [f"g.client > g.server [{style}]"]
+    assert text(component(view(architecture), "g.client")) == [f"g.client > <g.server: T ask [{style}]"]
+    assert text(component(view(architecture), "g.server")) == [f">g.client > g.server: T ask [{style}]"]
+
+
+def test_partners_outside_are_dashed() -> None:
+    port = Input("g.a.voice", "voice", "g.a", external="The user speaks", physical=True, type="Speech")
+    architecture = make("g: a", "")
+    changed = replace(architecture.components["g.a"], inputs={"voice": port})
+    graph = component(view(replace(architecture, components={"g.a": changed})), "g.a")
+    assert text(graph) == ["external left g.a.voice > g.a: Speech [physical]"]
+    assert (graph.boxes[1].title, graph.boxes[1].style, graph.boxes[1].side) == ("The user speaks", "physical", "left")
+
+
+def low(*uses: tuple[str, str, str], **qos: Qos) -> Architecture:
+    """Build a low level from (node, use, topic); node `n_a` implements `g.a`."""
+    architecture = make("g: a b c", "")
+    names = dict.fromkeys(node for node, _, _ in uses)
+    flows = {"serves": "service", "calls": "service"}
+    points = tuple(
+        Endpoint(node, use, topic, flows.get(use, "topic"), None, None, "pkg/msg/M", qos=qos.get(topic[1:], Qos()))  # type: ignore[arg-type]
+        for node, use, topic in uses
+    )
+    nodes = {name: Node(name, name, (f"g.{name[2:]}",), name=name) for name in names}
+    return replace(architecture, nodes=nodes, endpoints=points, topics=topics(points))
+
+
+def test_implementation_puts_topics_between_nodes() -> None:
+    architecture = low(
+        ("n_a", "publishes", "/x"),
+        ("n_b", "subscribes", "/x"),
+        ("n_b", "publishes", "/y"),
+        ("n_c", "subscribes", "/y"),
+        ("n_b", "calls", "/ask"),
+        ("n_c", "serves", "/ask"),
+        x=Qos(reliability="best_effort", durability="transient_local", written=True),
+    )
+    graph = implementation(view(architecture), "g.b")
+    assert text(graph) == [
+        "<n_a > topic /x",
+        "topic /x > n_b",
+        "n_b > topic /y",
+        "topic /y > >n_c",
+        "n_b > topic /ask [service]",
+        "topic /ask > >n_c [service]",
+    ]
+    boxes = {box.id: box for box in graph.boxes}
+    assert boxes["topic /x"].lines == ("pkg/msg/M", "best effort, latched")
+    assert boxes["topic /ask"].style == "service"
+    assert boxes["n_b"].emphasis == "subject"
+
+
+def test_implementation_folds_a_neighbour_all_of_whose_topics_are_taken() -> None:
+    uses = [("n_a", "publishes", f"/x{at}") for at in range(3)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
+    graph = implementation(view(low(*uses)), "g.b")
+    assert text(graph) == ["<n_a > topic * n_a", "topic * n_a > n_b"]
+    assert graph.boxes[1].title == "* all topics of n_a"
+    assert graph.boxes[1].lines == ("/x0", "/x1", "/x2")
+    assert "star" in graph.legend
+
+
+def test_implementation_draws_each_topic_where_one_is_not_taken() -> None:
+    uses = [("n_a", "publishes", f"/x{at}") for at in range(4)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
+    assert len(implementation(view(low(*uses)), "g.b").arrows) == 6
+
+
+def test_ros_frames_nodes_by_group() -> None:
+    architecture = low(("n_a", "publishes", "/x"), ("n_b", "subscribes", "/x"), ("n_a", "publishes", "/x"))
+    alone = Node("alone", "Alone", namespace="/tools")
+    graph = ros(view(replace(architecture, nodes={**architecture.nodes, "alone": alone})))
+    assert text(graph) == ["n_a > n_b"]
+    assert [(box.id, box.cluster) for box in graph.boxes] == [
+        ("n_a", "g"),
+        ("n_b", "g"),
+        ("alone", "namespace /tools"),
+    ]
+
+
+def test_hosts_have_containers_nodes_and_links() -> None:
+    nodes = {
+        "a": Node("a", "A", host="pc"),
+        "b": Node("b", "B", host="pc", container="box"),
+        "c": Node("c", "C"),
+    }
+    architecture = replace(
+        make("g: a", ""),
+        nodes=nodes,
+        hosts={name: Host(name, name.upper(), 4) for name in ("pc", "arm", "eye")},
+        containers={"box": Container("box", "Box", "pc", 1)},
+        links={"can": Link("can", "CAN", ("pc", "arm")), "lan": Link("lan", "LAN", ("pc", "arm", "eye"))},
+    )
+    graph = hosts(view(architecture))
+    assert text(graph) == [
+        "pc > arm: CAN [link]",
+        "link lan > pc [link]",
+        "link lan > arm [link]",
+        "link lan > eye [link]",
+    ]
+    assert [(box.id, box.cluster, box.lines) for box in graph.boxes] == [
+        ("container box", "pc", ("1 thread", "b")),
+        ("a", "pc", ()),
+        ("no host", None, ()),
+        ("link lan", None, ()),
+    ]
+
+
+def test_findings_are_badges() -> None:
+    found = [
+        Diagnostic(rule, "text", NOWHERE, severity, element="g.a")
+        for rule, severity in (("one", Severity.NOTE), ("two", Severity.ERROR))
+    ]
+    badges = {box.id: box.badge for graph in all_graphs(SMALL, findings=found)[1:2] for box in graph.boxes}
+    assert badges == {"g.a": "error", "g.b": None, "h.c": None, "h.d": None}
+
+
+def test_a_selection_has_grey_neighbours() -> None:
+    graph = functional(view(), "overview", "Part", {"g.b"})
+    assert text(graph) == ["g.a > g.b: T x", "g.b > h.c: T y", "g.b > h.d: T y"]
+    assert [(box.id, box.emphasis) for box in graph.boxes] == [
+        ("g.b", "normal"),
+        ("g.a", "neighbour"),
+        ("h.c", "neighbour"),
+        ("h.d", "neighbour"),
+    ]
+
+
+def test_the_graphs_of_a_selection() -> None:
+    chosen = Selection(frozenset({"g.b"}), frozenset())
+    assert [graph.id for graph in all_graphs(SMALL, chosen)] == ["overview", "groups/g", "components/g.b"]
+
+
+def test_a_large_selection_has_frames_and_folded_neighbours() -> None:
+    architecture = robot(1)
+    chosen = {name for name in architecture.components if name.startswith(("human_state.", "robot_action_planner."))}
+    graph = functional(index(architecture), "views/x", "X", chosen)
+    assert graph.layout == "two-step"
+    assert [cluster.id for cluster in graph.clusters] == ["human_state", "robot_action_planner"]
+    assert all(box.cluster for box in graph.boxes if box.emphasis == "normal")
+    grey = {box.id for box in graph.boxes if box.emphasis == "neighbour"}
+    assert {"around sensors_and_user_input", "around robot_state"} <= grey
+    assert sum(arrow.count for arrow in graph.arrows) == graph.asked
+
+
+def test_views_choose_level_colour_and_direction() -> None:
+    owned = {name: replace(each, owner=f"p{at}") for at, (name, each) in enumerate(SMALL.components.items())}
+    asked = View("v", "V", "g", colour="owner", layout=Layout("top-bottom"))
+    graph = all_graphs(replace(SMALL, components=owned, views={"v": asked}))[-1]
+    assert (graph.id, graph.direction) == ("views/v", "top-bottom")
+    assert graph.legend_colours == ((0, "owner: p0"), (1, "owner: p1"))
+    assert [box.colour for box in graph.boxes if box.emphasis == "normal"] == [0, 1]
+
+
+def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
+    architecture = generated(3, 8, 20, 150)
+    whole = components(index(architecture))
+    assert len(whole.boxes) > BOXES
+    graph = fold(whole)
+    assert len(graph.boxes) <= BOXES
+    assert len(graph.arrows) <= ARROWS
+    folded = [box for box in graph.boxes if box.style == "fold"]
+    left = max(sum(box.cluster == cluster.id for box in graph.boxes) for cluster in graph.clusters)
+    assert all(int(box.lines[0].split()[0]) >= left for box in folded)
+    hidden = whole.asked - graph.asked
+    said = f"{len(folded)} groups folded, because the picture would be larger than 70 boxes and 160 arrows; "
+    assert graph.notes == (said + f"{hidden} flows inside not drawn.",)
+
+
+def test_what_cannot_be_folded_says_so() -> None:
+    boxes = tuple(Box(f"b{at}", "B") for at in range(71))
+    assert fold(Graph("x", "X", "flow", boxes, ())).notes == (
+        "This picture is larger than 70 boxes and 160 arrows: select a part to see it well.",
+    )
+
+
+def test_folding_keeps_frames_that_fit() -> None:
+    boxes = tuple(Box(f"b{at}", "B", cluster="big" if at < 70 else "small") for at in range(72))
+    arrows = (Arrow("1", "b0", "b1"), Arrow("2", "b1", "b71"), Arrow("3", "b2", "b71"), Arrow("4", "b70", "b71"))
+    graph = fold(
+        Graph("x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4)
+    )
+    assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
+    assert text(graph) == ["big > b71 (2)", "b70 > b71"]
+    assert graph.boxes[-1].lines == ("70 inside", "1 flow inside")
