@@ -231,7 +231,10 @@ def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: A
 
     outline = report_view.report(made.view, made.edition)
     data = template.read_bytes() if template else None
-    document, warnings = docx.write(outline, pictures, template=data, chapter_files=checked.chapters.picture)
+    try:
+        document, warnings = docx.write(outline, pictures, template=data, chapter_files=checked.chapters.picture)
+    except docx.TemplateError as error:
+        raise tree.OutputError(str(error)) from None
     for warning in warnings:
         ask.warn(warning)
     return document

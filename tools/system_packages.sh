@@ -20,6 +20,7 @@ if [ "$what" = test ]; then
     need_command chromium chromium
     need_command soffice libreoffice-writer-nogui
     need_command pdftoppm poppler-utils
+    fc-list 2>/dev/null | grep -q Carlito || missing="$missing fontconfig fonts-crosextra-carlito"
     need_command java default-jre-headless
     need_command npm npm
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"

@@ -7,7 +7,7 @@ from importlib import metadata
 
 from archgen import __version__
 
-_LIBRARIES = ("click", "jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "python-docx", "pyyaml")
+_LIBRARIES = ("click", "jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "pyyaml")
 
 
 def version() -> str:
