@@ -6,10 +6,9 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from archgen.pipeline import ALL_RULES
-
 from archgen.findings import explain
 from archgen.findings.rules import by_name
+from archgen.pipeline import ALL_RULES
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
 

@@ -50,14 +50,6 @@ def _hues(graph: Graph) -> int:
     return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
-_FEW = 2
-
-
-def _hues(graph: Graph) -> int:
-    hues = {box.colour for box in graph.boxes} | {arrow.colour for arrow in graph.arrows}
-    return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
-
-
 def picture(
     graph: Graph, links: Mapping[str, str], formats: Sequence[str], *, simple: bool = False, warning: str | None = None
 ) -> Picture:
