@@ -14,7 +14,7 @@ from archgen.views.shapes import Figure
 _EMU = 12700
 _TYPE = 9.0
 """Type size of the pictures that archgen draws."""
-_LEGIBLE = 6.5
+_LEGIBLE = 5.8
 _LEGIBLE_TURNED = 5.5
 _SVG = "{96DAC541-7B7A-43D3-8B79-37D633B846F1}"
 _DRAWING = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"

@@ -174,8 +174,8 @@ def test_a_row_that_others_refer_to_has_a_bookmark() -> None:
     ("width", "height", "paper", "type_size"),
     [
         (300, 100, "A4", 9.0),
-        (600, 300, "A4", 6.8),
-        (700, 300, "A4 turned", 9.0),
+        (690, 300, "A4", 5.9),
+        (710, 300, "A4 turned", 8.9),
         (1100, 200, "A4 turned", 5.7),
         (1400, 1000, "A3 turned", 5.8),
         (600, 1800, "A3", 4.9),

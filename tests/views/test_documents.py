@@ -1,0 +1,185 @@
+"""Report, pages, record and cards of the case study: what they must never get wrong, whatever the project."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+
+from archgen import pipeline, resources
+from archgen.outputs import Ask, select, view
+from archgen.pipeline import Checked
+from archgen.views import card, listed, pages, record, report, statistics
+from archgen.views.graphs import all_graphs
+from archgen.views.index import Index
+from archgen.views.report import Edition
+from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Paragraph, Section, Table, Text
+
+WITHOUT_PAGE = {"link", "chain", "view", "policy"}
+"""Sorts of element that stand in a table or a chapter of their own and have no page."""
+
+
+@pytest.fixture(scope="module")
+def checked() -> Checked:
+    return pipeline.check(resources.path("example_ramcip"))
+
+
+@pytest.fixture(scope="module")
+def whole(checked: Checked) -> Index:
+    return view(checked, Ask())
+
+
+def _edition(checked: Checked, index: Index) -> Edition:
+    graphs = {graph.id: graph for graph in all_graphs(index.architecture)}
+    return Edition(
+        revision="r",
+        chapters=checked.chapters.order,
+        texts=checked.chapters.texts,
+        graphs=graphs,
+        statistics=statistics.statistics(index.architecture),
+    )
+
+
+def _sections(sections: tuple[Section, ...]) -> Iterator[Section]:
+    for section in sections:
+        yield section
+        yield from _sections(section.sections)
+
+
+def _runs(block: Block) -> Iterator[Inlines]:
+    if isinstance(block, Paragraph):
+        yield block.inlines
+    elif isinstance(block, Bullets):
+        yield from block.items
+    elif isinstance(block, Facts):
+        yield from (value for _, value in block.rows)
+    elif isinstance(block, Table):
+        yield from (cell for row in block.rows for cell in row)
+
+
+def _texts(sections: tuple[Section, ...]) -> Iterator[Text]:
+    for section in _sections(sections):
+        for block in section.blocks:
+            for run in _runs(block):
+                yield from run
+
+
+def _anchors(sections: tuple[Section, ...]) -> list[str]:
+    found = []
+    for section in _sections(sections):
+        found.append(section.anchor)
+        found += [block.anchor for block in section.blocks if isinstance(block, (Table, Figure))]
+    return found
+
+
+def test_the_report_names_every_place_once(checked: Checked, whole: Index) -> None:
+    outline = report.report(whole, _edition(checked, whole))
+    twice = [anchor for anchor, count in Counter(_anchors(outline.sections)).items() if count > 1]
+    assert twice == []
+
+
+def test_the_report_keeps_the_order_of_chapters(checked: Checked, whole: Index) -> None:
+    outline = report.report(whole, _edition(checked, whole))
+    titles = [section.title for section in outline.sections]
+    assert titles[:4] == ["Introduction", "Scenarios", "Overview", "Cognitive Reasoning"]
+    assert titles[-5:] == ["Type mapping", "Connections", "Requirements trace", "Open points", "Statistics"]
+    assert [section.appendix for section in outline.sections] == [False] * (len(titles) - 5) + [True] * 5
+
+
+def test_every_table_is_whole(checked: Checked, whole: Index) -> None:
+    edition = _edition(checked, whole)
+    sections = report.report(whole, edition).sections + tuple(page.section for page in pages.pages(whole, edition))
+    tables = [block for section in _sections(sections) for block in section.blocks if isinstance(block, Table)]
+    assert len(tables) > 300
+    for table in tables:
+        assert table.rows, table.anchor
+        assert {len(row) for row in table.rows} == {len(table.columns)}, table.anchor
+
+
+def test_every_mention_leads_to_a_page(checked: Checked, whole: Index) -> None:
+    made = pages.pages(whole, _edition(checked, whole))
+    known = {page.anchor for page in made}
+    assert len(known) == len(made) == len({page.path for page in made})
+    refs = {text.ref for text in _texts(tuple(page.section for page in made)) if text.ref}
+    assert {ref for ref in refs - known if ref.split(":")[0] not in WITHOUT_PAGE} == set()
+
+
+def test_every_element_has_a_page(checked: Checked, whole: Index) -> None:
+    known = {page.anchor for page in pages.pages(whole, _edition(checked, whole))}
+    found = whole.architecture
+    wanted = {f"group:{name}" for name in found.groups} | {f"component:{name}" for name in found.components}
+    wanted |= {f"node:{name}" for name in found.nodes} | {f"topic:{topic.name}" for topic in found.topics.values()}
+    wanted |= {f"type:{name}" for name in found.types} | {f"requirement:{name}" for name in found.requirements}
+    wanted |= {f"host:{name}" for name in found.hosts} | {f"partner:{name}" for name in found.partners}
+    assert wanted - known == set()
+
+
+def test_a_part_holds_nothing_of_others(checked: Checked) -> None:
+    selection, problems = select(checked, "owner:certh")
+    assert problems == ()
+    part = view(checked, Ask(selection, "owner:certh"))
+    outline = report.report(part, _edition(checked, part))
+    shown = {
+        anchor.removeprefix("component:") for anchor in _anchors(outline.sections) if anchor.startswith("component:")
+    }
+    owners = {checked.architecture.components[name].owner for name in shown}
+    assert owners == {"certh"}
+    assert shown == selection.components
+    assert "owner:certh" in [text.text for notice in outline.notices for text in notice.inlines]
+
+
+def test_the_functional_level_speaks_of_no_node(checked: Checked, whole: Index) -> None:
+    edition = Edition(level="functional", chapters=checked.chapters.order)
+    anchors = _anchors(report.report(whole, edition).sections)
+    assert [anchor for anchor in anchors if anchor.split(":")[0] in {"node", "implementation"}] == []
+    assert {page.kind for page in pages.pages(whole, edition)}.isdisjoint({"nodes", "topics", "services", "actions"})
+
+
+def test_the_record_follows_its_schema(whole: Index) -> None:
+    schema = json.loads(resources.path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
+    data = json.loads(json.dumps(record.record(whole)))
+    assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
+    assert len(data["components"]) == 61
+    assert data["edges"][0].keys() >= {"from", "to", "type", "message"}
+
+
+@pytest.mark.parametrize("sort", ["components", "nodes", "groups", "connections", "edges", "topics", "types", "hosts"])
+def test_lists_are_whole(whole: Index, sort: str) -> None:
+    columns, rows = listed.listed(whole, sort)
+    assert rows
+    assert {len(row) for row in rows} == {len(columns)}
+
+
+def test_all_connections_are_listed(whole: Index) -> None:
+    _, rows = listed.listed(whole, "connections")
+    assert len(rows) == 138
+
+
+def test_every_element_has_a_card(whole: Index) -> None:
+    for name, sorts in card.ids(whole).items():
+        for sort in sorts:
+            made = card.card(whole, sort, name)
+            assert made.id == name
+            assert all(value for _, value in made.facts)
+
+
+def test_a_card_is_found_by_the_end_of_an_id_or_by_a_title(whole: Index) -> None:
+    wanted = [("component", "environment_state.object_recognition")]
+    assert card.matches(whole, "object_recognition") == wanted
+    assert card.matches(whole, "environment_state.object_recognition") == wanted
+    assert card.matches(whole, "object Recognition") == wanted
+    assert card.matches(whole, "nothing of this name") == []
+
+
+def test_empty_projects_have_all_documents(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text("archgen: 1\n", encoding="utf-8")
+    empty = pipeline.check(tmp_path)
+    index = view(empty, Ask())
+    edition = _edition(empty, index)
+    assert report.report(index, edition).title
+    assert next(page.path for page in pages.pages(index, edition)) == "index.html"
+    assert record.record(index)["components"] == {}
