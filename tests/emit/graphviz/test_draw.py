@@ -62,6 +62,7 @@ def test_ids_and_classes_are_hooks_for_a_page() -> None:
     assert re.search(r'<g id="groups-human_state-n0" class="node box \w+ normal', svg)
     assert re.search(r'<g id="groups-human_state-e0" class="edge arrow \w+"', svg)
     assert "<title>Human State</title>" in svg
+    assert [text for text in re.findall(r"<text[^>]*>", svg) if ' fill="#' not in text] == []
     colours = set(re.findall(r'(?:fill|stroke)="(#[0-9a-f]{6})"', svg))
     rules = dark_rules("")
     assert [colour for colour in sorted(colours) if colour not in rules] == []
