@@ -164,6 +164,11 @@ def test_a_damaged_cache_is_not_taken(damage: bytes, tmp_path: Path) -> None:
     assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path) == first
 
 
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path / "file" / "cache")["tiny"].svg
+
+
 def test_old_pictures_go(tmp_path: Path) -> None:
     for at in range(150):
         (tmp_path / f"{at}.picture").write_bytes(b"")
