@@ -40,6 +40,7 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
 
     `cache` is a folder that archgen may fill. Raises MissingGraphviz where nothing can be drawn and not all is cached.
     """
+    cache = cache if cache and _writable(cache) else None
     wanted = tuple(form for form in FORMATS if form in formats)
     linked = [dict(_links(graph, link)) for graph in graphs]
     keys = [store.key(graph, links) for graph, links in zip(graphs, linked, strict=True)]
@@ -52,6 +53,16 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
         if cache:
             _keep(cache, {keys[at]: found[at] for at in missing}, wanted, len(graphs))
     return {graph.id: found[at] for at, graph in enumerate(graphs)}
+
+
+def _writable(folder: Path) -> bool:
+    """Say whether a folder can hold the cache; without one, pictures are just drawn each time."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
 
 
 def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, progress: Progress | None) -> tuple[Picture, ...]:

@@ -17,18 +17,23 @@ def crossings(lines: Sequence[Line]) -> int:
     paths = [_segments(line) for line in lines]
     spans = [_span(path) for path in paths]
     return sum(
-        _cross(one, other)
-        for at, first in enumerate(paths)
+        _count(paths[at], paths[to], spans[at], spans[to])
+        for at in range(len(paths))
         for to in range(at + 1, len(paths))
         if meet(spans[at], spans[to])
-        for one in first
-        for other in paths[to]
     )
 
 
+def _count(one: Sequence[Segment], other: Sequence[Segment], span: Rectangle, other_span: Rectangle) -> int:
+    """Count the crossings of two lines; only what lies near the other one is looked at."""
+    near = [each for each in one if meet(_span([each]), other_span)]
+    rest = [each for each in other if meet(_span([each]), span)] if near else []
+    return sum(_cross(each, to) for each in near for to in rest)
+
+
 def _span(path: Sequence[Segment]) -> Rectangle:
-    points = [point for segment in path for point in segment] or [(0.0, 0.0)]
-    xs, ys = zip(*points, strict=True)
+    xs = [point[0] for segment in path for point in segment] or [0.0]
+    ys = [point[1] for segment in path for point in segment] or [0.0]
     return (min(xs), min(ys), max(xs), max(ys))
 
 
@@ -38,7 +43,7 @@ def length(line: Line) -> float:
 
 
 def _segments(line: Line) -> list[Segment]:
-    return list(pairwise(along(line, 4)))
+    return list(pairwise(along(line, 3)))
 
 
 def _cross(one: Segment, other: Segment) -> bool:

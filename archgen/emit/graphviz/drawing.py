@@ -46,7 +46,7 @@ _FEW = 2
 
 
 def _hues(graph: Graph) -> int:
-    hues = {box.colour for box in graph.boxes} | {arrow.colour for arrow in graph.arrows}
+    hues = {box.colour for box in graph.boxes if box.emphasis != "neighbour"} | {arrow.colour for arrow in graph.arrows}
     return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 

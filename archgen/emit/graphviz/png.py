@@ -18,8 +18,8 @@ _WRITERS = ("png:cairo", "png")
 _QUICK = "png:cairo:gd"
 _PAGE = 700.0
 """As wide as pictures stand on a landscape page, in points."""
-_STEPS = (4, 2, 4)
-"""How far gd's palette may be off, in red, green and blue."""
+_MASKS = (0xFC, 0xFE, 0xFC)
+"""Which bits of red, green and blue gd's palette keeps."""
 
 
 def png(scene: Scene, name: str, look: Attributes, *, quick: bool) -> bytes:
@@ -44,15 +44,15 @@ def snapped(data: bytes) -> bytes:
         return data
     (length,) = struct.unpack(">I", data[at - 4 : at])
     entries = data[at + 4 : at + 4 + length]
-    exact = b"".join(_nearest(entries[each : each + 3]) for each in range(0, length, 3))
+    triples = (entries[each : each + 3] for each in range(0, length, 3))
+    exact = b"".join(_OURS.get(triple, triple) for triple in triples)
     check = struct.pack(">I", zlib.crc32(b"PLTE" + exact))
     return data[: at + 4] + exact + check + data[at + 8 + length :]
 
 
-def _nearest(entry: bytes) -> bytes:
-    best = min(_OURS, key=lambda colour: sum(abs(one - other) for one, other in zip(entry, colour, strict=True)))
-    near = all(abs(one - other) <= step for one, other, step in zip(entry, best, _STEPS, strict=True))
-    return best if near else entry
+def _coarse(colour: bytes) -> bytes:
+    """Leave out the bits that gd's palette leaves out."""
+    return bytes(part & mask for part, mask in zip(colour, _MASKS, strict=True))
 
 
-_OURS = tuple(bytes.fromhex(light[1:]) for light, _ in palette.dark_pairs())
+_OURS = {_coarse(colour): colour for colour in (bytes.fromhex(light[1:]) for light, _ in palette.dark_pairs())}

@@ -7,6 +7,7 @@ least flows backwards. The drawing that is best to read on a page is taken: larg
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,7 +19,7 @@ from archgen.emit.graphviz.engine import written
 from archgen.emit.graphviz.inner import inside
 from archgen.emit.graphviz.labels import declutter
 from archgen.emit.graphviz.order import Rows, folds, forward
-from archgen.emit.graphviz.scene import Frame, Part, Scene, placed
+from archgen.emit.graphviz.scene import Frame, Line, Part, Scene, placed
 from archgen.views.shapes import Arrow
 
 _PAGE = (1105.0, 728.0)
@@ -50,8 +51,7 @@ def two_step(drafted: Draft) -> Scene:
     order = forward(tuple(tiles), _weights(ends))
     tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
     tries = [_composed(drafted, tiles, ends, statements) for statements in _candidates(drafted, tiles, ends)]
-    best = min(tries, key=lambda scene: _cost(scene, ends))
-    return declutter(on_lines(drafted, best))
+    return declutter(on_lines(drafted, _best(tries, ends)))
 
 
 def _weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
@@ -173,16 +173,28 @@ def _composed(
     return Scene(lines=outer.lines, parts=anchors).joined(*scenes)
 
 
-def _cost(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
-    """Judge a drawing: how small it gets on the page, how many arrows cross, how far they run, how many run back."""
-    left, bottom, right, top = scene.bounds()
-    size = _scale(right - left, top - bottom)
+def _best(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) -> Scene:
+    """Choose the drawing that is best to read. Crossings are dear to count: only where they can still decide."""
     edges = {f"{at}" for at, _ in arrows}
-    outer = [line for line in scene.lines if line.edge in edges]
-    missing = len(arrows) - len(outer)
-    back = _backward(scene, arrows)
+    outer = [[line for line in scene.lines if line.edge in edges] for scene in scenes]
+    costs = [_cost(scene, lines, arrows) for scene, lines in zip(scenes, outer, strict=True)]
+    best, least = scenes[0], math.inf
+    for at in sorted(range(len(scenes)), key=lambda each: costs[each]):
+        if costs[at] >= least:
+            break
+        left, bottom, right, top = scenes[at].bounds()
+        cost = costs[at] + 0.02 * _scale(right - left, top - bottom) * crossings(outer[at])
+        if cost < least:
+            best, least = scenes[at], cost
+    return best
+
+
+def _cost(scene: Scene, outer: Sequence[Line], arrows: Sequence[tuple[int, Arrow]]) -> float:
+    """Judge a drawing but for crossings: how small it gets on the page, how far arrows run, how many run back."""
+    left, bottom, right, top = scene.bounds()
     run = sum(length(line) for line in outer) / (sum(_PAGE) * max(len(outer), 1))
-    return size * (1 + 0.02 * crossings(outer) + 0.5 * run + 0.6 * back) + 10 * missing
+    missing = len(arrows) - len(outer)
+    return _scale(right - left, top - bottom) * (1 + 0.5 * run + 0.6 * _backward(scene, arrows)) + 10 * missing
 
 
 def _backward(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:

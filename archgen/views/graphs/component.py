@@ -43,7 +43,7 @@ def component(view: Index, name: str) -> Graph:
         alt=_alt(item, [box.title for box in neighbours.values()]),
         asked=sum(arrow.count for arrow in arrows),
     )
-    return with_legend(graph, *(["star"] if any(arrow.label.startswith("*") for arrow in arrows) else []))
+    return with_legend(graph)
 
 
 def _subject(view: Index, item: Component) -> Box:

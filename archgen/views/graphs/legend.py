@@ -22,6 +22,7 @@ def _keys(graph: Graph) -> list[str]:
     strokes = {kind for arrow in graph.arrows for kind in _strokes(arrow)}
     keys = [key for key in ("subject", "neighbour", *_BOXES, *_BOX_OF_FLOW.values(), *_STATUSES) if key in kinds]
     keys += [key for key in _ARROWS if key in strokes]
+    keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
     wide = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
     return [*keys, "width", "count"] if wide else keys
 

@@ -62,6 +62,7 @@ def test_ids_and_classes_are_hooks_for_a_page() -> None:
     assert re.search(r'<g id="groups-human_state-n0" class="node box \w+ normal', svg)
     assert re.search(r'<g id="groups-human_state-e0" class="edge arrow \w+"', svg)
     assert "<title>Human State</title>" in svg
+    assert [text for text in re.findall(r"<text[^>]*>", svg) if ' fill="#' not in text] == []
     colours = set(re.findall(r'(?:fill|stroke)="(#[0-9a-f]{6})"', svg))
     rules = dark_rules("")
     assert [colour for colour in sorted(colours) if colour not in rules] == []
@@ -161,6 +162,11 @@ def test_a_damaged_cache_is_not_taken(damage: bytes, tmp_path: Path) -> None:
     whole = kept.read_bytes()
     kept.write_bytes(whole[:-9] + b"malicious")
     assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path) == first
+
+
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path / "file" / "cache")["tiny"].svg
 
 
 def test_old_pictures_go(tmp_path: Path) -> None:

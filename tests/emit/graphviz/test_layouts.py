@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from itertools import combinations
+from pathlib import Path
 
 import pytest
 
+from archgen import pipeline
 from archgen.emit.graphviz import drawing
 from archgen.emit.graphviz.scene import Scene, meet, meetings
 from archgen.model.architecture import View
@@ -47,6 +49,15 @@ def _names(scene: Scene) -> set[str]:
 def test_pictures_of_a_robot(graph: Graph) -> None:
     assert faults(graph) == []
     assert sum(arrow.count for arrow in graph.arrows) == graph.asked
+
+
+@pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
+def test_pictures_of_the_examples(example: str) -> None:
+    checked = pipeline.check(Path(__file__).parents[3] / example)
+    graphs = all_graphs(checked.architecture, findings=checked.findings)
+    wrong = [(graph.id, faults(graph)) for graph in graphs]
+    assert [each for each in wrong if each[1]] == []
+    assert [graph.id for graph in graphs if graph.asked != sum(arrow.count for arrow in graph.arrows)] == []
 
 
 @pytest.mark.parametrize("seed", range(20))
