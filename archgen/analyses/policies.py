@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.model.mapping import flow_of
-from archgen.model.selector import select
+from archgen.model.selector import Selecting
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -74,9 +74,10 @@ def forbidden_flow(architecture: Architecture) -> Iterator[Diagnostic]:
         policies:
           no_shortcut: {title: Reasoning never drives motors itself, forbid: {from: reasoning, to: "role:sink"}}
     """
+    selecting = Selecting(architecture)
     for policy in architecture.policies.values():
-        tails, _ = select(policy.forbid_from, architecture) if policy.forbid_from else (None, ())
-        heads, _ = select(policy.forbid_to, architecture) if policy.forbid_to else (None, ())
+        tails, _ = selecting.select(policy.forbid_from) if policy.forbid_from else (None, ())
+        heads, _ = selecting.select(policy.forbid_to) if policy.forbid_to else (None, ())
         if tails and heads:
             for connection, outputs in forbidden_flows(architecture, tails.components, heads.components):
                 yield _forbidden(architecture, policy, connection, outputs)

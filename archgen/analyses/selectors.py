@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostic import Diagnostic, Severity
-from archgen.model.selector import select
+from archgen.model.selector import Selecting
 from archgen.model.selector_words import Problem
 
 if TYPE_CHECKING:
@@ -65,8 +65,9 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
         views:
           eyes: {show: "camera+1"}
     """
+    selecting = Selecting(architecture)
     for written in written_selectors(architecture):
-        for problem in select(written.text, architecture)[1]:
+        for problem in selecting.select(written.text)[1]:
             if problem.severity == "warning" and "finding:" in written.text[problem.start : problem.end]:
                 continue  # what is found stands only behind the rules
             yield Diagnostic(
@@ -109,10 +110,11 @@ def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
         views:
           eyes: {show: "camera..screen"}
     """
+    selecting = Selecting(architecture)
     for view in architecture.views.values():
         if not view.show or not architecture.components:
             continue
-        selection, problems = select(view.show, architecture)
+        selection, problems = selecting.select(view.show)
         if not problems and not selection.components and not selection.nodes:
             yield Diagnostic(
                 "empty-view",

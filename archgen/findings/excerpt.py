@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.findings.escape import visible, width
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 TAB = 4
 _CUT = "…"
@@ -32,14 +33,10 @@ def quote(line: str, marks: Iterable[Mark], limit: int) -> Iterator[tuple[str, M
     marks = tuple(marks)
     base = max(0, min((mark.start for mark in marks), default=0) - _LONGEST)
     line = line[base : base + 2 * _LONGEST + limit]
-    cells = _cells(line)
-    columns = [0]
-    for cell in cells:
-        columns.append(columns[-1] + width(cell))
+    cells, columns = _cells(line)
     placed = [(mark, *_place(mark, base, columns)) for mark in marks]
     left, right = _window(columns[-1], placed[0][1] if placed else 0, placed[0][2] if placed else 0, limit)
-    begin = next((i for i, column in enumerate(columns) if column >= left), len(cells))
-    end = next((i for i in range(len(cells), -1, -1) if columns[i] <= right), 0)
+    begin, end = bisect_left(columns, left), bisect_right(columns, right) - 1
     head = _CUT if begin > 0 or base else ""
     tail = _CUT if end < len(cells) else ""
     yield (head + "".join(cells[begin:end]) + tail).rstrip(), None
@@ -50,18 +47,19 @@ def quote(line: str, marks: Iterable[Mark], limit: int) -> Iterator[tuple[str, M
         yield f"{blank}{mark.sign * max(1, high - low)}{' ' + visible(mark.text) if mark.text else ''}", mark
 
 
-def _cells(line: str) -> list[str]:
-    """Give what each character of the line prints as."""
-    cells = []
-    column = 0
+def _cells(line: str) -> tuple[Sequence[str], Sequence[int]]:
+    """Give what each character of the line prints as, and the columns in which they begin; last, where the line ends."""
+    if line.isascii() and line.isprintable():  # nearly always
+        return line, range(len(line) + 1)
+    cells, columns = [], [0]
     for character in line:
-        cell = " " * (TAB - column % TAB) if character == "\t" else visible(character)
-        column += width(cell)
+        cell = " " * (TAB - columns[-1] % TAB) if character == "\t" else visible(character)
         cells.append(cell)
-    return cells
+        columns.append(columns[-1] + width(cell))
+    return cells, columns
 
 
-def _place(mark: Mark, base: int, columns: list[int]) -> tuple[int, int]:
+def _place(mark: Mark, base: int, columns: Sequence[int]) -> tuple[int, int]:
     """Give the first column of a mark and the one behind it."""
     last = len(columns) - 1
     start = columns[min(max(mark.start - base, 0), last)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 from archgen.model import quantity
 from archgen.model.component import Layout
@@ -107,6 +108,7 @@ def title(of: Table, name: str) -> str:
     return written if written is not None else " ".join(w[:1].upper() + w[1:] for w in name.split("_") if w)
 
 
+@lru_cache(4096)
 def type_name(written: str) -> str:
     """Give a type's name: Unicode NFC, blanks folded to one; a message has its full name."""
     folded = _BLANKS.sub(" ", unicodedata.normalize("NFC", written)).strip()

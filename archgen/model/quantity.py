@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 
 _NUMBER = re.compile(r"([0-9]{1,18}(?:\.[0-9]{1,18})?) ?([A-Za-z/]+)\Z", re.ASCII)
 _BYTES = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
@@ -38,6 +39,7 @@ class Quantity:
         return self.text
 
 
+@lru_cache(4096)
 def parse(text: str, dimension: str) -> Quantity | None:
     """Read `200 ms`, `0.5 kHz`, `12 kB`, `1 Gbit/s`; None where it is not a quantity of this dimension."""
     match = _NUMBER.match(text)
