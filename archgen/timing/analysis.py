@@ -1,0 +1,140 @@
+"""What follows from a system: how often things happen, how long they take, what hosts and links carry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from archgen.model.timing import Behaviour
+from archgen.source import NOWHERE, Span
+from archgen.timing.system import Arc, System
+from archgen.timing.value import UNKNOWN, Value
+
+Tier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
+"""How a response time was found (A2): declared; assuming a core of its own; any work-conserving scheduler of the host;
+fixed priorities; a single-threaded executor; several cores."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """One step of the reasoning behind a figure: a sentence, and where in the files it rests on."""
+
+    text: str
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How often an activity is activated, or an output published.
+
+    `rate` in Hz; `gap` is the largest gap between two, in ns. `inferred` is False where the rate was written.
+    `jitter` and `distance` (smallest gap), in ns, complete the event model (period 1/rate, J, d).
+    """
+
+    behaviour: Behaviour | None
+    rate: Value = UNKNOWN
+    gap: Value = UNKNOWN
+    jitter: Value = UNKNOWN
+    distance: Value = UNKNOWN
+    inferred: bool = True
+    reasons: tuple[Reason, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """From activation to completion, in ns: best and worst, and how the worst was found."""
+
+    best: Value
+    worst: Value
+    tier: Tier
+    reasons: tuple[Reason, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class HostLoad:
+    """A host's utilisation (of all its cores together), and the bounds that it is held against."""
+
+    utilisation: Value
+    cores: int
+    rate_monotonic_bound: Value
+    verdict: Literal["schedulable", "overload", "undecided", "unknown"]
+    parts: tuple[tuple[str, Value], ...]
+    """What each activity adds."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkLoad:
+    """Traffic on a link in B/s, its share of the bandwidth, the burst in B and the longest queueing in ns."""
+
+    traffic: Value
+    share: Value
+    burst: Value
+    queueing: Value
+    parts: tuple[tuple[str, Value], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TopicLoad:
+    """What is published on a topic, and delivered to all of its readers, in B/s; message size in B."""
+
+    size: Value
+    published: Value
+    delivered: Value
+
+
+@dataclass(frozen=True, slots=True)
+class EdgePace:
+    """How producer and consumer of an arc fit: share of samples lost, reads of each sample, beats, queue needed (A6)."""
+
+    arc: Arc
+    loss: Value
+    rereads: Value
+    beat: Value
+    queue: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """Everything but the chains, for one system. Keys are activity ids, `activity output-key` pairs, host and link ids."""
+
+    system: System
+    paces: Mapping[str, Pace]
+    outputs: Mapping[tuple[str, str], Pace]
+    responses: Mapping[str, Response]
+    hosts: Mapping[str, HostLoad]
+    links: Mapping[str, LinkLoad]
+    topics: Mapping[str, TopicLoad]
+    edges: tuple[EdgePace, ...]
+    endless: tuple[tuple[str, ...], ...] = ()
+    """Rings of any-of triggers: an event that enters circulates for ever."""
+    deadlocked: tuple[tuple[str, ...], ...] = ()
+    """Rings of all-of triggers without a first token: they never fire."""
+    diverged: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """One step of a chain's bound, in ns: waiting for the sample to be read, response, link."""
+
+    activity: str
+    sampling: Value
+    response: Value
+    link: Value
+    why: str
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ChainResult:
+    """A chain: its safe bound (reaction time = data age), best case, the reduced figures, and the verdict; in ns."""
+
+    id: str
+    through: tuple[str, ...]
+    terms: tuple[Term, ...]
+    bound: Value
+    best: Value
+    reduced_reaction: Value
+    reduced_age: Value
+    deadline: Value | None
+    verdict: Literal["met", "missed", "open"]

@@ -1,0 +1,94 @@
+"""What timing works on: activities (what a node does for one component) and the arcs along which data passes.
+
+All durations are integers of one unit for each project (`System.tick`, in ns): exact, and fast. None is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal
+
+from archgen.model.node import Flow
+from archgen.model.timing import Behaviour
+from archgen.source import NOWHERE, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """One activity: a node's id, or `node.component` (the component's own name) where a node implements several.
+
+    `behaviour` is as written or inferred (`behaviour_inferred`), None where neither is possible. `triggers` are the
+    keys of the inputs that fire it (see `Arc.input`), `mode` whether any or all of them; the other inputs are sampled.
+    Durations are in ticks. `wcet`, `bcet` None are unknown; `response` is a declared worst case.
+    """
+
+    id: str
+    node: str
+    component: str | None
+    behaviour: Behaviour | None
+    behaviour_inferred: bool = False
+    period: int | None = None
+    """Written, as a period or as a rate."""
+    jitter: int = 0
+    wcet: int | None = None
+    bcet: int | None = None
+    response: int | None = None
+    mode: Literal["any", "all"] = "any"
+    triggers: tuple[str, ...] = ()
+    every: int = 1
+    throttle: int = 0
+    conditional: frozenset[str] = frozenset()
+    """Output keys that are not published at each activation."""
+    max_gaps: Mapping[str, int] = field(default_factory=dict)
+    """The largest gap that is promised of a conditional output."""
+    calls: Mapping[str, Fraction] = field(default_factory=dict)
+    """Calls for each activation, by input key; one where nothing is written."""
+    priority: int | None = None
+    host: str | None = None
+    container: str | None = None
+    core: int | None = None
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """Data from one activity's output to another's input (a topic), or between a client and a server (both ways).
+
+    `output` and `input` are keys: a port's complete id, or the absolute name of an internal topic. For a service or
+    action there is one arc from client to server (`role` request: it triggers the server), and one back (`answer`: it
+    triggers nobody). `best`, `worst` are the link's latency in ticks: 0 on one host, None where it is not known.
+    `depth` is the reader's queue, `size` the message's bytes.
+    """
+
+    source: str
+    output: str
+    target: str
+    input: str
+    topic: str
+    flow: Flow
+    role: Literal["data", "request", "answer"] = "data"
+    link: str | None = None
+    best: int | None = 0
+    worst: int | None = 0
+    depth: int | None = None
+    size: int | None = None
+    optional: bool = False
+    at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """All activities and arcs of an architecture. `tick` is the unit of all durations, in ns."""
+
+    tick: Fraction
+    activities: Mapping[str, Activity]
+    arcs: tuple[Arc, ...]
+    into: Mapping[str, tuple[Arc, ...]]
+    out_of: Mapping[str, tuple[Arc, ...]]
+    external: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Inputs of each activity that are fed from outside of the architecture."""
