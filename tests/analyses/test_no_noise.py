@@ -106,6 +106,18 @@ nodes:
     ]
 
 
+def test_a_message_that_is_none_is_told_once() -> None:
+    text = """\
+groups: {g: {components: {c: {outputs: {o: {type: Image, external: Out}, p: {type: Plan, external: Out}}}}}}
+nodes: {n: g.c}
+types:
+  Image: sensor_msgs.msg.Image
+  Plan: {message: std_msgs/msg/Plan, status: plannd}
+ros: {distro: noetic}
+"""
+    assert _rules(text) == ["4 wrong-value", "5 wrong-value"]
+
+
 def test_a_project_of_stubs_has_no_errors_and_says_only_what_is_open() -> None:
     text = "groups: {sensing: {components: {camera: Camera, lidar: Laser}}, speech: Speech}\n"
     found = check_text(text)
@@ -140,6 +152,7 @@ policies: {no: {forbid: {from: screen, to: camera}}}
         ("  R-1: Sees", "  R 1: Sees", ["3 wrong-value"]),
         ("{image: {topic", "{imag: {topic", ["11 unknown-reference"]),  # not the topic's reader as well
         ("camera.image}", "camera.imag}", ["9 unknown-reference"]),
+        ("qos: sensor_data}}}\nviews", "qos: sensordata}}}\nviews", ["12 wrong-value"]),
         ("R-1: Sees", "R-1: {title: Sees}, x", ["3 syntax-error"]),
     ],
 )

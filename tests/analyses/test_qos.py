@@ -12,6 +12,7 @@ from archgen.diagnostic import Diagnostic, Severity
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.quantity import Quantity, parse
+from archgen.pipeline import check_text
 from archgen.source import Span
 
 _VALUES: dict[str, tuple[str | None, ...]] = {
