@@ -131,6 +131,7 @@ def judge(loaded: Loaded) -> Checked:
         shipped=shipped.shipped_types(loaded.distro),
         interfaces=known,
         lost=loaded.lost,
+        partial=loaded.partial,
     )
     architecture = transform.transform(linked)
     read, chapter_findings = chapters.chapters(merged, loaded.root)

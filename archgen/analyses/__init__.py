@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.analyses import (
     chains,
     connectivity,
+    distribution,
     mapping,
     messages,
     names,
@@ -39,6 +40,7 @@ _JUDGES = (
     *names.RULES,
     *qos.RULES,
     *requirements.RULES,
+    *distribution.RULES,
     *messages.RULES,
     *type_mapping.RULES,
     *chains.RULES,

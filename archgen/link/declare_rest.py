@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostic import Diagnostic
+from archgen.diagnostic import Diagnostic, Label
 from archgen.link import reading
 from archgen.link.references import References
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
-from archgen.syntax.tree import Entry, Table
+from archgen.model.quantity import Quantity
+from archgen.syntax.tree import Table
 
 _WAY = ("node", "component", "output")
 
@@ -99,24 +100,36 @@ def links(root: Table, references: References) -> dict[str, Link]:
     found: dict[str, Link] = {}
     for name, entry, below in reading.elements(root, "links"):
         latency = reading.table(below, "latency")
-        _needs(below, entry, "link", references)
+        best, worst = (reading.measure(latency, key, "duration") for key in ("best", "worst"))
+        if best and worst and best.value > worst.value:
+            references.found.append(_best_above_worst(latency, name, best, worst))
         found[name] = Link(
             id=name,
             title=reading.title(below, name),
             connects=tuple(_known(below, "connects", "host", references, name)),
             bandwidth=reading.measure(below, "bandwidth", "bandwidth"),
-            best=reading.measure(latency, "best", "duration"),
-            worst=reading.measure(latency, "worst", "duration"),
+            best=best,
+            worst=worst,
             at=entry.at,
         )
     return found
+
+
+def _best_above_worst(latency: Table, link: str, best: Quantity, worst: Quantity) -> Diagnostic:
+    return Diagnostic(
+        "wrong-value",
+        f"the best latency ({best}) is above the worst ({worst})",
+        reading.place(latency, "best"),
+        labels=(Label(reading.place(latency, "worst"), "the worst"),),
+        help="exchange them",
+        element=link,
+    )
 
 
 def chains(root: Table, references: References) -> dict[str, Chain]:
     """Declare the chains of effect."""
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
-        _needs(below, entry, "chain", references)
         through = (
             (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
         )
@@ -167,17 +180,3 @@ def policies(root: Table) -> dict[str, Policy]:
                 to_at=reading.place(forbid, "to"),
             )
     return found
-
-
-_NEEDS = {
-    "link": ("connects", "write the hosts that it joins, such as `connects: [onboard_pc, arm_pc]`"),
-    "chain": ("through", "write its elements in order, such as `through: [camera, planner, drive]`"),
-}
-"""What an element of each kind cannot do without, once all slices are together."""
-
-
-def _needs(below: Table, entry: Entry, kind: str, references: References) -> None:
-    key, cure = _NEEDS[kind]
-    if below.get(key) is None:
-        message = f"the {kind} `{entry.key}` has no `{key}`"
-        references.found.append(Diagnostic("missing-key", message, entry.at, help=cure, element=entry.key))

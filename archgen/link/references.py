@@ -67,7 +67,7 @@ class References:
 
     def is_lost(self, words: str) -> bool:
         """Tell whether a file that could not be read may declare what a path names."""
-        return words.rpartition(".")[2] in self.lost
+        return not self.lost.isdisjoint(words.split(".")[-2:])
 
     def guess(self, word: str, pool: Collection[str]) -> str | None:
         """Guess what a word stands for, as long as guessing is cheap enough."""

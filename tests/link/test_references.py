@@ -173,7 +173,7 @@ def test_what_a_file_that_could_not_be_read_may_declare_is_not_called_unknown() 
         root, default_id="r", default_title="R", shipped={}, interfaces=Interfaces(), lost=frozenset({"radar"})
     )
     assert found == ()
-    assert architecture.partial
+    assert (architecture.lost, architecture.partial) == (frozenset({"radar"}), False)
 
 
 NODES = """
