@@ -24,7 +24,7 @@ groups:
         functionality: Measures the distance to what stands around the robot.
         role: source
         inputs:
-          surroundings: {{external: Walls, furniture and people, medium: physical}}
+          surroundings: {{external: "Walls, furniture and people", medium: physical}}
         outputs:
           scan: Laser scan
   driving:
