@@ -23,7 +23,9 @@ def archgen(
     command = [sys.executable, "-m", "archgen", *map(str, words)]
     path = os.pathsep.join(filter(None, ((env or {}).get("PYTHONPATH"), str(ROOT))))
     environment = {**os.environ, **(env or {}), "PYTHONPATH": path}
-    done = subprocess.run(command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=300)
+    done = subprocess.run(  # noqa: S603 - our own program
+        command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=300
+    )
     said = f"{done.stdout.decode()[-2000:]}\n{done.stderr.decode()[-4000:]}"
     assert done.returncode == status, f"{' '.join(command[2:])} ended with {done.returncode}:\n{said}"
     return done

@@ -123,12 +123,11 @@ def test_the_packed_file_makes_the_same_report(ramcip: Path, unpacked: Path) -> 
 
 
 def test_the_packed_file_makes_the_same_record(unpacked: Path) -> None:
-    first, second = (
+    records = []
+    for project in (RAMCIP, "ramcip.yaml"):
         archgen("pack", "--resolved", project, "-o", "resolved.yaml", cwd=unpacked)
-        and (unpacked / "resolved.yaml").read_bytes()
-        for project in (RAMCIP, "ramcip.yaml")
-    )
-    assert placeless(first).splitlines() == placeless(second).splitlines()
+        records.append((unpacked / "resolved.yaml").read_bytes())
+    assert placeless(records[0]).splitlines() == placeless(records[1]).splitlines()
 
 
 def placeless(data: bytes) -> bytes:
