@@ -82,6 +82,9 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
         raise tree.OutputError(msg, f"there are {shown}, ...")
     formats = tuple(form for form in forms if form != "dot")
     pictures = draw(tuple(chosen.values()), formats, ask)
+    if chosen and not pictures:
+        msg = "no picture could be drawn, nothing was written"
+        raise tree.OutputError(msg)
     tree.write(_picture_files(pictures, forms), target)
     return len(pictures)
 
@@ -111,7 +114,8 @@ def build(
     tree.write(_site(checked, made, pictures), target / "site")
     yield target / "site" / "index.html"
     tree.write(_picture_files(pictures, ("svg", "png")), target / "diagrams")
-    yield target / "diagrams"
+    if pictures:
+        yield target / "diagrams"
     pack(checked, target / "packed.yaml")
     yield target / "packed.yaml"
     for backend in chosen:

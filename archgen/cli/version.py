@@ -23,7 +23,7 @@ def _installed(name: str) -> str:
     except metadata.PackageNotFoundError:
         return "is not installed"
     if name == "pyyaml":
-        from archgen.syntax.yaml import FAST
+        import yaml
 
-        return found if FAST else f"{found} (without libyaml: reading is about ten times slower)"
+        return found if yaml.__with_libyaml__ else f"{found} (without libyaml: reading is about ten times slower)"
     return found
