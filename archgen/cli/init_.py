@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from archgen.cli import run
+
 SCHEMA = ".archgen/archgen.schema.json"
 
 PROJECT = """\
@@ -74,7 +76,8 @@ def command(folder: Path | None, title: str | None) -> None:
         raise click.ClickException(msg)
     for file, data in files.items():
         if file not in there:
-            tree.write_file(target / file, data)
+            with run.phrased():
+                tree.write_file(target / file, data)
             click.echo(f"wrote {target / file}")
     click.echo("Now: archgen check, then archgen build.")
 
