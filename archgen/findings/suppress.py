@@ -98,6 +98,9 @@ def suppress(
         if not found:
             yield diagnostic
     for ignore in ignores:
+        if not ignore.rules:
+            cure = "name the rule in brackets: `# archgen: ignore[unread-output] why`"
+            yield Diagnostic("unused-ignore", "this comment names no rule", ignore.at, help=cure)
         for name in dict.fromkeys(ignore.rules):
             yield from _judge(ignore, name, rules, used=broken or (ignore.at, name) in used)
 

@@ -104,11 +104,25 @@ class References:
             message = f"no {what} named `{words}`: `{inputs[0]}` is an input"
             help_line = "name the output that the data comes from"
             return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
+        if words in self.places["group"] and "group" not in kinds:
+            return self._not_a_group(written, what, element)
         guess = self._guess_path(words, kinds)
         candidates = self.names.find(guess, kinds, component=component) if guess else NOTHING
         self.suspects.update(name.id for name in candidates.elements)
         meant = candidates.one
         return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
+
+    def _not_a_group(self, written: Scalar, what: str, element: str) -> Diagnostic:
+        group, place = written.text, self.places["group"][written.text]
+        self.suspects.update(path for path in self.places["component"] if path.startswith(f"{group}."))
+        return Diagnostic(
+            "unknown-reference",
+            f"no {what} named `{group}`: it is a group",
+            written.at,
+            labels=(Label(place, "the group"),),
+            help="name its components",
+            element=element,
+        )
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
         others = [name for name in hidden if name.id not in self.implements.get(one.id, ())]

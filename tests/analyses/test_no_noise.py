@@ -148,6 +148,7 @@ policies: {no: {forbid: {from: screen, to: camera}}}
     [
         ("groups:", "grups:", ["4 unknown-key"]),  # a whole section that is not read
         ("partners:", "parters:", ["1 unknown-key"]),
+        ("implements: camera", "implements: sensing", ["11 unknown-reference"]),
         ("      camera:", "      Camera:", ["8 wrong-value"]),
         ("  R-1: Sees", "  R 1: Sees", ["3 wrong-value"]),
         ("{image: {topic", "{imag: {topic", ["11 unknown-reference"]),  # not the topic's reader as well

@@ -312,3 +312,14 @@ def test_requirements_of_components_are_kept_known_or_not(linked: Linked) -> Non
         ("R-9", True),
         ("Works in the dark", False),
     ]
+
+
+def test_a_group_where_components_are_asked_for(told: Told) -> None:
+    group = "groups: {g: {components: {c: }}}\n"
+    said = "it is a group (1:10 the group) | name its components"
+    assert told(f"{group}nodes: {{n: {{implements: g}}}}") == [
+        f"2:25 unknown-reference: no component named `g`: {said}"
+    ]
+    assert told(f"{group}chains: {{x: {{through: [g]}}}}") == [
+        f"2:24 unknown-reference: no node, component or output named `g`: {said}"
+    ]
