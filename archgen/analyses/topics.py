@@ -182,7 +182,8 @@ def _not_among_sources(architecture: Architecture, traffic: _Traffic, reader: En
     writers = traffic.writers.get((reader.name, reader.flow), [])
     if not expected or reader.name in expected or any(w.port for w in writers):
         return None  # nothing to compare, right, or another output's topic: `unnamed_source` tells
-    if not architecture.suspects.isdisjoint(traffic.sources[reader.port]):
+    meant = {name for output in traffic.sources[reader.port] for name in (output, output.rpartition(".")[0])}
+    if not architecture.suspects.isdisjoint(meant):
         return None  # what its source's node wrote of the topic was not understood, and is reported
     entry = architecture.inputs[reader.port]
     listed = " and ".join(f"`{name}`" for name in expected)

@@ -281,7 +281,12 @@ def test_a_chain_goes_through_nodes_components_and_outputs(linked: Linked, told:
 
 
 def test_a_chain_takes_no_group(told: Told) -> None:
-    assert told(CHAIN % "[g]") == ["9:17 unknown-reference: no node, component or output named `g` | None"]
+    assert told(CHAIN % "[g]") == [
+        (
+            "9:17 unknown-reference: no node, component or output named `g`: it is a group (3:3 the group)"
+            " | name its components"
+        )
+    ]
 
 
 @pytest.mark.parametrize(
