@@ -72,6 +72,7 @@ class References:
     def guess(self, word: str, pool: Collection[str]) -> str | None:
         """Guess what a word stands for, as long as guessing is cheap enough."""
         if len(pool) > self._left:
+            self._left = 0
             return None
         self._left -= len(pool)
         return closest(word, pool)
@@ -140,6 +141,8 @@ class References:
 
     def _guess_path(self, words: str, kinds: Sequence[str]) -> str | None:
         """Guess first among paths with the same last word, then among all of this length, then elsewhere by its end."""
+        if not self._left:
+            return None
         length = words.count(".") + 1
         fitting = [kind for kind in kinds if _DEPTH[kind] >= length]
         last = words.rpartition(".")[2]
