@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
-from archgen.emit import tree
+from archgen.emit import kept, tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
 from archgen.model import selector
@@ -231,14 +231,20 @@ def cache_folder() -> Path | None:
 
 
 def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: Ask, template: Path | None) -> bytes:
-    from archgen.emit import docx
-
     outline = report_view.report(made.view, made.edition)
     data = template.read_bytes() if template else None
-    try:
-        document, warnings = docx.write(outline, pictures, template=data, chapter_files=checked.chapters.picture)
-    except docx.TemplateError as error:
-        raise tree.OutputError(str(error)) from None
+
+    def write(chapter_files: kept.ChapterFiles) -> kept.Written:
+        from archgen.emit import docx
+
+        try:
+            return docx.write(outline, pictures, template=data, chapter_files=chapter_files)
+        except docx.TemplateError as error:
+            raise tree.OutputError(str(error)) from None
+
+    document, warnings = kept.report(
+        cache_folder(), outline, pictures, template=data, chapter_files=checked.chapters.picture, write=write
+    )
     for warning in warnings:
         ask.warn(warning)
     return document
