@@ -118,7 +118,7 @@ def defined(text: str, distro: str = "jazzy") -> Interfaces:
     """Read definitions of a project's own, `name: field; field`, one a line."""
     lines = [line.strip().partition(": ") for line in text.strip().splitlines()]
     held, wrong = interfaces.load(distro, (), {n: (t.replace("; ", "\n"), NOWHERE) for n, _, t in lines})
-    assert wrong == ()
+    assert [d for d in wrong if "holds itself" not in d.message] == []
     return held
 
 
