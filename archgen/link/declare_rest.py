@@ -114,6 +114,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
     """Declare the chains of effect."""
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
+        sense.no_entry(below, "through", "element", name, references.found)
         through = (
             (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
         )

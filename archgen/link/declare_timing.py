@@ -29,7 +29,7 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         jitter=reading.measure(below, "jitter", "duration"),
         wcet=reading.measure(below, "wcet", "duration"),
         bcet=reading.measure(below, "bcet", "duration"),
-        trigger=_trigger(below, ports),
+        trigger=_trigger(below, ports, found),
         every=reading.whole(below, "every"),
         throttle=reading.measure(below, "throttle", "duration"),
         outputs=dict(_outputs(below, ports, found)),
@@ -43,7 +43,7 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
     return sense.sound(timing, ports.owner, found)
 
 
-def _trigger(below: Table, ports: Ports) -> Trigger | None:
+def _trigger(below: Table, ports: Ports, found: list[Diagnostic]) -> Trigger | None:
     entry = below.entries.get("trigger")
     if entry is None:
         return None
@@ -51,19 +51,20 @@ def _trigger(below: Table, ports: Ports) -> Trigger | None:
     if type(value) is Scalar:
         return Trigger(value.text, None, value.at) if value.text in {"any", "all"} else None  # type: ignore[arg-type]
     if type(value) is Listing:
-        inputs = _inputs(below, "trigger", ports)
+        inputs = _inputs(below, "trigger", ports, found)
         return None if inputs is None else Trigger("any", inputs, value.at)
     if type(value) is Table and value.get("all") is not None:
-        inputs = _inputs(value, "all", ports)
+        inputs = _inputs(value, "all", ports, found)
         return None if inputs is None else Trigger("all", inputs, value.at)
     return None
 
 
-def _inputs(of: Table, key: str, ports: Ports) -> tuple[str, ...] | None:
-    """Resolve a list of inputs; None where nothing in it could be resolved."""
+def _inputs(of: Table, key: str, ports: Ports, found: list[Diagnostic]) -> tuple[str, ...] | None:
+    """Resolve a list of inputs; None where nothing stands in it, or nothing could be resolved."""
+    sense.no_entry(of, key, "input", ports.owner, found)
     named = [ports.follow(written.text, written.at, "input") for written in reading.scalars(of, key)]
     resolved = tuple(dict.fromkeys(port for port in named if port))
-    return resolved if resolved or not named else None
+    return resolved or None
 
 
 def _outputs(below: Table, ports: Ports, found: list[Diagnostic]) -> Iterator[tuple[str, OutputTiming]]:

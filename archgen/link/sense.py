@@ -14,7 +14,7 @@ from archgen.link import reading
 from archgen.model.quantity import Quantity
 from archgen.model.timing import Timing
 from archgen.source import Span
-from archgen.syntax.tree import Table
+from archgen.syntax.tree import Listing, Table
 
 _UNKNOWN = "leave it out where it is not known"
 
@@ -35,6 +35,13 @@ def positive(of: Table, key: str, dimension: str, element: str, found: list[Diag
         return measured
     found.append(_wrong(f"`{key}` cannot be zero", reading.place(of, key), _UNKNOWN, element))
     return None
+
+
+def no_entry(of: Table, key: str, what: str, element: str, found: list[Diagnostic]) -> None:
+    """Report a list in which nothing stands, where that says nothing."""
+    value = of.get(key)
+    if isinstance(value, Listing) and not value.items:
+        found.append(_wrong(f"`{key}` names no {what}", value.at, f"name one or more, or leave `{key}` out", element))
 
 
 def latency(of: Table, element: str, found: list[Diagnostic]) -> tuple[Quantity | None, Quantity | None]:
