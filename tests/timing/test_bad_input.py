@@ -83,14 +83,18 @@ def found(rest: str) -> list[str]:
         (
             "bcet: 9 ms, wcet: 5 ms",
             20,
-            "wrong-value: the best case execution time (`bcet`, 9 ms) is above the worst (`wcet`, 5 ms) "
-            "[the worst case 1:32] (exchange them, or leave `bcet` out)",
+            (
+                "wrong-value: the best case execution time (`bcet`, 9 ms) is above the worst (`wcet`, 5 ms) "
+                "[the worst case 1:32] (exchange them, or leave `bcet` out)"
+            ),
         ),
         (
             "period: 5 ms, rate: 3 Hz",
             34,
-            "wrong-value: `rate` and `period` are both written [the period 1:22] "
-            "(write one of them: each follows from the other)",
+            (
+                "wrong-value: `rate` and `period` are both written [the period 1:22] "
+                "(write one of them: each follows from the other)"
+            ),
         ),
     ],
 )
@@ -106,13 +110,17 @@ LEGAL = "(this is legal: correct it only where a figure or a unit is wrong)"
     [
         (
             "period: 5 ms, wcet: 9 ms",
-            "1:34 long-execution: the worst case execution time of `seer_node` (`wcet`, 9 ms) is above its period "
-            f"[its period 1:22] {LEGAL}",
+            (
+                "1:34 long-execution: the worst case execution time of `seer_node` (`wcet`, 9 ms) is above its period "
+                f"[its period 1:22] {LEGAL}"
+            ),
         ),
         (
             "rate: 100 Hz, jitter: 11 ms",
-            "1:36 large-jitter: the jitter of `seer_node` (`jitter`, 11 ms) is above its period "
-            f"[its rate 1:20] {LEGAL}",
+            (
+                "1:36 large-jitter: the jitter of `seer_node` (`jitter`, 11 ms) is above its period "
+                f"[its rate 1:20] {LEGAL}"
+            ),
         ),
     ],
 )
@@ -144,8 +152,10 @@ nodes:
         (
             "chains: {c: {through: [mover_node, camera_node], deadline: 0 ms}}",
             [
-                "warning 1:36 broken-chain: in the chain `c`, nothing leads from `mover_node` to `camera_node` "
-                "[from here 1:24] (name the connection that is missing in an input, or correct the order in `through`)",
+                (
+                    "warning 1:36 broken-chain: in the chain `c`, nothing leads from `mover_node` to `camera_node` "
+                    "[from here 1:24] (name the connection that is missing in an input, or correct the order in `through`)"
+                ),
                 f"error 1:60 wrong-value: `deadline` cannot be zero {UNKNOWN}",
             ],
         ),
@@ -169,8 +179,10 @@ nodes:
         ),
         ("containers: {k: {threads: 0}}", ["error 1:27 wrong-value: `threads` cannot be `0` (it is at least 1)"]),
         (
-            "hosts: {h: {}, i: {}}\n"
-            "links: {l: {connects: [h, i], bandwidth: 0 bit/s, latency: {best: 5 ms, worst: 2 ms}}}",
+            (
+                "hosts: {h: {}, i: {}}\n"
+                "links: {l: {connects: [h, i], bandwidth: 0 bit/s, latency: {best: 5 ms, worst: 2 ms}}}"
+            ),
             [
                 f"error 2:42 wrong-value: `bandwidth` cannot be zero {UNKNOWN}",
                 "error 2:67 wrong-value: the best latency (5 ms) is above the worst (2 ms) [the worst 2:80] (exchange them)",
