@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostic import Diagnostic, Label
-from archgen.link import reading
+from archgen.link import reading, sense
 from archgen.link.references import References
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.quantity import Quantity
 from archgen.syntax.tree import Table
 
 _WAY = ("node", "component", "output")
@@ -99,15 +97,12 @@ def links(root: Table, references: References) -> dict[str, Link]:
     """Declare the links between hosts."""
     found: dict[str, Link] = {}
     for name, entry, below in reading.elements(root, "links"):
-        latency = reading.table(below, "latency")
-        best, worst = (reading.measure(latency, key, "duration") for key in ("best", "worst"))
-        if best and worst and best.value > worst.value:
-            references.found.append(_best_above_worst(latency, name, best, worst))
+        best, worst = sense.latency(reading.table(below, "latency"), name, references.found)
         found[name] = Link(
             id=name,
             title=reading.title(below, name),
             connects=tuple(_known(below, "connects", "host", references, name)),
-            bandwidth=reading.measure(below, "bandwidth", "bandwidth"),
+            bandwidth=sense.positive(below, "bandwidth", "bandwidth", name, references.found),
             best=best,
             worst=worst,
             at=entry.at,
@@ -115,21 +110,11 @@ def links(root: Table, references: References) -> dict[str, Link]:
     return found
 
 
-def _best_above_worst(latency: Table, link: str, best: Quantity, worst: Quantity) -> Diagnostic:
-    return Diagnostic(
-        "wrong-value",
-        f"the best latency ({best}) is above the worst ({worst})",
-        reading.place(latency, "best"),
-        labels=(Label(reading.place(latency, "worst"), "the worst"),),
-        help="exchange them",
-        element=link,
-    )
-
-
 def chains(root: Table, references: References) -> dict[str, Chain]:
     """Declare the chains of effect."""
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
+        sense.no_entry(below, "through", "element", name, references.found)
         through = (
             (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
         )
@@ -137,7 +122,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
             id=name,
             title=reading.title(below, name),
             through=tuple(Waypoint(e.kind, e.id, at) for e, at in through if e),  # type: ignore[arg-type]
-            deadline=reading.measure(below, "deadline", "duration"),
+            deadline=sense.positive(below, "deadline", "duration", name, references.found),
             requirements=reading.texts(below, "requirements"),
             at=entry.at,
         )

@@ -91,7 +91,7 @@ def card(view: Index, sort: str, name: str) -> Card:
     if sort == "node":
         return _node(view, found.nodes[name])
     if sort == "topic":
-        return _topic(found.topics[name])
+        return _topic(view, found.topics[name])
     return _other(view, sort, name)
 
 
@@ -182,11 +182,11 @@ def _node(view: Index, node: Node) -> Card:
     return Card("node", node.id, node.title, node.at, _shown(facts), lists)
 
 
-def _topic(topic: Topic) -> Card:
+def _topic(view: Index, topic: Topic) -> Card:
     facts = [
         ("message", ", ".join(topic.messages) or "?"),
         ("types", ", ".join(topic.types)),
-        ("size", str(topic.size or "")),
+        ("size", view.size(topic)),
     ]
     ends = (("from", topic.writers), ("to", topic.readers))
     lists = tuple((name, tuple(f"{end.node} ({words.qos_words(end.qos)})" for end in found)) for name, found in ends)
@@ -198,7 +198,7 @@ def _other(view: Index, sort: str, name: str) -> Card:
     found = view.architecture
     element = _sorts(found)[sort][name]
     facts = [
-        (key, _fact(getattr(element, key, None)))
+        (key, view.size(element) if sort == "type" and key == "size" else _fact(getattr(element, key, None)))
         for key in (
             "message",
             "size",

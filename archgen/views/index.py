@@ -10,7 +10,9 @@ from typing import TypeVar
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Output
-from archgen.model.node import Endpoint, Node
+from archgen.model.mapping import Type
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.timing import sizes
 
 T = TypeVar("T")
 
@@ -53,6 +55,8 @@ class Index:
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
     hues: Mapping[str, int] = field(default_factory=dict)
     """Each group's place among the groups: its colour."""
+    message_size: sizes.Asked = field(kw_only=True, compare=False, repr=False)
+    """What a message takes on the wire, by message and type."""
 
     def groups(self) -> list[str]:
         """Name the groups of which something is shown, in order."""
@@ -70,6 +74,13 @@ class Index:
         """Give the nodes that are shown, in order."""
         return [node for node in self.architecture.nodes.values() if self.scope.node(node.id)]
 
+    def size(self, carrier: Type | Topic) -> str:
+        """Say how large the messages of a type or topic are: as written, else as computed, else nothing."""
+        if carrier.size is not None:
+            return str(carrier.size)
+        messages = carrier.messages if isinstance(carrier, Topic) else (carrier.message,)
+        return str(self.message_size(messages[0], None)) if len(messages) == 1 else ""
+
 
 def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope: Scope | None = None) -> Index:
     """Make the look-ups, each in one pass."""
@@ -86,6 +97,7 @@ def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope
         components_for=_grouped((use.text, c) for c in components for use in c.requirements if use.is_id),
         outputs_of_type=_grouped((o.type, o) for o in architecture.outputs.values() if o.type),
         hues={group: place for place, group in enumerate(architecture.groups)},
+        message_size=sizes.known(architecture),
     )
 
 

@@ -98,7 +98,7 @@ def types(view: Index) -> Table | None:
         (
             words.type_link(mapped.name),
             words.text(Text(mapped.message, code=True)) if mapped.message else words.UNKNOWN,
-            words.text(str(mapped.size)) if mapped.size else (),
+            words.text(size) if (size := view.size(mapped)) else (),
             words.text(str(len(view.outputs_of_type.get(mapped.name, ())))),
             words.text(type_remarks(mapped)),
         )
