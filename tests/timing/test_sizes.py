@@ -118,11 +118,7 @@ def defined(text: str, distro: str = "jazzy") -> Interfaces:
     """Read definitions of a project's own, `name: field; field`, one a line."""
     lines = [line.strip().partition(": ") for line in text.strip().splitlines()]
     held, wrong = interfaces.load(distro, (), {n: (t.replace("; ", "\n"), NOWHERE) for n, _, t in lines})
-<<<<<<< HEAD
-    assert all("holds itself" in diagnostic.message for diagnostic in wrong)  # refused, and its size still bounded
-=======
     assert [d for d in wrong if "holds itself" not in d.message] == []
->>>>>>> tsize
     return held
 
 
