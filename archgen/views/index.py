@@ -53,6 +53,8 @@ class Index:
     components_for: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
     """Components that serve a requirement, by the requirement's id."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
+    physical_types: frozenset[str] = frozenset()
+    """Types that only physical ports use: they need no message."""
     hues: Mapping[str, int] = field(default_factory=dict)
     """Each group's place among the groups: its colour."""
     message_size: sizes.Asked = field(kw_only=True, compare=False, repr=False)
@@ -96,9 +98,16 @@ def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope
         findings_of=_grouped((_owner(architecture, f.element), f) for f in found if f.element),
         components_for=_grouped((use.text, c) for c in components for use in c.requirements if use.is_id),
         outputs_of_type=_grouped((o.type, o) for o in architecture.outputs.values() if o.type),
+        physical_types=_physical(architecture),
         hues={group: place for place, group in enumerate(architecture.groups)},
         message_size=sizes.known(architecture),
     )
+
+
+def _physical(architecture: Architecture) -> frozenset[str]:
+    ports = (*architecture.inputs.values(), *architecture.outputs.values())
+    digital = {port.type for port in ports if not port.physical}
+    return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
 
 
 def _owner(architecture: Architecture, element: str) -> str:

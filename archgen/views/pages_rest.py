@@ -151,7 +151,7 @@ def _timing(node: Node) -> Inlines:
 
 def _type(view: Index, mapped: Type) -> Page:
     facts = [
-        ("Message", words.text(Text(mapped.message, code=True)) if mapped.message else words.UNKNOWN),
+        ("Message", tables.message_of(view, mapped)),
         ("Size", _size(view, mapped)),
         ("Remarks", words.text(tables.type_remarks(mapped))),
     ]
