@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component, Connection, Output
+from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.mapping import Type
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.timing import sizes
@@ -105,7 +105,7 @@ def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope
 
 
 def _physical(architecture: Architecture) -> frozenset[str]:
-    ports = (*architecture.inputs.values(), *architecture.outputs.values())
+    ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
     digital = {port.type for port in ports if not port.physical}
     return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
 
