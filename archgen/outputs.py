@@ -80,8 +80,7 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
         shown = ", ".join(list(made.graphs)[:8])
         msg = f"no picture is called {' or '.join(only)}"
         raise tree.OutputError(msg, f"there are {shown}, ...")
-    formats = tuple(form for form in forms if form != "dot")
-    pictures = draw(tuple(chosen.values()), formats, ask)
+    pictures = draw(tuple(chosen.values()), tuple(form for form in forms if form != "dot"), ask)
     if chosen and not pictures:
         msg = "no picture could be drawn, nothing was written"
         raise tree.OutputError(msg)
@@ -242,9 +241,8 @@ def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: A
         except docx.TemplateError as error:
             raise tree.OutputError(str(error)) from None
 
-    document, warnings = kept.report(
-        cache_folder(), outline, pictures, template=data, chapter_files=checked.chapters.picture, write=write
-    )
+    shown = checked.chapters.picture
+    document, warnings = kept.report(cache_folder(), outline, pictures, template=data, chapter_files=shown, write=write)
     for warning in warnings:
         ask.warn(warning)
     return document
