@@ -53,7 +53,10 @@ def project(text: str) -> dict[str, Any]:
         "archgen": 1,
         "project": {"id": "hostile"},
         "ros": {"distro": "jazzy"},
-        "report": {"chapters": ["docs/evil.md", "groups"], "texts": {"docs/evil.md": f"{text}\n\n> {text}\n\n- {text}\n"}},
+        "report": {
+            "chapters": ["docs/evil.md", "groups"],
+            "texts": {"docs/evil.md": f"{text}\n\n> {text}\n\n- {text}\n"},
+        },
         "partners": {"p": {}},
         "use_cases": {"UC-1": {}},
         "requirements": {"R-1": {"use_cases": ["UC-1"]}},
