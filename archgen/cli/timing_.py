@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
@@ -34,14 +34,31 @@ class Asked:
 @options.project
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
-@click.option("--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link.")
+@click.option(
+    "--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link."
+)
 @click.option("--from", "source", metavar="ID", help="With --to: the worst and the best ways between two elements.")
 @click.option("--to", "target", metavar="ID", help="See --from.")
-@click.option("--worst", "most", metavar="K", type=click.IntRange(1, 10_000), default=1, show_default=True, help="How many ways.")
-@click.option("--set", "written", metavar="ELEMENT.timing.KEY=VALUE", multiple=True, help="What if: show the effect, touch no file.")
-@click.option("--sensitivity", metavar="CHAIN", help="Rank the figures that decide a chain, and those to measure first.")
-@click.option("--measured", metavar="FILE", type=click.Path(path_type=Path), help="Hold observed figures (YAML, CSV) against the design.")
-def command(  # noqa: PLR0913 - one for each option
+@click.option(
+    "--worst", "most", metavar="K", type=click.IntRange(1, 10_000), default=1, show_default=True, help="How many ways."
+)
+@click.option(
+    "--set",
+    "written",
+    metavar="ELEMENT.timing.KEY=VALUE",
+    multiple=True,
+    help="What if: show the effect, touch no file.",
+)
+@click.option(
+    "--sensitivity", metavar="CHAIN", help="Rank the figures that decide a chain, and those to measure first."
+)
+@click.option(
+    "--measured",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Hold observed figures (YAML, CSV) against the design.",
+)
+def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
     form: str,
     chain: str | None,
@@ -86,12 +103,15 @@ def command(  # noqa: PLR0913 - one for each option
 
 def _summary(asked: Asked) -> None:
     from archgen.findings import timing_asked, timing_json, timing_text
-    from archgen.timing.chains import loops
+    from archgen.timing.network import Network
+    from archgen.timing.rounds import rounds
 
     present = _computed(asked.checked.architecture)
     if not asked.written:
-        lines = timing_text.summary(*present, loops(present[0]))
-        _print(asked, timing_json.document, present, lines)
+        if asked.as_json:
+            _json(timing_json.document(*present))
+        else:
+            _lines(timing_text.summary(*present, rounds(Network.of(present[0]))))
         return
     changed = _computed(asked.architecture)
     if asked.as_json:
@@ -142,17 +162,17 @@ def _ways(asked: Asked, source: str, target: str, most: int) -> None:
     analysis = analyse(asked.architecture)
     network = Network.of(analysis)
     try:
-        ends = [naming.waypoint(asked.architecture, analysis.system, word) for word in (source, target)]
+        first, last = (naming.waypoint(asked.architecture, analysis.system, word) for word in (source, target))
     except naming.UnknownNameError as error:
         _wrong(str(error))
-    worst = chains.between(network, asked.architecture, *ends)
-    best = chains.between(network, asked.architecture, *ends, "best")
+    worst = chains.between(network, asked.architecture, first, last)
+    best = chains.between(network, asked.architecture, first, last, "best")
     found = [tuple(chains.listed(network, w, k)) if w else () for w, k in ((worst, most), (best, 1))]
     count = worst.count if worst else 0
     if asked.as_json:
-        _json(timing_json.ways(ends[0].id, ends[1].id, count, *found))
+        _json(timing_json.ways(first.id, last.id, count, *found))
     else:
-        _lines(timing_text.ways(ends[0].id, ends[1].id, count, *found))
+        _lines(timing_text.ways(first.id, last.id, count, *found))
 
 
 def _sensitivity(asked: Asked, name: str) -> None:
@@ -230,13 +250,6 @@ def _wrong(text: str) -> NoReturn:
     from archgen.findings.escape import visible
 
     raise click.UsageError(visible(text))
-
-
-def _print(asked: Asked, document: Any, present: tuple[Any, Any], lines: Iterable[str]) -> None:  # noqa: ANN401
-    if asked.as_json:
-        _json(document(*present))
-    else:
-        _lines(lines)
 
 
 def _json(document: object) -> None:

@@ -33,7 +33,9 @@ def why_json(element: str, lines: Iterable[Line]) -> Plain:
     return {"version": timing_json.VERSION, "why": element, "steps": steps}
 
 
-def changes(present: tuple[Analysis, Chains], changed: tuple[Analysis, Chains], written: Iterable[str]) -> Iterator[str]:
+def changes(
+    present: tuple[Analysis, Chains], changed: tuple[Analysis, Chains], written: Iterable[str]
+) -> Iterator[str]:
     """Show what some figures would change: chains whole, hosts and elements where they differ."""
     (before, chains), (after, others) = present, changed
     yield f"With {', '.join(visible(text) for text in written)}:"

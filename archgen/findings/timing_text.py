@@ -9,19 +9,20 @@ from archgen.findings.escape import visible, width
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis, ChainResult, Term
 from archgen.timing.chains import Found
+from archgen.timing.rounds import Round
 from archgen.timing.value import Value
 
 _SIGNS = {"met": "met", "missed": "MISSED", "open": "open"}
 Row = Sequence[str]
 
 
-def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Sequence[tuple[Row, Value]]) -> Iterator[str]:
+def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[Round]) -> Iterator[str]:
     """Give the whole picture: chains first, then hosts, links, elements, loops."""
     yield from _section("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
     yield from _section("Hosts", _host_rows(analysis))
     yield from _section("Links", _link_rows(analysis))
     yield from _section("Elements", _element_rows(analysis))
-    yield from _section("Loops: latency of one round", [(" > ".join(row), figure(value)) for row, value in loops])
+    yield from _section("Loops: latency of one round", _loop_rows(loops))
     yield from _faults(analysis)
 
 
@@ -58,6 +59,13 @@ def _element_rows(analysis: Analysis) -> Iterator[Row]:
         how = (pace.behaviour or "unknown") + (" (inferred)" if pace.inferred and pace.behaviour else "")
         rate, gap = figure(pace.rate, wording.rate), figure(pace.gap)
         yield name, how, rate, f"gap {gap}", f"response {figure(response.worst)} ({response.tier})"
+
+
+def _loop_rows(loops: Iterable[Round]) -> Iterator[Row]:
+    for each in loops:
+        steps = len(each.through) - 1
+        part = f"one round of {each.members} elements that feed one another" if each.members > steps else ""
+        yield " > ".join(each.through), figure(each.latency), part or without(each.latency)
 
 
 def _faults(analysis: Analysis) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """End to end along chains: the safe bound (reaction time = data age), its terms, and the verdict on the deadline.
 
-    F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
+F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 """
 
 from __future__ import annotations
@@ -77,17 +77,6 @@ def terms(network: Network, way: Way) -> tuple[Term, ...]:
     return tuple(made)
 
 
-def loop(network: Network, ring: Sequence[str]) -> tuple[tuple[str, ...], Value]:
-    """Give the latency of one round of a data-flow loop: its largest round, from an activity back to itself.
-
-    A round is the sum of (link worst + S_i + R_i) over its arcs. Only the shortest round through the ring's first
-    activity is taken, the one with fewest steps.
-    """
-    arcs = route.round_of(network, ring)
-    parts = [value for arc in arcs for value in network.step(arc, "bound")]
-    return tuple(arc.source for arc in arcs), total(parts)
-
-
 def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> ChainResult:
     deadline = Value(asked.deadline.value) if asked.deadline else None
     found = _ways(network, regions, "bound") if regions else None
@@ -149,7 +138,7 @@ def _whole(network: Network, found: Ways, way: Way, aim: Aim) -> Value:
     if others.complete:
         return value
     missing = tuple(dict.fromkeys((*value.missing, *others.missing)))
-    return Value(value.value, False, missing, value.assumptions, "at least")
+    return replace(value, complete=False, missing=missing, side="at least")
 
 
 def _cut_text(arcs: Sequence[Arc]) -> str:

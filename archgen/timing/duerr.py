@@ -38,9 +38,7 @@ def reaction(tasks: Sequence[Task], ahead: Sequence[bool]) -> Fraction:
 
 def reduced_age(tasks: Sequence[Task], ahead: Sequence[bool]) -> Fraction:
     """Bound the age of data when the last element writes: R_n + sum over i < n of (T_i + p_i R_i)."""
-    lies = (
-        one.period + (Fraction(0) if first else one.response) for one, first in zip(tasks[:-1], ahead, strict=True)
-    )
+    lies = (one.period + (Fraction(0) if first else one.response) for one, first in zip(tasks[:-1], ahead, strict=True))
     return tasks[-1].response + sum(lies, Fraction(0))
 
 

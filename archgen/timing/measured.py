@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -21,7 +21,7 @@ from archgen.syntax import yaml
 from archgen.syntax.tree import Scalar, Table
 from archgen.timing.analysis import Analysis, Pace
 from archgen.timing.sums import known
-from archgen.timing.value import Value
+from archgen.timing.value import UNKNOWN, Value
 
 KEYS = {
     "rate": "frequency",
@@ -35,6 +35,16 @@ KEYS = {
 """What can be observed, and its dimension. Periods are gaps between two messages or activations: mean, least, largest."""
 TOLERANCE = Fraction(1, 10)
 """A measured mean rate may differ by this share before it is an outlier."""
+
+_BROKEN_ABOVE = {
+    "max_period": "gaps are larger than the bounds rest on",
+    "wcet": "takes longer than the design says",
+    "response": "the bound on the response time does not hold",
+}
+_BROKEN_BELOW = {
+    "min_period": "they come closer than the bounds rest on",
+    "bcet": "is quicker than the design says: jitter grows",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +80,9 @@ def read(file: str, text: str) -> tuple[tuple[Observation, ...], tuple[Diagnosti
     return tuple(rows), tuple(found)
 
 
-def compare(analysis: Analysis, observed: tuple[Observation, ...]) -> tuple[tuple[Comparison, ...], tuple[Diagnostic, ...]]:
+def compare(
+    analysis: Analysis, observed: tuple[Observation, ...]
+) -> tuple[tuple[Comparison, ...], tuple[Diagnostic, ...]]:
     """Hold observations against the design; ids that the design does not have are findings."""
     made: list[Comparison] = []
     found: list[Diagnostic] = []
@@ -89,26 +101,23 @@ def compare(analysis: Analysis, observed: tuple[Observation, ...]) -> tuple[tupl
 def _compared(analysis: Analysis, name: str, key: str, measured: Fraction, pace: Pace | None) -> Comparison:
     if key in {"rate", "period"}:
         return _paced(name, key, measured, pace)
-    if key in {"min_period", "max_period"}:
-        designed = _of(pace, "gap" if key == "max_period" else "distance")
-        late = key == "max_period"
-        why = "gaps are larger than the bounds rest on" if late else "messages come closer than the bounds rest on"
-        return _bounded(name, key, designed, measured, why, above=late)
     activity, response = analysis.system.activities.get(name), analysis.responses.get(name)
-    if key == "response":
-        worst = response.worst if response else Value(None, complete=False)
-        return _bounded(name, key, worst, measured, "the bound on the response time does not hold", above=True)
-    ticks = (activity.wcet if key == "wcet" else activity.bcet) if activity else None
-    designed = Value(ticks * analysis.system.tick) if ticks is not None else Value(None, complete=False)
-    why = "takes longer than the design says" if key == "wcet" else "is quicker than the design says: jitter grows"
-    return _bounded(name, key, designed, measured, why, above=key == "wcet")
+    if key == "max_period":
+        designed = pace.gap if pace else UNKNOWN
+    elif key == "min_period":
+        designed = pace.distance if pace else UNKNOWN
+    elif key == "response":
+        designed = response.worst if response else UNKNOWN
+    else:
+        ticks = (activity.wcet if key == "wcet" else activity.bcet) if activity else None
+        designed = Value(ticks * analysis.system.tick) if ticks is not None else UNKNOWN
+    return _bounded(name, key, designed, measured)
 
 
 def _paced(name: str, key: str, measured: Fraction, pace: Pace | None) -> Comparison:
-    rate = _of(pace, "rate")
-    designed = rate
+    rate = designed = pace.rate if pace else UNKNOWN
     if key == "period":
-        designed = Value(10**9 / rate.value, rate.complete) if rate.value else Value(None, complete=False)
+        designed = Value(10**9 / rate.value, rate.complete) if rate.value else UNKNOWN
     if designed.value is None:
         return Comparison(name, key, designed, measured, "not designed")
     off = abs(measured - designed.value) > TOLERANCE * designed.value
@@ -117,15 +126,13 @@ def _paced(name: str, key: str, measured: Fraction, pace: Pace | None) -> Compar
     return Comparison(name, key, designed, measured, "outlier" if off else "as designed", why)
 
 
-def _bounded(name: str, key: str, designed: Value, measured: Fraction, why: str, *, above: bool) -> Comparison:
+def _bounded(name: str, key: str, designed: Value, measured: Fraction) -> Comparison:
+    above = key in _BROKEN_ABOVE
     if designed.value is None or not known(designed, "at most" if above else "at least"):
         return Comparison(name, key, designed, measured, "not designed")
     broken = measured > designed.value if above else measured < designed.value
-    return Comparison(name, key, designed, measured, "outlier" if broken else "as designed", why if broken else "")
-
-
-def _of(pace: Pace | None, figure: Literal["rate", "gap", "distance"]) -> Value:
-    return getattr(pace, figure) if pace else Value(None, complete=False)  # type: ignore[no-any-return]
+    why = {**_BROKEN_ABOVE, **_BROKEN_BELOW}[key] if broken else ""
+    return Comparison(name, key, designed, measured, "outlier" if broken else "as designed", why)
 
 
 def _yaml(file: str, text: str, found: list[Diagnostic]) -> Iterator[Observation]:
@@ -170,7 +177,9 @@ def _csv(file: str, text: str, found: list[Diagnostic]) -> Iterator[Observation]
         found.append(Diagnostic("syntax-error", f"this is no CSV: {error}", Span.of_file(file)))
 
 
-def _figures(cells: list[tuple[str, str | None, Span, Span]], found: list[Diagnostic]) -> Iterator[tuple[str, Quantity]]:
+def _figures(
+    cells: Sequence[tuple[str, str | None, Span, Span]], found: list[Diagnostic]
+) -> Iterator[tuple[str, Quantity]]:
     for key, text, key_at, at in cells:
         if key not in KEYS:
             help_line = did_you_mean(key, KEYS) or f"it takes {', '.join(KEYS)}"

@@ -33,7 +33,7 @@ class Network:
     def of(cls, analysis: Analysis) -> Network:
         """Prepare an analysis for questions about ways."""
         names = tuple(analysis.system.activities)
-        return cls(Steps(analysis), names, {name: at for at, name in enumerate(names)})
+        return cls(Steps.of(analysis), names, {name: at for at, name in enumerate(names)})
 
     @property
     def arcs(self) -> tuple[Arc, ...]:
@@ -49,13 +49,13 @@ class Network:
     def start(self, name: str, aim: Aim) -> tuple[Value, ...]:
         """Give what the first element of a way adds."""
         if aim == "best":
-            return (self.steps.best_response(name),)
+            return (self.steps.response(name, worst=False),)
         return (self.steps.start(name).value if aim == "bound" else ZERO, self.steps.response(name))
 
     def step(self, arc: Arc, aim: Aim) -> tuple[Value, ...]:
         """Give what a step adds: link, sampling (or holding), response."""
         if aim == "best":
-            return (self.steps.link(arc, worst=False), self.steps.best_response(arc.target))
+            return (self.steps.link(arc, worst=False), self.steps.response(arc.target, worst=False))
         waits = self.steps.holding(arc) if aim == "reduced age" else self.steps.sampling(arc).value
         return (self.steps.link(arc), waits, self.steps.response(arc.target))
 
@@ -76,7 +76,9 @@ def _scale(rows: list[tuple[Value, ...]]) -> Callable[[tuple[Value, ...]], int]:
     """
     distinct = {id(value): value for row in rows for value in row}
     unit = lcm(*(value.value.denominator for value in distinct.values() if value.value is not None))
-    largest = sum(abs(part.value) for row in rows for part in row if part.value is not None) if distinct else Fraction(0)
+    largest = (
+        sum(abs(part.value) for row in rows for part in row if part.value is not None) if distinct else Fraction(0)
+    )
     beyond = 1 << (int(largest * unit).bit_length() + _UNKNOWN_BITS + 1)
     weights: dict[int, int] = {}
     for key, value in distinct.items():

@@ -240,7 +240,9 @@ def _holds(region: Region, named: frozenset[int], vertex: int) -> bool:
 def _entries(graph: Graph, region: Region) -> list[int]:
     """Give the vertices at which a way may start: those that nothing inside the region feeds, or all."""
     members = sorted(region.members or ())
-    fed = {hop.target for vertex in members for hop in graph[vertex] if hop.target != vertex} if region.inside else set()
+    fed = (
+        {hop.target for vertex in members for hop in graph[vertex] if hop.target != vertex} if region.inside else set()
+    )
     return [vertex for vertex in members if vertex not in fed] or members
 
 
@@ -258,7 +260,7 @@ def _sorted(after: Sequence[Sequence[Hop]], kept: Sequence[int]) -> list[int] | 
         for hop in after[state]:
             waiting[hop.target] -= 1
             if not waiting[hop.target] and inside[hop.target]:
-                order.append(hop.target)  # noqa: B909 - the list is the queue
+                order.append(hop.target)
     return order if len(order) == len(kept) else None
 
 

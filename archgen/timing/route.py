@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.timing.network import Network
 from archgen.timing.paths import Region
-from archgen.timing.system import Arc, System
+from archgen.timing.system import System
 
-__all__ = ["Point", "Region", "chain_route", "free_route", "points", "round_of"]
+__all__ = ["Point", "Region", "chain_route", "free_route", "points"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ def chain_route(network: Network, through: Sequence[Point]) -> tuple[Region, ...
     if not regions or not all(region.members for region in regions):
         return ()
     made = [regions[0]]
-    for before, after in zip(regions, regions[1:], strict=False):
+    for before, after in pairwise(regions):
         if not _joined(network, before, after):
             made.append(Region(None))
         made.append(after)
@@ -88,20 +88,3 @@ def _joined(network: Network, before: Region, after: Region) -> bool:
     graph, _ = network.graph("bound")
     hops = (hop for vertex in here for hop in graph[vertex] if before.leave is None or hop.arc in before.leave)
     return any(hop.target in there for hop in hops)
-
-
-def round_of(network: Network, ring: Sequence[str]) -> tuple[Arc, ...]:
-    """Give the arcs of the shortest round through the first activity of a ring."""
-    members, first = frozenset(ring), ring[0]
-    came: dict[str, Arc] = {}
-    queue = deque([first])
-    while queue and first not in came:
-        here = queue.popleft()
-        for arc in network.steps.analysis.system.out_of.get(here, ()):
-            if arc.target in members and arc.target not in came:
-                came[arc.target] = arc
-                queue.append(arc.target)
-    back: list[Arc] = []
-    while first in came and (not back or back[-1].source != first):
-        back.append(came[back[-1].source if back else first])
-    return tuple(reversed(back))

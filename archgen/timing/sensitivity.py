@@ -11,8 +11,8 @@ from archgen.model.quantity import Quantity
 from archgen.model.timing import Timing
 from archgen.source import Span
 from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.arrivals import Arrivals
 from archgen.timing.chains import chain
-from archgen.timing.steps import Steps
 
 BETTER = Fraction(9, 10)
 MOST = 200
@@ -119,14 +119,14 @@ def _better(timing: Timing, figure: str, quantity: Quantity) -> Timing:
 
 def _near(analysis: Analysis, result: ChainResult) -> list[str]:
     """Name the activities that bear on a chain: its own, what fires them, and what shares their hosts."""
-    steps, activities = Steps(analysis), analysis.system.activities
+    arrivals, activities = Arrivals(analysis), analysis.system.activities
     found = dict.fromkeys(result.through)
     queue = list(found)
     for name in queue:
         for arc in analysis.system.into.get(name, ()):
-            if steps.fires(arc) and arc.source not in found:
+            if arrivals.fires(arc) and arc.source not in found:
                 found[arc.source] = None
-                queue.append(arc.source)  # noqa: B909 - the list is the queue
+                queue.append(arc.source)
     hosts = {activities[name].host for name in result.through} - {None}
     found |= dict.fromkeys(name for name, activity in activities.items() if activity.host in hosts)
     return list(found)
@@ -144,7 +144,13 @@ def _gaps(analysis: Analysis, result: ChainResult, results: Mapping[str, ChainRe
             for name in () if value.complete else value.missing:
                 lacking[name, what] = lacking.get((name, what), 0) + 1
     gaps = [
-        Gap(name, what, count, sum(name in other.bound.missing for other in results.values()), _plausible(analysis, name))
+        Gap(
+            name,
+            what,
+            count,
+            sum(name in other.bound.missing for other in results.values()),
+            _plausible(analysis, name),
+        )
         for (name, what), count in lacking.items()
     ]
     return sorted(gaps, key=lambda gap: (-gap.terms, -(gap.plausible or 0), -gap.chains, gap.element))
@@ -153,5 +159,3 @@ def _gaps(analysis: Analysis, result: ChainResult, results: Mapping[str, ChainRe
 def _plausible(analysis: Analysis, name: str) -> Fraction | None:
     pace = analysis.paces.get(name)
     return pace.gap.value if pace else None
-
-

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
@@ -26,8 +27,10 @@ def total(values: Iterable[Value], side: Literal["at least", "at most"] = "at mo
     known_sum = sum((part.value for part in parts if part.value is not None), Fraction(0))
     if all(known(part, side) for part in parts):
         exact = all(part.side == "exact" for part in parts)
-        return Value(known_sum, True, missing, assumptions, "exact" if exact else side)
-    return Value(known_sum or None, False, missing, assumptions, "at least")
+        return Value(
+            known_sum, complete=True, missing=missing, assumptions=assumptions, side="exact" if exact else side
+        )
+    return Value(known_sum or None, complete=False, missing=missing, assumptions=assumptions, side="at least")
 
 
 def known(value: Value, side: Literal["at least", "at most"] = "at most") -> bool:
@@ -44,4 +47,4 @@ def nameless(value: Value, element: str) -> Value:
     """Name an element where a figure that is not known names none."""
     if known(value) or value.missing or boundless(value):
         return value
-    return Value(value.value, False, (element,), value.assumptions, value.side)
+    return replace(value, complete=False, missing=(element,))

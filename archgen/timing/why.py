@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 from typing import NamedTuple
 
 from archgen.source import NOWHERE, Span
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis, ChainResult, Reason
-from archgen.timing.steps import Steps
+from archgen.timing.arrivals import Arrivals
 from archgen.timing.sums import known
 from archgen.timing.value import Value
+
+_WRITERS: Mapping[str, Callable[[Fraction], str]] = {
+    "duration": wording.duration,
+    "rate": wording.rate,
+    "share": wording.share,
+    "size": wording.size,
+    "traffic": lambda count: f"{wording.size(count)}/s",
+}
 
 
 class Line(NamedTuple):
@@ -96,9 +105,9 @@ def _reasons(reasons: Iterable[Reason], depth: int) -> Iterator[Line]:
 
 def _triggering(analysis: Analysis, name: str) -> list[str]:
     """Give who fires an activity, the last first; nobody where its own clock does."""
-    steps = Steps(analysis)
+    arrivals = Arrivals(analysis)
     arcs = analysis.system.into.get(name, ())
-    return list(dict.fromkeys(arc.source for arc in reversed(arcs) if steps.fires(arc) and arc.source != name))
+    return list(dict.fromkeys(arc.source for arc in reversed(arcs) if arrivals.fires(arc) and arc.source != name))
 
 
 def _place(analysis: Analysis, name: str) -> Span:
@@ -110,13 +119,7 @@ def _said(value: Value, kind: str = "duration") -> str:
     if value.value is None:
         missing = f" ({wording.listed(value.missing)})" if value.missing else ""
         return f"{wording.reason(value)}{missing}"
-    write = {
-        "duration": wording.duration,
-        "rate": wording.rate,
-        "share": wording.share,
-        "size": wording.size,
-        "traffic": lambda count: f"{wording.size(count)}/s",
-    }[kind]
+    write = _WRITERS[kind]
     if known(value):
         return ("<= " if value.side == "at most" and not value.complete else "") + write(value.value)
     return f">= {write(value.value)}"
