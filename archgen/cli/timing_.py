@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -203,7 +204,7 @@ def _measured(asked: Asked, file: Path) -> None:
     observed, unread = measured.read(str(file), text)
     compared, unknown = measured.compare(analyse(asked.architecture), observed)
     problems = _settled((*unread, *unknown))
-    run.lines(problems, asked.checked, click.get_text_stream("stderr"))
+    run.lines(problems, asked.checked, sys.stderr)
     if asked.as_json:
         _json(timing_asked.measured_json(compared))
     else:
