@@ -48,23 +48,24 @@ class Arrivals:
         return activity.mode == "all" and len(self._stream(activity)) > 1
 
     def others(self, activity: Activity, arc: Arc) -> Value:
-        """Give the largest gap of the other triggers of an all-of element; ZERO of any other."""
-        if not self.waits_for_all(activity):
+        """Give the largest gap of the other triggers of an all-of element; ZERO of any other, and where it is called."""
+        if arc.role != "data" or not self.waits_for_all(activity):
             return ZERO
         return _largest(gap for key, gap in self._stream(activity).items() if key != arc.input)
 
     def thinned(self, activity: Activity) -> Value:
-        """Give what `every` and `throttle` let a trigger wait: (n - 1) gaps, and q + gap - the smallest gap."""
-        if activity.behaviour not in {"event", "on_demand"} or (activity.every == 1 and not activity.throttle):
-            return ZERO
+        """Give how long `every`, `throttle` and `jitter` let a trigger wait.
+
+        Every n-th: (n - 1) gaps. A throttle q fires at the first (n-th) trigger that comes q after the last firing, so
+        within q + n gaps of it; what waits came a smallest gap after it at the soonest.
+        """
+        if activity.behaviour != "event" or (activity.every == 1 and not activity.throttle):
+            return self.time(activity.jitter) if activity.behaviour == "event" else ZERO
         gap = self._firing_gap(activity)
-        parts: list[Value] = []
-        if activity.throttle:
-            gap = total((gap, self.time(activity.throttle)))
-            parts.append(_less(gap, self._smallest_gap(activity)))
-        if activity.every > 1:
-            parts.append(_times(gap, activity.every - 1))
-        return total(parts)
+        if not activity.throttle:
+            return total((_times(gap, activity.every - 1), self.time(activity.jitter)))
+        kept = (_times(gap, activity.every), self.time(activity.throttle), self.time(activity.jitter))
+        return _less(total(kept), self._smallest_gap(activity))
 
     def time(self, ticks: int) -> Value:
         """Give a duration of the system in ns."""
@@ -80,7 +81,7 @@ class Arrivals:
         """Give the largest gap of what arrives at each trigger; one that arrives once at the start is left out."""
         found = self._streams.get(activity.id)
         if found is None:
-            arcs = [arc for arc in self.analysis.system.into.get(activity.id, ()) if self.fires(arc)]
+            arcs = [a for a in self.analysis.system.into.get(activity.id, ()) if a.role == "data" and self.fires(a)]
             outside = self.analysis.system.external.get(activity.id, ())
             kept = {arc.input for arc in arcs if self.analysis.system.activities[arc.source].behaviour != "once"}
             keys = dict.fromkeys((*activity.triggers, *(arc.input for arc in arcs)))

@@ -117,6 +117,8 @@ class Steps:
         return Delay(gap, f"{what} {arc.topic}{_each(gap)}", _place(reader, "period", "rate"))
 
     def _triggered(self, reader: Activity, arc: Arc) -> Delay:
+        if arc.role == "request":
+            return Delay(ZERO, f"called by {arc.topic}", arc.at)
         others, thinned = self.arrivals.others(reader, arc), self.arrivals.thinned(reader)
         waits = others if thinned is ZERO else total((others, thinned))
         waiting = ", waits for its other triggers" if others is not ZERO else ""
@@ -153,6 +155,8 @@ def _thinning(activity: Activity) -> str:
     said = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
     if activity.throttle:
         said.append("keeps a smallest gap")
+    if activity.jitter:
+        said.append("starts late by its jitter")
     return f"; {', '.join(said)}" if said else ""
 
 

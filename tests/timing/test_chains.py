@@ -121,7 +121,9 @@ def test_any_of_sends_old_data_again() -> None:
 def test_every_third_adds_two_gaps_and_a_throttle_its_gap() -> None:
     thinned = event("slow", "slow.cam", every=3)
     throttled = event("slow", "slow.cam", throttle=250 * 10**6)
-    for activity, extra in ((thinned, 200), (throttled, 250 + 100)):
+    both = event("slow", "slow.cam", every=3, throttle=250 * 10**6)
+    late = event("slow", "slow.cam", jitter=7 * 10**6)
+    for activity, extra in ((thinned, 200), (throttled, 250 + 100), (both, 250 + 300), (late, 7)):
         found = analysis(
             [periodic("cam", 100), activity, event("act", "act.slow")],
             [arc("cam", "slow"), arc("slow", "act")],
