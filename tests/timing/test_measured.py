@@ -70,8 +70,7 @@ def test_what_cannot_be_read_is_said_at_its_place() -> None:
         "a.yaml:3:3 unknown-reference: no node, activity or topic is called `cap` (did you mean `cam`?)",
     ]
     assert _problems("a.yaml", "cam: 3\n") == [
-        "a.yaml:1:1 missing-key: `measured`, the mapping of what was observed, is missing "
-        "(write `measured: {ID: {rate: 10 Hz}}`)"
+        "a.yaml:1:1 missing-key: `measured`, the mapping of what was observed, is missing (write `measured: {ID: {rate: 10 Hz}}`)"
     ]
     assert _problems("a.yaml", "measured:\n  cam: 10 Hz\n") == [
         "a.yaml:2:3 wrong-value: `cam` takes a mapping of figures (None)"
