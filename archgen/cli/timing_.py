@@ -204,7 +204,8 @@ def _measured(asked: Asked, file: Path) -> None:
     observed, unread = measured.read(str(file), text)
     compared, unknown = measured.compare(analyse(asked.architecture), observed)
     problems = _settled((*unread, *unknown))
-    run.lines(problems, asked.checked, sys.stderr)
+    if problems:
+        run.lines(problems, asked.checked, sys.stderr)
     if asked.as_json:
         _json(timing_asked.measured_json(compared))
     else:
