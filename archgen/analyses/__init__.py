@@ -10,6 +10,7 @@ from archgen.analyses import (
     distribution,
     figures,
     load,
+    latency,
     mapping,
     messages,
     names,
@@ -54,7 +55,7 @@ _JUDGES = (
     *progress.RULES,
 )
 
-_TIMED_JUDGES = (*timing.RULES, *load.RULES)
+_TIMED_JUDGES = (*timing.RULES, *load.RULES, *latency.RULES)
 """These also take what follows from the architecture's timing, which is found once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))
