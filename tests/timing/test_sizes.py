@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,11 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
 from archgen.link import interfaces
+from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.interfaces import Field, Interface, Interfaces
+from archgen.model.mapping import Type
+from archgen.model.node import Endpoint, Flow
+from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE
 from archgen.timing import sizes
 
@@ -189,3 +194,20 @@ def test_definitions_may_be_nested_deeply_and_grow_without_bound() -> None:
     held = defined("\n".join([*lines, "demo_msgs/msg/A3000: uint8 a"]))
     assert sizes.size("demo_msgs/msg/A2990", held).bytes == 4 + 9**10
     assert sizes.size("demo_msgs/msg/A0", held).bytes is None
+
+
+def test_what_passes_between_writers_and_readers() -> None:
+    held = defined("demo_msgs/srv/Weigh: ---; float64 grams\ndemo_msgs/action/Turn: float32 angle; ---; ---")
+    types = {"Grams": Type("Grams", "demo_msgs/srv/Weigh", size=Quantity(Fraction(801, 2), "400.5 B"))}
+    ask = sizes.carried(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))
+
+    def end(flow: Flow, message: str | None, type_: str | None = None) -> Endpoint:
+        return Endpoint("n", "serves", "/x", flow, None, None, message, type_)
+
+    assert ask(end("topic", "std_msgs/msg/Bool"), "data") == 5
+    assert ask(end("topic", None), "data") is None
+    assert ask(end("service", "demo_msgs/srv/Weigh"), "request") == 5
+    assert ask(end("service", "demo_msgs/srv/Weigh"), "answer") == 12
+    assert ask(end("service", "demo_msgs/srv/Weigh", "Grams"), "answer") == 401
+    assert ask(end("action", "demo_msgs/action/Turn"), "request") == 24
+    assert ask(end("action", "demo_msgs/action/Turn"), "answer") is None
