@@ -114,6 +114,18 @@ def carried(architecture: Architecture) -> Callable[[Endpoint, Role], int | None
     return of_writer
 
 
+def of_topics(architecture: Architecture) -> dict[str, int | None]:
+    """Give the bytes of a sample of each topic: the largest of its writers' samples, None where one is not known."""
+    of_writer = carried(architecture)
+    found: dict[str, int | None] = {}
+    for name, topic in architecture.topics.items():
+        if topic.flow == "topic":
+            all_sizes = [of_writer(writer, "data") for writer in topic.writers]
+            known_sizes = [one for one in all_sizes if one is not None]
+            found[name] = max(known_sizes) if known_sizes and len(known_sizes) == len(all_sizes) else None
+    return found
+
+
 _SUFFIXES: dict[tuple[Flow, Role], str | None] = {
     ("topic", "data"): "",
     ("service", "request"): "_Request",

@@ -14,7 +14,7 @@ from archgen.link import interfaces
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.interfaces import Field, Interface, Interfaces
 from archgen.model.mapping import Type
-from archgen.model.node import Endpoint, Flow
+from archgen.model.node import Endpoint, Flow, Topic
 from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE
 from archgen.timing import sizes
@@ -211,3 +211,18 @@ def test_what_passes_between_writers_and_readers() -> None:
     assert ask(end("service", "demo_msgs/srv/Weigh", "Grams"), "answer") == 401
     assert ask(end("action", "demo_msgs/action/Turn"), "request") == 24
     assert ask(end("action", "demo_msgs/action/Turn"), "answer") is None
+
+
+def test_a_topic_has_the_size_of_its_largest_sample() -> None:
+    def topic(*messages: str | None) -> Topic:
+        ends = tuple(Endpoint("n", "publishes", "/x", "topic", None, None, message) for message in messages)
+        return Topic("/x", "topic", (), (), ends, ())
+
+    held, _ = interfaces.load("jazzy")
+    topics = {
+        "/a": topic("std_msgs/msg/Bool", "std_msgs/msg/Float64"),
+        "/b": topic("std_msgs/msg/Bool", "std_msgs/msg/String"),
+        "/c": topic(),
+    }
+    found = sizes.of_topics(Architecture(ProjectInfo("p", "P"), topics=topics, interfaces=held))
+    assert found == {"/a": 12, "/b": None, "/c": None}
