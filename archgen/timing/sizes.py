@@ -10,10 +10,12 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
+from typing import Literal
 
 from archgen.model.architecture import Architecture
 from archgen.model.distro import is_ros_1
 from archgen.model.interfaces import Field, Interfaces
+from archgen.model.node import Endpoint, Flow
 from archgen.timing import encoding
 from archgen.timing.encoding import Shape
 
@@ -62,6 +64,8 @@ class MessageSize:
         return f"{'' if self.exact else 'at most '}{self.bytes} B{'' if self.written else ' (computed)'}"
 
 
+Role = Literal["data", "request", "answer"]
+"""What passes: samples of a topic; what a client asks of a server; what the server answers."""
 Asked = Callable[[str | None, str | None], MessageSize]
 """A message and the conceptual type that it carries, either of them None where nobody named it."""
 
@@ -93,6 +97,42 @@ def of(architecture: Architecture) -> Callable[[str | None, str | None], int | N
     """Give the function that answers with the bytes alone: exact, or an upper bound, or None."""
     answer = known(architecture)
     return lambda message, type_: answer(message, type_).bytes
+
+
+def carried(architecture: Architecture) -> Callable[[Endpoint, Role], int | None]:
+    """Give the function that answers how many bytes pass from a writer (publisher or server) in each role.
+
+    What an action answers is its result and any number of feedbacks: of a size only where its type has one written.
+    """
+    answer = of(architecture)
+
+    def of_writer(writer: Endpoint, role: Role) -> int | None:
+        suffix = _SUFFIXES[writer.flow, role]
+        message = None if writer.message is None or suffix is None else f"{writer.message}{suffix}"
+        return answer(message, writer.type)
+
+    return of_writer
+
+
+def of_topics(architecture: Architecture) -> dict[str, int | None]:
+    """Give the bytes of a sample of each topic: the largest of its writers' samples, None where one is not known."""
+    of_writer = carried(architecture)
+    found: dict[str, int | None] = {}
+    for name, topic in architecture.topics.items():
+        if topic.flow == "topic":
+            all_sizes = [of_writer(writer, "data") for writer in topic.writers]
+            known_sizes = [one for one in all_sizes if one is not None]
+            found[name] = max(known_sizes) if known_sizes and len(known_sizes) == len(all_sizes) else None
+    return found
+
+
+_SUFFIXES: dict[tuple[Flow, Role], str | None] = {
+    ("topic", "data"): "",
+    ("service", "request"): "_Request",
+    ("service", "answer"): "_Response",
+    ("action", "request"): "_SendGoal_Request",
+    ("action", "answer"): None,
+}
 
 
 class _Computed:

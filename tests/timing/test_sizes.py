@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,11 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
 from archgen.link import interfaces
+from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.interfaces import Field, Interface, Interfaces
+from archgen.model.mapping import Type
+from archgen.model.node import Endpoint, Flow, Topic
+from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE
 from archgen.timing import sizes
 
@@ -189,3 +194,35 @@ def test_definitions_may_be_nested_deeply_and_grow_without_bound() -> None:
     held = defined("\n".join([*lines, "demo_msgs/msg/A3000: uint8 a"]))
     assert sizes.size("demo_msgs/msg/A2990", held).bytes == 4 + 9**10
     assert sizes.size("demo_msgs/msg/A0", held).bytes is None
+
+
+def test_what_passes_between_writers_and_readers() -> None:
+    held = defined("demo_msgs/srv/Weigh: ---; float64 grams\ndemo_msgs/action/Turn: float32 angle; ---; ---")
+    types = {"Grams": Type("Grams", "demo_msgs/srv/Weigh", size=Quantity(Fraction(801, 2), "400.5 B"))}
+    ask = sizes.carried(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))
+
+    def end(flow: Flow, message: str | None, type_: str | None = None) -> Endpoint:
+        return Endpoint("n", "serves", "/x", flow, None, None, message, type_)
+
+    assert ask(end("topic", "std_msgs/msg/Bool"), "data") == 5
+    assert ask(end("topic", None), "data") is None
+    assert ask(end("service", "demo_msgs/srv/Weigh"), "request") == 5
+    assert ask(end("service", "demo_msgs/srv/Weigh"), "answer") == 12
+    assert ask(end("service", "demo_msgs/srv/Weigh", "Grams"), "answer") == 401
+    assert ask(end("action", "demo_msgs/action/Turn"), "request") == 24
+    assert ask(end("action", "demo_msgs/action/Turn"), "answer") is None
+
+
+def test_a_topic_has_the_size_of_its_largest_sample() -> None:
+    def topic(*messages: str | None) -> Topic:
+        ends = tuple(Endpoint("n", "publishes", "/x", "topic", None, None, message) for message in messages)
+        return Topic("/x", "topic", (), (), ends, ())
+
+    held, _ = interfaces.load("jazzy")
+    topics = {
+        "/a": topic("std_msgs/msg/Bool", "std_msgs/msg/Float64"),
+        "/b": topic("std_msgs/msg/Bool", "std_msgs/msg/String"),
+        "/c": topic(),
+    }
+    found = sizes.of_topics(Architecture(ProjectInfo("p", "P"), topics=topics, interfaces=held))
+    assert found == {"/a": 12, "/b": None, "/c": None}
