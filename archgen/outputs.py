@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
@@ -17,11 +17,13 @@ from archgen.model.selector import Selection
 from archgen.model.selector_words import Problem
 from archgen.pipeline import Checked
 from archgen.revision import revision
-from archgen.views import graphs, pages, record, statistics
+from archgen.views import drawings, pages, record, statistics
 from archgen.views import report as report_view
+from archgen.views.bars import Drawing
 from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
 from archgen.views.shapes import Graph
+from archgen.views.timed import timing
 
 Progress = Callable[[int, int], None]
 """Told how many pictures are drawn, of how many."""
@@ -146,7 +148,7 @@ def _extra(made: _Made, backend: Backend, target: Path) -> None:
     shapes: dict[str, Callable[[], object]] = {
         "outline": lambda: report_view.report(made.view, made.edition),
         "pages": lambda: pages.pages(made.view, made.edition),
-        "graphs": lambda: tuple(made.graphs.values()),
+        "graphs": lambda: tuple(graph for graph in made.graphs.values() if isinstance(graph, Graph)),
         "record": lambda: record.record(made.view),
         "tables": lambda: statistics.statistics(made.view.architecture),
     }
@@ -168,14 +170,12 @@ class _Made:
 
     view: Index
     edition: Edition
-    graphs: Mapping[str, Graph]
+    graphs: Mapping[str, Drawing]
 
 
 def _make(checked: Checked, ask: Ask) -> _Made:
-    found = view(checked, ask)
-    drawn = {graph.id: graph for graph in graphs.all_graphs(checked.architecture, ask.selection, checked.findings)}
-    if ask.level == "functional":
-        drawn = {name: graph for name, graph in drawn.items() if not _is_low(name)}
+    found = replace(view(checked, ask), timed=timing(checked.architecture))
+    drawn = drawings.drawings(found, ask.selection, ask.level or "implementation")
     edition = Edition(
         revision=revision(checked.root, checked.all_files) if ask.revision is None else ask.revision,
         level=ask.level or "implementation",
@@ -188,10 +188,6 @@ def _make(checked: Checked, ask: Ask) -> _Made:
     return _Made(found, edition, drawn)
 
 
-def _is_low(graph: str) -> bool:
-    return graph in {"ros", "hosts"} or graph.startswith("implementation/")
-
-
 def _matches(name: str, patterns: Sequence[str]) -> bool:
     return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
 
@@ -200,8 +196,8 @@ def _draw(made: _Made, ask: Ask, formats: Sequence[str]) -> Mapping[str, Picture
     return draw(tuple(made.graphs.values()), formats, ask)
 
 
-def draw(graphs: Sequence[Graph], formats: Sequence[str], ask: Ask) -> Mapping[str, Picture]:
-    """Draw graphs; links in a picture lead to `#` and an element's anchor.
+def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping[str, Picture]:
+    """Draw graphs and charts; links in a picture lead to `#` and an element's anchor.
 
     Where the machine cannot draw, there is a warning and no picture: everything else can still be made.
     """
@@ -289,7 +285,7 @@ def _picture_file(picture: Picture, form: str, others: Mapping[str, Picture]) ->
     return pictures.alone(data, href)
 
 
-_FOLDERS = {"group": "groups", "component": "components", "view": "views"}
+_FOLDERS = {"group": "groups", "component": "components", "view": "views", "chain": "chains", "host": "load"}
 """Where the picture of an element lies, by the sort of element."""
 
 

@@ -8,6 +8,7 @@ GENERATED = (
     "overview",
     "groups",
     "deployment",
+    "timing",
     "chains",
     "views",
     "types",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.component import Component, Group, Input, Output
-from archgen.views import words
+from archgen.views import timing_of, words
 from archgen.views.index import Index
 from archgen.views.shapes import (
     Block,
@@ -111,6 +111,8 @@ def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlin
     if timing:
         rows.append(("Timing", words.text(timing)))
     nodes = view.nodes_of.get(component.id, ())
+    if rate := timing_of.component_fact(view, nodes, component.id):
+        rows.append(("Rate", rate))
     rows.append(("Implemented by", words.joined((words.node_link(node),) for node in nodes) or words.UNKNOWN))
     if component.tags:
         rows.append(("Tags", words.text(", ".join(component.tags))))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.node import Endpoint, Node
-from archgen.views import words
+from archgen.views import timing_of, words
 from archgen.views.index import Index
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
 
@@ -62,6 +62,7 @@ def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
         name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
         said = words.timing_sentence(timing)
         rows.append((name, words.text(said) if said else ()))
+    rows += timing_of.node_facts(view, node)
     return [(name, value) for name, value in rows if value]
 
 

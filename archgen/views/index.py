@@ -13,6 +13,7 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.mapping import Type
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.timing import sizes
+from archgen.views.timed import Timed
 
 T = TypeVar("T")
 
@@ -59,6 +60,7 @@ class Index:
     """Each group's place among the groups: its colour."""
     message_size: sizes.Asked = field(kw_only=True, compare=False, repr=False)
     """What a message takes on the wire, by message and type."""
+    timed: Timed | None = None
 
     def groups(self) -> list[str]:
         """Name the groups of which something is shown, in order."""
@@ -84,7 +86,12 @@ class Index:
         return str(self.message_size(messages[0], None)) if len(messages) == 1 else ""
 
 
-def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope: Scope | None = None) -> Index:
+def index(
+    architecture: Architecture,
+    findings: Iterable[Diagnostic] = (),
+    scope: Scope | None = None,
+    timed: Timed | None = None,
+) -> Index:
     """Make the look-ups, each in one pass."""
     found = tuple(findings)
     components, nodes = architecture.components.values(), architecture.nodes.values()
@@ -101,6 +108,7 @@ def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope
         physical_types=_physical(architecture),
         hues={group: place for place, group in enumerate(architecture.groups)},
         message_size=sizes.known(architecture),
+        timed=timed,
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
-from archgen.views import pages_rest, tables, words
+from archgen.views import pages_rest, tables, timing_chapter, words
 from archgen.views.functional import component_blocks, group_blocks
 from archgen.views.implementation import implementation_blocks, node_blocks
 from archgen.views.index import Index
@@ -56,7 +56,7 @@ class _Pages:
         """Give the figures that were drawn and show something."""
         for name in names:
             graph = self.edition.graphs.get(name)
-            if graph and graph.boxes:
+            if graph:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def start(self) -> Page:
@@ -136,7 +136,7 @@ class _Pages:
         said = Paragraph(words.text(f"archgen finds {tables.severities(self.view.findings)} in this architecture."))
         yield self._spanning("findings", "Open points", said, tables.open_points(self.view.findings))
         yield self._spanning("progress", "Progress", *self.edition.statistics)
-        yield self._spanning("chains", "Chains of effect", tables.chains(self.view, self.found.chains.values()))
+        yield from self._timing()
         views = [f"views/{name}" for name in self.found.views]
         yield self._spanning("views", "Views", *self.figures(*views))
         if self.edition.level == "implementation":
@@ -147,8 +147,21 @@ class _Pages:
             hosts = (tables.hosts(self.view), tables.links(self.view))
             yield self._spanning("hosts", "Hosts", *self.figures("hosts"), *hosts)
 
-    def _spanning(self, name: str, title: str, *blocks: Block | None) -> Page:
+    def _timing(self) -> Iterator[Page]:
+        """Make the pages on timing: of the whole, of all chains, and of each chain."""
+        graphs = self.edition.graphs
+        if self.view.timed is not None and self.edition.level == "implementation":
+            blocks = timing_chapter.blocks(self.view, self.view.timed, graphs)
+            sections = timing_chapter.sections(self.view, self.view.timed, graphs)
+            yield self._spanning("timing", "Timing", *blocks, sections=sections)
+        yield self._spanning("chains", "Chains of effect", *timing_chapter.chain_blocks(self.view))
+        crumbs = (HOME, ("Chains of effect", "page:chains"))
+        for section in timing_chapter.chains(self.view, graphs):
+            path = f"chains/{section.anchor.partition(':')[2]}.html"
+            yield Page(path, section.anchor, section.title, "chains", section, crumbs, "Chain of effect")
+
+    def _spanning(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
         present = tuple(block for block in blocks if block is not None)
         nothing = Paragraph(words.text(Text("There is nothing here yet.", muted=True)))
-        section = Section(f"page:{name}", title, present or (nothing,))
+        section = Section(f"page:{name}", title, present or (nothing,), sections)
         return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME,))

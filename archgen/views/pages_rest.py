@@ -10,7 +10,7 @@ from archgen.model.component import Component
 from archgen.model.deployment import Host
 from archgen.model.mapping import Type, flow_of
 from archgen.model.node import Endpoint, Node, Topic
-from archgen.views import tables, words
+from archgen.views import tables, timing_of, words
 from archgen.views.functional import component_table
 from archgen.views.index import Index
 from archgen.views.shapes import (
@@ -42,7 +42,7 @@ def pages(view: Index, drawn: Drawn) -> Iterator[Page]:
     for name in view.architecture.use_cases:
         yield _use_case(view, name)
     for host in view.architecture.hosts.values():
-        yield _host(view, host)
+        yield _host(view, host, drawn)
     for name in view.architecture.containers:
         yield _container(view, name)
     for partner in view.architecture.partners.values():
@@ -88,6 +88,7 @@ def _topic(view: Index, topic: Topic) -> Page:
         ("Message", words.joined((Text(message, code=True),) for message in topic.messages) or words.UNKNOWN),
         ("Type", words.joined(words.type_link(name) for name in topic.types)),
         ("Size", words.text(size) if (size := view.size(topic)) else ()),
+        *timing_of.topic_facts(view, topic.name),
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
@@ -211,7 +212,7 @@ def _use_case(view: Index, name: str) -> Page:
     return _page(Section(f"use_case:{name}", name, tuple(blocks)), "use_cases", crumb, "Use case")
 
 
-def _host(view: Index, host: Host) -> Page:
+def _host(view: Index, host: Host, drawn: Drawn) -> Page:
     found = view.architecture
     facts = [
         ("Cores", words.text(str(host.cores)) if host.cores else words.UNKNOWN),
@@ -235,6 +236,7 @@ def _host(view: Index, host: Host) -> Page:
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     blocks += [Markdown(host.description)] if host.description else []
+    blocks += drawn(timing_of.host_blocks(view, host.id))
     blocks += node_table(view, [node for node in view.nodes() if node.host == host.id])
     return _page(Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts", "page:hosts"), "Host")
 

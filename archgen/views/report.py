@@ -8,11 +8,12 @@ from typing import Literal
 
 from archgen.model.component import Component, Group
 from archgen.model.document import GENERATED, Chapter
-from archgen.views import tables, words
+from archgen.views import tables, timing_chapter, words
+from archgen.views.bars import Drawing
 from archgen.views.functional import component_blocks, group_blocks
 from archgen.views.implementation import implementation_blocks, node_blocks
 from archgen.views.index import Index
-from archgen.views.shapes import Block, Figure, Graph, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 
 Level = Literal["functional", "implementation"]
 
@@ -25,7 +26,7 @@ class Edition:
     level: Level = "implementation"
     chapters: tuple[str, ...] = GENERATED
     texts: Mapping[str, Chapter] = field(default_factory=dict)
-    graphs: Mapping[str, Graph] = field(default_factory=dict)
+    graphs: Mapping[str, Drawing] = field(default_factory=dict)
     statistics: tuple[Table, ...] = ()
     broken: bool = False
     """Errors were found, and what is sound is shown all the same."""
@@ -103,7 +104,7 @@ class _Chapters:
     def _figures(self, *names: str) -> Iterator[Figure]:
         for name in names:
             graph = self.edition.graphs.get(name)
-            if graph and graph.boxes:
+            if graph:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def _groups(self) -> list[Section]:
@@ -146,12 +147,20 @@ class _Chapters:
         blocks = [*self._figures("hosts", "ros"), *_present(tables.hosts(self.view), tables.links(self.view))]
         return [Section("page:hosts", "Deployment", tuple(blocks), page_break=True)] if blocks else []
 
-    def _chains(self) -> list[Section]:
-        table = tables.chains(self.view, self.view.architecture.chains.values())
-        if table is None or self.view.scope.components is not None:
+    def _timing(self) -> list[Section]:
+        timed = self.view.timed
+        if timed is None or self.edition.level == "functional":
             return []
-        lead = Paragraph(words.text("From what the robot senses to what it does, with the time that it may take."))
-        return [Section("page:chains", "Chains of effect", (lead, table), page_break=True)]
+        blocks = timing_chapter.blocks(self.view, timed, self.edition.graphs)
+        sections = timing_chapter.sections(self.view, timed, self.edition.graphs)
+        return [Section("page:timing", "Timing", blocks, sections, page_break=True)] if sections else []
+
+    def _chains(self) -> list[Section]:
+        blocks = timing_chapter.chain_blocks(self.view)
+        if not blocks or self.view.scope.components is not None:
+            return []
+        sections = tuple(timing_chapter.chains(self.view, self.edition.graphs))
+        return [Section("page:chains", "Chains of effect", blocks, sections, page_break=True)]
 
     def _views(self) -> list[Section]:
         asked = self.view.architecture.views.values()

@@ -1,4 +1,4 @@
-"""The four plain shapes that every emitter draws: Graph, Table, Outline and Record.
+"""The four plain shapes that every emitter draws: Graph, Table, Outline and Record (see `bars` for the Chart).
 
 Views make them from the model and its analyses; emitters know nothing else, so a new format costs one template.
 Everything in here is plain data (tuples, strings, numbers), and `plain()` turns it into dicts and lists.
@@ -72,6 +72,12 @@ def without_empty_columns(table: Table) -> Table:
     )
 
 
+Pace = Literal[
+    "to_10_ms", "to_30_ms", "to_100_ms", "to_300_ms", "to_1_s", "slower", "unknown", "event", "on_demand", "once"
+]
+"""Steps of the period scale: how often something happens, else why it has no period."""
+
+
 @dataclass(frozen=True, slots=True)
 class Box:
     """A box of a graph.
@@ -112,6 +118,8 @@ class Box:
     ref: str | None = None
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None
+    fill: Pace | None = None
+    """Fills the box by the period scale; frame and text tell apart what has no period."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +208,7 @@ class Markdown:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture in the flow, by its graph's id. `anchor` is unique in the output."""
+    """A picture in the flow, by its graph's or chart's id. `anchor` is unique in the output."""
 
     anchor: str
     graph: str

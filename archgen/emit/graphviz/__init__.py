@@ -1,4 +1,4 @@
-"""Graphviz: draws the shape Graph as svg, png and pdf.
+"""Graphviz: draws the shapes Graph and Chart as svg, png and pdf.
 
 `draw` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what was drawn
 before comes from the cache. No picture is taken on trust: after each layout every arrow is looked for, and no box,
@@ -19,7 +19,7 @@ from archgen.emit.graphviz.pool import MissingGraphviz, Progress
 from archgen.emit.graphviz.pool import draw as draw_all
 from archgen.emit.graphviz.worker import Task
 from archgen.emit.picture import Picture
-from archgen.views.shapes import Graph
+from archgen.views.bars import Chart, Drawing
 
 __all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw"]
 
@@ -28,7 +28,7 @@ FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
 
 
 def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
-    graphs: Sequence[Graph],
+    graphs: Sequence[Drawing],
     formats: Sequence[str],
     *,
     link: Callable[[str], str | None],
@@ -36,7 +36,7 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Picture]:
-    """Draw graphs in some formats. `link` gives the address for a ref, None where its target is not in the output.
+    """Draw graphs and charts in some formats. `link` gives the address for a ref, None where its target is not in the output.
 
     `cache` is a folder that archgen may fill. Raises MissingGraphviz where nothing can be drawn and not all is cached.
     """
@@ -79,9 +79,12 @@ def _keep(cache: Path, drawn: dict[str, Picture], formats: Sequence[str], count:
     store.prune(cache, count)
 
 
-def _links(graph: Graph, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
+def _links(graph: Drawing, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
     """Give the address of each ref in a graph that has one."""
-    refs = [box.ref for box in graph.boxes] + [arrow.ref for arrow in graph.arrows] + [c.ref for c in graph.clusters]
+    if isinstance(graph, Chart):
+        refs = [bar.ref for bar in graph.bars]
+    else:
+        refs = [item.ref for items in (graph.boxes, graph.arrows, graph.clusters) for item in items]
     for ref in dict.fromkeys(refs):
         href = link(ref) if ref else None
         if ref and href:

@@ -17,13 +17,13 @@ from importlib import metadata
 from pathlib import Path
 
 from archgen.emit.picture import Picture
-from archgen.views.shapes import Graph
+from archgen.views.bars import Drawing
 
 _SURPLUS = 4
 """So many times the pictures of one run are kept; the oldest beyond that are removed."""
 
 
-def key(graph: Graph, links: Mapping[str, str]) -> str:
+def key(graph: Drawing, links: Mapping[str, str]) -> str:
     """Name what a picture depends on: the graph, its addresses, and this program."""
     text = f"{_version()}\n{graph!r}\n{sorted(links.items())!r}"
     return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from archgen.emit.graphviz import engine, flow, twostep
+from archgen.emit.graphviz import chart, engine, flow, twostep
 from archgen.emit.graphviz.decorations import decorated
 from archgen.emit.graphviz.draft import Draft, draft
 from archgen.emit.graphviz.legend import below
@@ -13,6 +13,7 @@ from archgen.emit.graphviz.png import png
 from archgen.emit.graphviz.scene import Scene
 from archgen.emit.graphviz.svg import drawn_edges, finished, steady
 from archgen.emit.picture import Picture
+from archgen.views.bars import Chart, Drawing
 from archgen.views.shapes import Graph
 
 _LAYOUTS = {"flow": flow.flow, "group": flow.group, "two-step": twostep.two_step, "overview": twostep.two_step}
@@ -47,14 +48,29 @@ _FEW = 2
 
 def _hues(graph: Graph) -> int:
     hues = {box.colour for box in graph.boxes if box.emphasis != "neighbour"} | {arrow.colour for arrow in graph.arrows}
-    return len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
+    fills = {box.fill for box in graph.boxes} - {None}
+    return len(fills) + len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
 def picture(
-    graph: Graph, links: Mapping[str, str], formats: Sequence[str], *, simple: bool = False, warning: str | None = None
+    graph: Drawing,
+    links: Mapping[str, str],
+    formats: Sequence[str],
+    *,
+    simple: bool = False,
+    warning: str | None = None,
 ) -> Picture:
-    """Draw a graph in the formats asked for (names of Picture's fields)."""
+    """Draw a graph or a chart in the formats asked for (names of Picture's fields)."""
+    if isinstance(graph, Chart):
+        return rendered(graph, chart.chart(graph, links.get), formats, quick=False, warning=warning)
     _, laid_out = scene(graph, links, simple=simple)
+    return rendered(graph, laid_out, formats, quick=_hues(graph) <= _FEW, warning=warning)
+
+
+def rendered(
+    graph: Drawing, laid_out: Scene, formats: Sequence[str], *, quick: bool, warning: str | None = None
+) -> Picture:
+    """Render what has its places; every line of it must be there."""
     left, bottom, right, top = laid_out.bounds()
     dot = laid_out.dot(graph.id, {**_LOOK, "tooltip": '" "'})
     wanted = [form for form in _FORMATS if form in formats]
@@ -69,7 +85,7 @@ def picture(
         right - left,
         top - bottom,
         svg=finished(text, graph) if "svg" in formats else None,
-        png=png(laid_out, graph.id, _LOOK, quick=_hues(graph) <= _FEW) if "png" in formats else None,
+        png=png(laid_out, graph.id, _LOOK, quick=quick) if "png" in formats else None,
         dot=dot,
         warning=warning,
         **{form: steady(data) if form == "svg_outlines" else data for form, data in zip(wanted, others, strict=True)},

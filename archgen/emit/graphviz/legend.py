@@ -10,7 +10,7 @@ from archgen.emit.graphviz.decorations import decorated
 from archgen.emit.graphviz.draft import measure
 from archgen.emit.graphviz.scene import Line, Part, Scene
 from archgen.emit.graphviz.text import html, wrapped
-from archgen.views.shapes import Arrow, Box, Graph
+from archgen.views.shapes import Arrow, Box, Graph, Pace
 
 Attributes = dict[str, str]
 _SAMPLE = (24.0, 11.0)
@@ -32,6 +32,19 @@ _BOXES: dict[str, tuple[Box, str]] = {
     "adapted": (Box("", "", status="adapted"), "adapted"),
     "fold": (Box("", "", style="fold"), "stands for several"),
 }
+_PACES: dict[Pace, str] = {
+    "to_10_ms": "period up to 10 ms",
+    "to_30_ms": "30 ms",
+    "to_100_ms": "100 ms",
+    "to_300_ms": "300 ms",
+    "to_1_s": "1 s",
+    "slower": "longer",
+    "event": "on an event, rate not known",
+    "on_demand": "on demand",
+    "once": "once, at the start",
+    "unknown": "? unknown",
+}
+_BOXES |= {f"pace:{pace}": (Box("", "", fill=pace), words) for pace, words in _PACES.items()}
 _ARROWS: dict[str, tuple[Arrow, str]] = {
     "data": (Arrow("", "", ""), "data"),
     "optional": (Arrow("", "", "", optional=True), "optional input"),
@@ -47,11 +60,15 @@ _WORDS = {"count": "A number on an arrow: how many flows it stands for.", "star"
 
 def below(scene: Scene, graph: Graph) -> Scene:
     """Add the legend and the notes below a drawing, at its left."""
-    left, bottom, right, _ = scene.bounds()
-    width = max(right - left, _LEAST)
     entries = [entry for key in graph.legend for entry in _entries(key)]
     entries += [(_swatch(index), text) for index, text in graph.legend_colours]
-    said = [_WORDS[key] for key in graph.legend if key in _WORDS] + list(graph.notes)
+    return under(scene, entries, [_WORDS[key] for key in graph.legend if key in _WORDS] + list(graph.notes))
+
+
+def under(scene: Scene, entries: Sequence[tuple[Scene, str]], said: Sequence[str]) -> Scene:
+    """Add samples with their words, then sentences, below a drawing, at its left."""
+    left, bottom, right, _ = scene.bounds()
+    width = max(right - left, _LEAST)
     legend = _rows(entries, width)
     notes = _notes(said, width, -legend.bounds()[1] if entries else 0.0)
     return scene.joined(*(part.moved(left, bottom - 20) for part in (legend, notes)))
@@ -70,7 +87,7 @@ def _entries(key: str) -> Iterator[tuple[Scene, str]]:
 
 
 def _box(item: Box) -> Scene:
-    double = 6 if item.style in {"fold", "action"} else 0  # the second frame stands outside
+    double = 6 if item.style in {"fold", "action"} or item.fill == "once" else 0  # the second frame stands outside
     width, height = _SAMPLE[0] - double, _SAMPLE[1] - double
     attributes = {
         **marks.box(item, lambda _: None),
@@ -84,7 +101,7 @@ def _box(item: Box) -> Scene:
 
 
 def _swatch(index: int) -> Scene:
-    return _box(Box("", "", style="group" if index < 100 else "component", colour=index))  # noqa: PLR2004
+    return _box(Box("", "", style="group", colour=index))
 
 
 def _arrow(key: str, item: Arrow, *, merged: bool) -> Scene:

@@ -9,7 +9,8 @@
 | external, physical, partner | dashed box |
 | host, container, link | plain box, rounded box with list, small plain text |
 
-Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame.
+Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
+that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def box(item: Box, link: Link) -> Attributes:
         "color": f'"{frame}"',
         "fillcolor": f'"{fill}"',
         "penwidth": _pen(item),
-        "peripheries": "2" if item.style in {"action", "fold"} else "1",
+        "peripheries": "2" if item.style in {"action", "fold"} or item.fill == "once" else "1",
         "margin": _margin(item),
         "width": "0.3",
         "height": "0.22",
@@ -58,8 +59,10 @@ def box(item: Box, link: Link) -> Attributes:
 
 def colours(item: Box) -> tuple[str, str]:
     """Choose the frame's and the fill's colour."""
-    if item.colour is not None and item.colour >= 100:  # noqa: PLR2004 - periods
-        return palette.FRAME, palette.hue(item.colour)
+    if item.fill is not None:
+        fill = palette.PERIODS[item.fill]
+        rim = palette.FRAME if item.fill == "once" else palette.rim_on(fill)  # its outer frame stands on the paper
+        return palette.SUBJECT if item.emphasis == "subject" else rim, fill
     if item.emphasis == "neighbour":
         return palette.NEIGHBOUR_FRAME, palette.NEIGHBOUR_FILL
     frame = {"topic": palette.TOPIC_FRAME, "service": palette.SERVICE_FRAME, "action": palette.SERVICE_FRAME}.get(
@@ -82,10 +85,14 @@ def _margin(item: Box) -> str:
 def _pen(item: Box) -> str:
     if item.emphasis == "subject":
         return "2"
+    if item.fill in {"unknown", "on_demand"}:
+        return "1.2"
     return "1.2" if item.colour is not None and item.emphasis == "normal" else "0.8"
 
 
 def _dashes(item: Box) -> list[str]:
+    if item.fill is not None:
+        return {"unknown": ["dashed"], "on_demand": ["dotted"]}.get(item.fill, [])
     if item.style in _DASHED or item.status == "planned":
         return ["dashed"]
     return ["dotted"] if item.status == "adapted" else []
@@ -95,6 +102,7 @@ def _common(item: Box, link: Link) -> Attributes:
     classes = ["box", item.style, item.emphasis]
     classes += [item.status] if item.status else []
     classes += [f"hue{item.colour}"] if item.colour is not None else []
+    classes += [f"pace-{item.fill.replace('_', '-')}"] if item.fill else []
     return {
         "class": f'"{" ".join(classes)}"',
         **linked(item.ref, item.tooltip or "\n".join((item.title, *item.lines)), link),
@@ -111,7 +119,7 @@ def linked(ref: str | None, tooltip: str, link: Link) -> Attributes:
 def _lines(item: Box) -> str:
     _, fill = colours(item)
     ink = palette.text_on(fill)
-    small = ink if ink == palette.PAPER else palette.MUTED
+    small = palette.MUTED if ink == palette.TEXT else ink
     width = _WIDTHS.get(item.style, 18)
     bold = item.emphasis == "subject" or item.style in {"group", "fold", "host"}
     title = "<BR/>".join(f"<B>{html(row)}</B>" if bold else html(row) for row in wrapped(item.title, width))

@@ -52,8 +52,24 @@ _DARK_HUES = (
     "#cbb68f",
 )
 
-PERIODS = ("#08306b", "#08519c", "#2171b5", "#6baed6", "#9ecae1", "#deebf7", "#ffffff", "#fde7c7", "#e9dff2", "#e3e6e9")
-"""Fills by period, from index 100 on in the shapes: to 10 ms, 30, 100, 300, 1 s, above, unknown, event, on demand, once."""
+INK = "#1b2126"
+"""Text on a fill that stays as light in the dark as it is on paper."""
+RIM = "#3d4853"
+"""The frame of such a fill, as dark in the dark."""
+PERIODS = {
+    "to_10_ms": "#08306b",
+    "to_30_ms": "#08519c",
+    "to_100_ms": "#2171b5",
+    "to_300_ms": "#6baed6",
+    "to_1_s": "#9ecae1",
+    "slower": "#deebf7",
+    "unknown": PAPER,
+    "event": "#fde7c7",
+    "on_demand": "#e9dff2",
+    "once": "#e3e6e9",
+}
+"""Fills by period, one lightness after the other; the same in the dark, but for the unknown."""
+OK = "#1c6b3c"
 
 _DARK_PAPER = "#14181c"
 _DARK = {
@@ -72,15 +88,14 @@ _DARK = {
     NOTE: "#7cc0f5",
     WARNING: "#f2b84b",
     ERROR: "#ff8a80",
+    OK: "#6fd19a",
     FADED: "#5d6770",
 }
 
 
 def hue(index: int | None) -> str:
-    """Give the colour of a palette index; beyond ten they repeat, and periods begin at 100."""
-    if index is None:
-        return FRAME
-    return PERIODS[(index - 100) % len(PERIODS)] if index >= 100 else HUES[index % len(HUES)]  # noqa: PLR2004
+    """Give the colour of a palette index; beyond ten they repeat."""
+    return FRAME if index is None else HUES[index % len(HUES)]
 
 
 def tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
@@ -92,7 +107,17 @@ def tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
 def text_on(fill: str) -> str:
     """Choose white or dark text, whichever reads better on a fill."""
     red, green, blue = (int(fill[at : at + 2], 16) for at in (1, 3, 5))
-    return PAPER if 0.299 * red + 0.587 * green + 0.114 * blue < 135 else TEXT  # noqa: PLR2004
+    if 0.299 * red + 0.587 * green + 0.114 * blue < 135:  # noqa: PLR2004
+        return PAPER
+    return INK if fill in _STEADY else TEXT
+
+
+def rim_on(fill: str) -> str:
+    """Choose a frame that stands out from its fill and from the paper, in the light and in the dark."""
+    return RIM if text_on(fill) == INK else FRAME
+
+
+_STEADY = frozenset(PERIODS.values()) - {PAPER}
 
 
 def dark_pairs() -> tuple[tuple[str, str], ...]:

@@ -18,6 +18,7 @@ from pathlib import Path
 from archgen.emit.graphviz import fonts
 from archgen.emit.graphviz.worker import Failure, Task, receive, send
 from archgen.emit.picture import Picture
+from archgen.views.bars import Chart
 
 TIMEOUT = 30.0
 """Seconds that one drawing may take."""
@@ -84,6 +85,11 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     return tuple(run.done[at] for at in range(len(tasks)))
 
 
+def _size(task: Task) -> int:
+    """Guess how long a drawing takes; charts have nothing to lay out."""
+    return 0 if isinstance(task.graph, Chart) else len(task.graph.boxes)
+
+
 class _Run:
     """What the threads share: each holds one worker process and takes the next task when its last one is done."""
 
@@ -101,7 +107,7 @@ class _Run:
         self._lock = threading.Lock()
         self._total = len(tasks)
         self._waiting: queue.SimpleQueue[tuple[int, Task]] = queue.SimpleQueue()
-        for at, task in sorted(enumerate(tasks), key=lambda each: -len(each[1].graph.boxes)):
+        for at, task in sorted(enumerate(tasks), key=lambda each: -_size(each[1])):
             self._waiting.put((at, task))
 
     def work(self) -> None:

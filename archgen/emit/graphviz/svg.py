@@ -12,7 +12,7 @@ import re
 from html import escape
 
 from archgen.emit.graphviz.text import clean
-from archgen.views.shapes import Graph
+from archgen.views.bars import Drawing
 
 _HEAD = re.compile(r"^.*?<svg ([^>]*)>", re.DOTALL)
 _COMMENT = re.compile(r"<!--.*?-->\n?", re.DOTALL)
@@ -36,7 +36,7 @@ def steady(outlines: bytes) -> bytes:
     return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
 
 
-def finished(svg: str, graph: Graph) -> bytes:
+def finished(svg: str, graph: Drawing) -> bytes:
     """Give the svg as an element of its own."""
     head = _HEAD.match(svg)
     if head is None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import IO, Any
 
 from archgen.emit.picture import Picture
-from archgen.views.shapes import Graph
+from archgen.views.bars import Drawing
 
 _LENGTH = struct.Struct("<Q")
 
@@ -23,7 +23,7 @@ _LENGTH = struct.Struct("<Q")
 class Task:
     """One graph to draw: with the addresses of its links, the formats, and how."""
 
-    graph: Graph
+    graph: Drawing
     links: dict[str, str]
     formats: tuple[str, ...]
     simple: bool = False

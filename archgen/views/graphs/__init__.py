@@ -10,6 +10,8 @@
 | `ros` | all nodes |
 | `hosts` | hosts, containers and links |
 | `views/V` | a view of the project |
+| `timing` | all activities by their period |
+| `timing/G` | the activities of a group by their period |
 
 """
 
@@ -28,17 +30,34 @@ from archgen.views.graphs.hosts import hosts
 from archgen.views.graphs.implementation import implementation
 from archgen.views.graphs.overview import components, overview
 from archgen.views.graphs.ros import ros
+from archgen.views.graphs.timing import group_timing, timing
 from archgen.views.index import Index, index
 from archgen.views.shapes import Graph
+from archgen.views.timed import Timed
 
-__all__ = ["all_graphs", "component", "components", "group", "hosts", "implementation", "overview", "ros", "selected"]
+__all__ = [
+    "all_graphs",
+    "component",
+    "components",
+    "group",
+    "group_timing",
+    "hosts",
+    "implementation",
+    "overview",
+    "ros",
+    "selected",
+    "timing",
+]
 
 
 def all_graphs(
-    architecture: Architecture, selection: Selection | None = None, findings: Iterable[Diagnostic] = ()
+    architecture: Architecture,
+    selection: Selection | None = None,
+    findings: Iterable[Diagnostic] = (),
+    timed: Timed | None = None,
 ) -> tuple[Graph, ...]:
     """Make all pictures; with a selection, one of the selection and those of what is selected."""
-    return tuple(graph for graph in _all(index(architecture, findings), selection) if graph.boxes)
+    return tuple(graph for graph in _all(index(architecture, findings, timed=timed), selection) if graph.boxes)
 
 
 def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
@@ -60,6 +79,11 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
         yield hosts(view)
     else:
         yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
+    if view.timed is not None:
+        if selection is None:
+            yield timing(view, view.timed)
+        for name in dict.fromkeys(each.group for each in shown):
+            yield group_timing(view, view.timed, name)
     selecting = Selecting(architecture)
     for asked in architecture.views.values():
         chosen, _ = selecting.select(asked.show)

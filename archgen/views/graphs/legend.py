@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import get_args
 
-from archgen.views.shapes import Arrow, Box, Graph
+from archgen.views.shapes import Arrow, Box, Graph, Pace
 
 _BOXES = ("source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUSES = ("planned", "adapted")
+_SCALE = get_args(Pace)[:6]
 _ARROWS = ("optional", "physical", "service", "action", "internal", "link")
 
 
@@ -21,10 +23,17 @@ def _keys(graph: Graph) -> list[str]:
     kinds = {kind for box in graph.boxes for kind in _kinds(box)}
     strokes = {kind for arrow in graph.arrows for kind in _strokes(arrow)}
     keys = [key for key in ("subject", "neighbour", *_BOXES, *_BOX_OF_FLOW.values(), *_STATUSES) if key in kinds]
+    keys += _paces(graph)
     keys += [key for key in _ARROWS if key in strokes]
     keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
     wide = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
     return [*keys, "width", "count"] if wide else keys
+
+
+def _paces(graph: Graph) -> list[str]:
+    """Give the whole scale where boxes are filled by it, and what else they are filled with."""
+    used = {box.fill for box in graph.boxes} - {None}
+    return [f"pace:{pace}" for pace in get_args(Pace) if pace in used or pace in _SCALE] if used else []
 
 
 def _kinds(box: Box) -> set[str]:

@@ -15,6 +15,7 @@ from archgen.views.graphs import all_graphs, group
 from archgen.views.index import index
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
+from tests.timings import timed
 
 ROBOT = all_graphs(robot(1))
 
@@ -49,6 +50,14 @@ def _names(scene: Scene) -> set[str]:
 def test_pictures_of_a_robot(graph: Graph) -> None:
     assert faults(graph) == []
     assert sum(arrow.count for arrow in graph.arrows) == graph.asked
+
+
+@pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
+def test_pictures_of_timing(example: str) -> None:
+    architecture = pipeline.check(Path(__file__).parents[3] / example).architecture
+    graphs = [g for g in all_graphs(architecture, timed=timed(architecture)) if g.id.startswith("timing")]
+    assert graphs
+    assert [(graph.id, wrong) for graph in graphs if (wrong := faults(graph))] == []
 
 
 @pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])

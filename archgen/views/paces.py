@@ -1,0 +1,68 @@
+"""How often things happen, in words and as a step of the period scale."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from archgen.timing import analysis
+from archgen.views import figures
+from archgen.views.shapes import Pace
+
+_STEPS: tuple[tuple[int, Pace], ...] = (
+    (10, "to_10_ms"),
+    (30, "to_30_ms"),
+    (100, "to_100_ms"),
+    (300, "to_300_ms"),
+    (1000, "to_1_s"),
+)
+NAMES: dict[Pace, str] = {
+    "to_10_ms": "up to 10 ms",
+    "to_30_ms": "up to 30 ms",
+    "to_100_ms": "up to 100 ms",
+    "to_300_ms": "up to 300 ms",
+    "to_1_s": "up to 1 s",
+    "slower": "longer",
+    "event": "on an event, rate not known",
+    "on_demand": "on demand",
+    "once": "once, at the start",
+    "unknown": "unknown",
+}
+"""The steps of the scale in words."""
+_WORDS = {"event": "event", "on_demand": "on demand", "once": "once"}
+
+
+def step(pace: analysis.Pace | None) -> Pace:
+    """Give the step of the scale: by the period where there is a rate, else by the behaviour."""
+    if pace is None:
+        return "unknown"
+    if pace.behaviour == "once":
+        return "once"
+    if pace.behaviour == "on_demand":
+        return "on_demand"
+    if pace.rate.value:
+        milliseconds = Fraction(1000) / pace.rate.value
+        return next((name for most, name in _STEPS if milliseconds <= most), "slower")
+    return "event" if pace.behaviour == "event" else "unknown"
+
+
+def said(pace: analysis.Pace | None) -> str:
+    """Say a pace in one line: `10 Hz · 100 ms`, `<= 10 Hz · >= 100 ms, event`, `on demand`, `?`."""
+    return ", ".join(lines(pace))
+
+
+def lines(pace: analysis.Pace | None) -> tuple[str, ...]:
+    """Say a pace in a box: the rate with its period, then what fires it where that is no clock."""
+    if pace is None:
+        return ("?",)
+    known = f"{figures.rate(pace.rate)} · {figures.period(pace.rate)}" if pace.rate.value else ""
+    kind = _WORDS.get(pace.behaviour or "", "")
+    return tuple(word for word in (known, kind) if word) or ("?",)
+
+
+def sentence(pace: analysis.Pace, origin: tuple[str, ...]) -> str:
+    """Say a pace with where it comes from: `10 Hz, from scanner`; empty where nothing is known."""
+    words = said(pace)
+    if words == "?":
+        return ""
+    source = figures.from_words(origin) if pace.inferred and pace.rate.value else ""
+    return f"{words}, {source}" if source else words

@@ -1,0 +1,264 @@
+"""Timing in documents: tables of activities, hosts, links, topics and chains, and the sentences above them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.source import Span
+from archgen.timing.analysis import Pace
+from archgen.timing.system import Activity
+from archgen.views import charts, figures, paces, words
+from archgen.views.index import Index
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Inlines,
+    Paragraph,
+    Table,
+    Text,
+    without_empty_columns,
+)
+from archgen.views.shapes import Pace as Step
+from archgen.views.timed import Timed
+
+TIERS = {
+    "declared": "declared, assumed to hold",
+    "dedicated": "own core assumed",
+    "host": "any scheduler that never idles",
+    "priorities": "by fixed priorities",
+    "executor": "single-threaded executor",
+    "cores": "several cores",
+    "unknown": "",
+}
+_VERDICTS = {
+    "schedulable": "below the rate-monotonic bound",
+    "overload": "overloaded",
+    "undecided": "not decided by load alone",
+    "unknown": "unknown",
+}
+_QUIET = Text("unknown", muted=True)
+
+
+def figure(text: str) -> Inlines:
+    """Write a figure; what is unknown is muted."""
+    return (_QUIET,) if text == figures.UNKNOWN else words.text(text) if text else ()
+
+
+def summary(view: Index, timed: Timed) -> Paragraph:
+    """Say in a few sentences how the architecture stands."""
+    found = timed.analysis.paces.values()
+    known = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in found)
+    said = [f"Of {words.plural(len(found), 'activity')}, {known} have a known rate or run on demand or once."]
+    if timed.chains:
+        counts = [(name, sum(result.verdict == name for result in timed.chains)) for name in ("met", "missed", "open")]
+        told = ", ".join(f"{count} {name}" for name, count in counts if count)
+        said.append(f"Of {words.plural(len(timed.chains), 'chain')} of effect: {told}.")
+    over = [view.architecture.hosts[h].title for h, load in timed.analysis.hosts.items() if load.verdict == "overload"]
+    said += [f"Overloaded: {', '.join(over)}."] if over else []
+    said.append("All bounds are safe for the figures written; what they rest on beside them stands with each.")
+    return Paragraph(words.text(" ".join(said)))
+
+
+def troubles(timed: Timed) -> Iterator[Block]:
+    """List the rings of triggers that never end or never start, and what has no fixed point."""
+    found = timed.analysis
+    kinds = (
+        ("An event that enters circulates for ever among", found.endless),
+        ("Each waits for the other, and none ever starts:", found.deadlocked),
+        ("No bound was found, since each step made the next one larger:", tuple((name,) for name in found.diverged)),
+    )
+    for lead, rings in kinds:
+        if rings:
+            yield Paragraph(words.text(lead), "error")
+            yield Bullets(tuple(words.joined((named(timed, name) for name in ring), " → ") for ring in rings))
+
+
+def steps(view: Index, timed: Timed) -> Table | None:
+    """Count the activities on each step of the period scale, and name them."""
+    shown = [each for each in timed.analysis.system.activities.values() if view.scope.node(each.node)]
+    found: dict[Step, list[Inlines]] = {step: [] for step in paces.NAMES}
+    for each in shown:
+        found[paces.step(timed.analysis.paces.get(each.id))].append(named(timed, each.id))
+    rows = tuple(
+        (words.text(paces.NAMES[step]), words.text(str(len(names))), words.joined(names))
+        for step, names in found.items()
+        if names
+    )
+    columns = (Column("Period", 0.8), Column("Activities", 0.5, "right"), Column("Which", 4))
+    return Table("table:periods", "Activities by period", columns, rows) if rows else None
+
+
+def elements(view: Index, timed: Timed) -> Table | None:
+    """List every activity: behaviour, rate, gap and response, with the source of each figure."""
+    rows = tuple(
+        _element(timed, activity, timed.origins.get(activity.id, ()))
+        for activity in timed.analysis.system.activities.values()
+        if view.scope.node(activity.node)
+    )
+    columns = (
+        Column("Activity", 1.5),
+        Column("Behaviour", 0.8),
+        Column("Rate", 0.8, "right"),
+        Column("Longest gap", 0.8, "right"),
+        Column("Where the rate is from", 1.7),
+        Column("Response", 0.9, "right"),
+        Column("How it was found", 1.3),
+    )
+    return (
+        Table("table:timing", "Behaviour, rate and response of every activity", columns, rows, wide=True)
+        if rows
+        else None
+    )
+
+
+def _element(timed: Timed, activity: Activity, origin: tuple[str, ...]) -> tuple[Inlines, ...]:
+    pace = timed.analysis.paces.get(activity.id, Pace(activity.behaviour))
+    response = timed.analysis.responses.get(activity.id)
+    return (
+        named(timed, activity.id),
+        words.text(words.BEHAVIOURS[pace.behaviour]) if pace.behaviour else (_QUIET,),
+        figure(_rate(pace)),
+        figure(figures.duration(pace.gap)) if pace.behaviour not in {"on_demand", "once"} else (),
+        source(timed, activity, pace, origin),
+        figure(figures.duration(response.worst)) if response else (_QUIET,),
+        words.text(TIERS[response.tier]) if response and TIERS[response.tier] else (),
+    )
+
+
+def _rate(pace: Pace) -> str:
+    if pace.behaviour == "once" or (pace.behaviour == "on_demand" and pace.rate.value is None):
+        return ""
+    return figures.rate(pace.rate)
+
+
+def source(timed: Timed, activity: Activity, pace: Pace, origin: tuple[str, ...]) -> Inlines:
+    """Say where a pace was written, or whom it comes from."""
+    if not pace.inferred:
+        at = place(activity.places.get("period") or activity.places.get("rate") or activity.at)
+        return words.text("written", Text(f" {at}", muted=True)) if at else words.text("written")
+    if pace.rate.value is None or not origin:
+        return ()
+    producers = words.joined(named(timed, name) for name in origin[:3])
+    return words.text("from ", *producers, *([" and others"] if len(origin) > 3 else []))  # noqa: PLR2004
+
+
+def place(at: Span) -> str:
+    """Give file and line; empty where nothing was written."""
+    return f"{at.file}:{at.line}" if at.file else ""
+
+
+def named(timed: Timed, name: str) -> Inlines:
+    """Name an activity, as a link to its node."""
+    activity = timed.analysis.system.activities.get(name)
+    return words.text(Text(name, ref=f"node:{activity.node}" if activity else None, code=True))
+
+
+def hosts(view: Index, timed: Timed) -> Table | None:
+    """List hosts with their load."""
+    rows = tuple(
+        (
+            words.text(Text(view.architecture.hosts[name].title, ref=f"host:{name}")),
+            words.text(str(load.cores)),
+            figure(figures.share(charts.of_cores(load.utilisation, load.cores))),
+            figure(figures.share(load.rate_monotonic_bound)) if load.cores == 1 else (),
+            words.text(_VERDICTS[load.verdict]),
+            words.text(figures.missing(load.utilisation, timed.analysis, 3)),
+        )
+        for name, load in timed.analysis.hosts.items()
+    )
+    columns = (
+        Column("Host", 1.2),
+        Column("Cores", 0.5, "right"),
+        Column("Load of all cores", 0.9, "right"),
+        Column("Rate-monotonic bound", 0.8, "right"),
+        Column("Verdict", 1.1),
+        Column("Missing", 1.6),
+    )
+    return _tidy(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
+
+
+def links(view: Index, timed: Timed) -> Table | None:
+    """List links with what they carry."""
+    rows = tuple(
+        (
+            words.text(Text(view.architecture.links[name].title, ref=f"link:{name}")),
+            figure(figures.traffic(load.traffic)),
+            figure(figures.share(load.share)),
+            figure(figures.amount(load.burst)),
+            figure(figures.duration(load.queueing)),
+            words.text(figures.missing(load.traffic, timed.analysis, 3)),
+        )
+        for name, load in timed.analysis.links.items()
+    )
+    columns = (
+        Column("Link", 1.2),
+        Column("Traffic", 0.9, "right"),
+        Column("Share", 0.7, "right"),
+        Column("Burst", 0.8, "right"),
+        Column("Longest queueing", 0.9, "right"),
+        Column("Missing", 1.5),
+    )
+    return _tidy(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
+
+
+def topics(view: Index, timed: Timed) -> Table | None:
+    """List topics with what is published on them."""
+    shown = [name for name in timed.analysis.topics if name in view.architecture.topics and _shown(view, name)]
+    found = timed.analysis.topics
+    rows = tuple(
+        (
+            words.text(words.topic_link(name)),
+            figure(figures.amount(found[name].size)),
+            figure(figures.traffic(found[name].published)),
+            figure(figures.traffic(found[name].delivered)),
+        )
+        for name in shown
+    )
+    columns = (
+        Column("Topic", 2.2),
+        Column("Message", 0.8, "right"),
+        Column("Published", 0.9, "right"),
+        Column("Delivered", 0.9, "right"),
+    )
+    return Table("table:bandwidth", "Traffic of topics", columns, rows) if rows else None
+
+
+def _shown(view: Index, name: str) -> bool:
+    topic = view.architecture.topics[name]
+    return any(view.scope.node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
+
+
+def chains(view: Index, timed: Timed) -> Table | None:
+    """List chains with bound, best case and verdict."""
+    rows = tuple(
+        (
+            words.text(Text(view.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
+            figure(figures.duration(result.bound)),
+            figure(figures.least(result.best)),
+            figure(figures.duration(result.deadline)) if result.deadline else (),
+            words.text(Text(result.verdict, strong=result.verdict != "met")),
+            words.text(figures.missing(result.bound, timed.analysis, 3)),
+        )
+        for result in timed.chains
+        if result.id in view.architecture.chains
+    )
+    columns = (
+        Column("Chain", 1.6),
+        Column("At the latest", 0.9, "right"),
+        Column("At the earliest", 0.9, "right"),
+        Column("Deadline", 0.8, "right"),
+        Column("Verdict", 0.7),
+        Column("Missing", 1.6),
+    )
+    return _tidy(Table("table:chains", "Chains of effect: bounds and deadlines", columns, rows)) if rows else None
+
+
+def _tidy(table: Table) -> Table:
+    rows = tuple(tuple(() if blank(cell) else cell for cell in row) for row in table.rows)
+    return without_empty_columns(Table(table.anchor, table.caption, table.columns, rows))
+
+
+def blank(cell: Inlines) -> bool:
+    """Say whether a cell shows nothing."""
+    return all(not part.text for part in cell)
