@@ -1,0 +1,230 @@
+"""From a system, and the machine that it runs on, to a plan. Unknown figures are taken as nothing, and named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from archgen.simulation.plan import (
+    FINEST,
+    IDLE,
+    KEPT,
+    PERIODIC,
+    TRIGGERED,
+    Machine,
+    Output,
+    Plan,
+    Processor,
+    Step,
+    Wire,
+)
+from archgen.timing.system import Activity, Arc, System
+
+Pauses = Mapping[tuple[str, str], Fraction]
+"""The largest time between two chances to publish an output, in ns, by activity and output key."""
+
+
+def flatten(system: System, machine: Machine, pauses: Pauses | None = None) -> Plan:
+    """Make a plan. `pauses` say when a conditional output must be published to keep its promised largest gap."""
+    made = _Flat(system, machine, pauses or {})
+    wires = tuple(made.wire(arc) for arc in system.arcs)
+    steps = tuple(made.step(activity) for activity in system.activities.values())
+    answers = {
+        e: back
+        for e, arc in enumerate(system.arcs)
+        if arc.role == "request"
+        for back, other in enumerate(system.arcs)
+        if other.role == "answer" and (other.source, other.target, other.topic) == (arc.target, arc.source, arc.topic)
+    }
+    return Plan(
+        system.tick / made.scale,
+        steps,
+        wires,
+        system.arcs,
+        tuple(made.processor_of_thread),
+        tuple(map(tuple, made.members)),
+        tuple(made.processors),
+        tuple(made.links),
+        tuple(made.queues),
+        made.cores(),
+        answers,
+        tuple(made.unknown),
+    )
+
+
+class _Flat:
+    """Numbers for everything, given in order of appearance."""
+
+    def __init__(self, system: System, machine: Machine, pauses: Pauses) -> None:
+        self.system = system
+        self.machine = machine
+        self.pauses = pauses
+        self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * FINEST)))
+        self.number = {key: at for at, key in enumerate(system.activities)}
+        self.links: dict[str, int] = {}
+        self.queues: dict[tuple[str, str, str], int] = {}
+        self.unknown: dict[str, None] = {}
+        self.processors: list[Processor] = []
+        self.places: dict[tuple[str, int | None], int] = {}
+        self.processor_of_thread: list[int] = []
+        self.members: list[list[int]] = []
+        self.executors: dict[str, int] = {}
+        self.pinned: dict[str, set[int]] = {}
+        for activity in system.activities.values():
+            if activity.host is not None and activity.core is not None:
+                self.pinned.setdefault(activity.host, set()).add(activity.core)
+
+    def units(self, ticks: int) -> int:
+        return ticks * self.scale
+
+    def known(self, ticks: int | None, what: str) -> int:
+        if ticks is None:
+            self.unknown[what] = None
+            return 0
+        return self.units(ticks)
+
+    def wire(self, arc: Arc) -> Wire:
+        reader = self.system.activities[arc.target]
+        worst = self.units(arc.worst or 0)
+        if arc.worst is None:
+            self.unknown[f"latency from {arc.source} to {arc.target}"] = None
+        link, transmission = -1, 0
+        if arc.link is not None and arc.size is not None and arc.link in self.machine.bandwidth:
+            link = self.links.setdefault(arc.link, len(self.links))
+            seconds = arc.size * 8 / Fraction(self.machine.bandwidth[arc.link])
+            transmission = int(seconds * 10**9 / self.system.tick * self.scale)
+        queue = -1
+        if arc.role == "data":
+            queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
+        best = min(self.units(arc.best or 0), worst)
+        request = arc.role == "request"
+        return Wire(
+            target=self.number[arc.target],
+            slot=_slot(reader, arc),
+            best=best,
+            worst=worst,
+            queue=queue,
+            depth=arc.depth or 0,
+            link=link,
+            transmission=transmission,
+            limit=None if arc.worst is None else worst,
+            request=request,
+        )
+
+    def step(self, activity: Activity) -> Step:
+        kind = self.kind(activity)
+        wcet = self.known(activity.wcet, f"execution time of {activity.id}") if kind != KEPT else 0
+        if activity.response is not None and activity.wcet is None:
+            self.unknown.pop(f"execution time of {activity.id}", None)
+        fixed = activity.mode == "all"
+        into = [(e, arc) for e, arc in enumerate(self.system.arcs) if arc.target == activity.id]
+        return Step(
+            activity.id,
+            kind,
+            self.units(activity.period or 0) if kind == PERIODIC else 0,
+            self.units(activity.jitter),
+            min(self.units(activity.bcet or 0), wcet),
+            wcet,
+            None if activity.response is None else self.units(activity.response),
+            activity.every,
+            self.units(activity.throttle),
+            len(activity.triggers),
+            self.kept(activity) if fixed else (),
+            tuple(e for e, arc in into if fixed and _slot(activity, arc) >= 0),
+            tuple(e for e, _ in into),
+            tuple(self.output(activity, key) for key in self.outputs(activity)),
+            tuple(self.calls(activity)),
+            self.thread(activity),
+            activity.priority or 0,
+        )
+
+    def kind(self, activity: Activity) -> int:
+        if activity.behaviour == "once":
+            return KEPT
+        if activity.behaviour == "periodic":
+            if activity.period:
+                return PERIODIC
+            self.unknown[f"period of {activity.id}"] = None
+            return IDLE
+        if activity.behaviour is None:
+            self.unknown[f"behaviour of {activity.id}"] = None
+        for outside in self.system.external.get(activity.id, ()):
+            if outside in activity.triggers:
+                self.unknown[f"events from outside at {outside}"] = None
+        return TRIGGERED
+
+    def kept(self, activity: Activity) -> tuple[int, ...]:
+        once = {
+            arc.input
+            for arc in self.system.arcs
+            if arc.target == activity.id and self.system.activities[arc.source].behaviour == "once"
+        }
+        return tuple(slot for slot, key in enumerate(activity.triggers) if key in once)
+
+    def outputs(self, activity: Activity) -> tuple[str, ...]:
+        carried = [arc.output for arc in self.system.arcs if arc.source == activity.id and arc.role == "data"]
+        return tuple(dict.fromkeys((*carried, *(key for key in activity.outputs if key in activity.conditional))))
+
+    def output(self, activity: Activity, key: str) -> Output:
+        wires = tuple(
+            e
+            for e, arc in enumerate(self.system.arcs)
+            if arc.source == activity.id and arc.output == key and arc.role == "data"
+        )
+        largest = activity.max_gaps.get(key)
+        pause = self.pauses.get((activity.id, key))
+        patience = None
+        if largest is not None:
+            patience = self.units(largest) - int(pause / self.system.tick * self.scale) - 1 if pause is not None else -1
+        return Output(key, wires, key in activity.conditional, patience)
+
+    def calls(self, activity: Activity) -> list[tuple[Fraction, tuple[int, ...]]]:
+        found: dict[str, list[int]] = {}
+        for e, arc in enumerate(self.system.arcs):
+            if arc.source == activity.id and arc.role == "request":
+                found.setdefault(_calling(self.system, arc), []).append(e)
+        return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
+
+    def thread(self, activity: Activity) -> int:
+        container = activity.container
+        alone = container is None or self.machine.threads.get(container) != 1
+        if not alone and container in self.executors:
+            self.members[self.executors[container]].append(self.number[activity.id])
+            return self.executors[container]
+        self.members.append([self.number[activity.id]])
+        self.processor_of_thread.append(self.processor(activity))
+        if not alone and container is not None:
+            self.executors[container] = len(self.members) - 1
+        return len(self.members) - 1
+
+    def processor(self, activity: Activity) -> int:
+        host = activity.host
+        if host is None:
+            self.processors.append(Processor(activity.id, None, 1, fixed=False))
+            return len(self.processors) - 1
+        place = (host, activity.core)
+        if place not in self.places:
+            sharing = [a for a in self.system.activities.values() if (a.host, a.core) == place]
+            pinned = len(self.pinned.get(host, ()))
+            cores = 1 if activity.core is not None else max(1, self.machine.cores.get(host, 1) - pinned)
+            fixed = all(a.priority is not None for a in sharing)
+            name = host if activity.core is None else f"{host} core {activity.core}"
+            self.places[place] = len(self.processors)
+            self.processors.append(Processor(name, host, cores, fixed))
+        return self.places[place]
+
+
+def _slot(reader: Activity, arc: Arc) -> int:
+    if arc.role == "request":
+        return -1
+    if arc.role == "answer" or arc.input not in reader.triggers:
+        return -2
+    return reader.triggers.index(arc.input) if reader.mode == "all" else -1
+
+
+def _calling(system: System, request: Arc) -> str:
+    """Give the input of the client through which it calls: where the answer comes back."""
+    for arc in system.out_of.get(request.target, ()):
+        if arc.role == "answer" and arc.target == request.source and arc.topic == request.topic:
+            return arc.input
+    return request.output
