@@ -37,7 +37,8 @@ class Run:
         self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.steps]
         self.calls = [step.calls for step in plan.steps]
         self.outputs = [
-            tuple((at, o.wires, o.conditional, o.patience) for at, o in enumerate(step.outputs)) for step in plan.steps
+            tuple((at, o.wires, o.conditional, o.patience) for at, o in enumerate(step.outputs) if step.kind != KEPT)
+            for step in plan.steps
         ]
         self.heap: list[tuple[int, int, int]] = []
         self.awake: list[int] = []
@@ -151,7 +152,9 @@ class Run:
         elif slot == _SAMPLED:
             wires.newest[wire] = sample
             queue = wires.queue[wire]
-            if queue >= 0:
+            if wires.request[wire]:
+                steps.asked[wires.target[wire]].append(wire)
+            elif queue >= 0:
                 wires.waiting[queue] += 1
                 if wires.waiting[queue] > wires.depth[wire] > 0:
                     wires.drops[queue] += 1
@@ -194,6 +197,9 @@ class Run:
                 wires.newest[one] = number
         for queue in wires.sampled[at]:
             wires.waiting[queue] = 0
+        if steps.asked[at]:
+            steps.taken[at] += steps.asked[at]
+            steps.asked[at] = []
         if steps.watched[at]:
             steps.starts[at].append(now)
             steps.firings[at].append(job[0])
@@ -360,6 +366,10 @@ class Run:
                     self._send(now, one, number)
         if wire >= 0 and self.answers[wire] >= 0:
             self._send(now, self.answers[wire], number)
+        if steps.taken[at]:
+            taken, steps.taken[at] = steps.taken[at], []
+            for request in taken:
+                self._send(now, self.answers[request], number)
 
     def _publishes(self, now: int, at: int, place: int, patience: int | None) -> bool:
         """Decide on a conditional output; it is never silent for longer than was promised."""

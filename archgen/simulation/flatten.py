@@ -1,4 +1,4 @@
-"""From a system, and the machine that it runs on, to a plan. Unknown figures are taken as nothing, and named."""
+"""From a system to a plan. Unknown figures are taken as nothing, and named."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from archgen.simulation.plan import (
     KEPT,
     PERIODIC,
     TRIGGERED,
-    Machine,
     Output,
     Plan,
     Processor,
@@ -20,13 +19,14 @@ from archgen.simulation.plan import (
 )
 from archgen.timing.system import Activity, Arc, System
 
+_SECOND = 10**9
 Pauses = Mapping[tuple[str, str], Fraction]
 """The largest time between two chances to publish an output, in ns, by activity and output key."""
 
 
-def flatten(system: System, machine: Machine, pauses: Pauses | None = None) -> Plan:
+def flatten(system: System, pauses: Pauses | None = None) -> Plan:
     """Make a plan. `pauses` say when a conditional output must be published to keep its promised largest gap."""
-    made = _Flat(system, machine, pauses or {})
+    made = _Flat(system, pauses or {})
     wires = tuple(made.wire(arc) for arc in system.arcs)
     steps = tuple(made.step(activity) for activity in system.activities.values())
     answers = {
@@ -55,9 +55,8 @@ def flatten(system: System, machine: Machine, pauses: Pauses | None = None) -> P
 class _Flat:
     """Numbers for everything, given in order of appearance."""
 
-    def __init__(self, system: System, machine: Machine, pauses: Pauses) -> None:
+    def __init__(self, system: System, pauses: Pauses) -> None:
         self.system = system
-        self.machine = machine
         self.pauses = pauses
         self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * FINEST)))
         self.number = {key: at for at, key in enumerate(system.activities)}
@@ -89,10 +88,10 @@ class _Flat:
         if arc.worst is None:
             self.unknown[f"latency from {arc.source} to {arc.target}"] = None
         link, transmission = -1, 0
-        if arc.link is not None and arc.size is not None and arc.link in self.machine.bandwidth:
+        bandwidth = self.system.bandwidths.get(arc.link or "")
+        if arc.link is not None and arc.size is not None and bandwidth:
             link = self.links.setdefault(arc.link, len(self.links))
-            seconds = arc.size * 8 / Fraction(self.machine.bandwidth[arc.link])
-            transmission = int(seconds * 10**9 / self.system.tick * self.scale)
+            transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
         queue = -1
         if arc.role == "data":
             queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
@@ -113,8 +112,8 @@ class _Flat:
 
     def step(self, activity: Activity) -> Step:
         kind = self.kind(activity)
-        wcet = self.known(activity.wcet, f"execution time of {activity.id}") if kind != KEPT else 0
-        if activity.response is not None and activity.wcet is None:
+        wcet = self.known(activity.wcet, f"execution time of {activity.id}")
+        if activity.wcet is None and (activity.response is not None or kind == KEPT):
             self.unknown.pop(f"execution time of {activity.id}", None)
         fixed = activity.mode == "all"
         into = [(e, arc) for e, arc in enumerate(self.system.arcs) if arc.target == activity.id]
@@ -137,6 +136,14 @@ class _Flat:
             self.thread(activity),
             activity.priority or 0,
         )
+
+    def cores(self) -> dict[str, int]:
+        """Give the cores of each host that something runs on."""
+        found: dict[str, int] = {}
+        for processor in self.processors:
+            if processor.host is not None:
+                found[processor.host] = found.get(processor.host, 0) + processor.cores
+        return found
 
     def kind(self, activity: Activity) -> int:
         if activity.behaviour == "once":
@@ -182,12 +189,12 @@ class _Flat:
         found: dict[str, list[int]] = {}
         for e, arc in enumerate(self.system.arcs):
             if arc.source == activity.id and arc.role == "request":
-                found.setdefault(_calling(self.system, arc), []).append(e)
+                found.setdefault(arc.output, []).append(e)
         return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
 
     def thread(self, activity: Activity) -> int:
         container = activity.container
-        alone = container is None or self.machine.threads.get(container) != 1
+        alone = container is None or self.system.threads.get(container) != 1
         if not alone and container in self.executors:
             self.members[self.executors[container]].append(self.number[activity.id])
             return self.executors[container]
@@ -206,7 +213,7 @@ class _Flat:
         if place not in self.places:
             sharing = [a for a in self.system.activities.values() if (a.host, a.core) == place]
             pinned = len(self.pinned.get(host, ()))
-            cores = 1 if activity.core is not None else max(1, self.machine.cores.get(host, 1) - pinned)
+            cores = 1 if activity.core is not None else max(1, (self.system.cores.get(host) or 1) - pinned)
             fixed = all(a.priority is not None for a in sharing)
             name = host if activity.core is None else f"{host} core {activity.core}"
             self.places[place] = len(self.processors)
@@ -216,15 +223,7 @@ class _Flat:
 
 def _slot(reader: Activity, arc: Arc) -> int:
     if arc.role == "request":
-        return -1
+        return -2 if reader.behaviour == "periodic" else -1
     if arc.role == "answer" or arc.input not in reader.triggers:
         return -2
     return reader.triggers.index(arc.input) if reader.mode == "all" else -1
-
-
-def _calling(system: System, request: Arc) -> str:
-    """Give the input of the client through which it calls: where the answer comes back."""
-    for arc in system.out_of.get(request.target, ()):
-        if arc.role == "answer" and arc.target == request.source and arc.topic == request.topic:
-            return arc.input
-    return request.output

@@ -8,7 +8,7 @@ without a host.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
 from archgen.timing.system import Arc
@@ -17,15 +17,6 @@ PERIODIC, TRIGGERED, KEPT, IDLE = range(4)
 """What starts an activity: the clock, an arrival, the start of everything (its data are kept), nothing that is known."""
 FINEST = 1000
 """Times are counted in units of at most so many ns: phases and execution times fall between the written figures too."""
-
-
-@dataclass(frozen=True, slots=True)
-class Machine:
-    """What a system runs on: cores by host, threads by container, bandwidth in bit/s by link."""
-
-    cores: Mapping[str, int] = field(default_factory=dict)
-    threads: Mapping[str, int] = field(default_factory=dict)
-    bandwidth: Mapping[str, Fraction] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.simulation.engine import Run
 from archgen.simulation.flatten import Pauses, flatten
-from archgen.simulation.plan import PERIODIC, Machine, Plan
+from archgen.simulation.plan import PERIODIC, Plan
 from archgen.simulation.series import Series, Span, quantiles, series
 from archgen.timing.system import System
 
@@ -86,7 +86,6 @@ class Result:
 
 def simulate(  # noqa: PLR0913 - the question has these parts
     system: System,
-    machine: Machine,
     seconds: int = 60,
     seeds: int = 20,
     chains: Mapping[str, Sequence[str]] | None = None,
@@ -97,7 +96,7 @@ def simulate(  # noqa: PLR0913 - the question has these parts
     `chains` name activities along arcs. `pauses` see `flatten`: without them an output that has a promised largest gap
     is published at each chance.
     """
-    plan = flatten(system, machine, pauses)
+    plan = flatten(system, pauses)
     ways = {key: way for key, way in (chains or {}).items() if _arcs(plan, way) is not None}
     watched = {at for at, step in enumerate(plan.steps) if any(step.id in way for way in ways.values())}
     logged = {wire for way in ways.values() for pair in _arcs(plan, way) or () for wire in pair}

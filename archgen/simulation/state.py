@@ -48,6 +48,10 @@ class Steps:
         """When the running job was fired."""
         self.request = [-1] * count
         """The request that the running job answers."""
+        self.asked: list[list[int]] = [[] for _ in steps]
+        """Requests that wait for the next activation of a server that is periodic."""
+        self.taken: list[list[int]] = [[] for _ in steps]
+        """Those that are answered at the next end."""
         self.awaited = [-1] * count
         """The answer that the running job waits for."""
         self.to_call: list[list[int]] = [[] for _ in steps]
