@@ -217,17 +217,55 @@ class Run:
         while self.touched:
             processor = self.touched.pop()
             ready, running = threads.ready[processor], threads.running[processor]
+            if threads.mixed[processor]:
+                self._assign(now, processor)
+                continue
             while ready:
                 if len(running) < threads.cores[processor]:
                     self._start(now, heappop(ready)[2], running)
                 elif not threads.preemptive[processor] or not self._preempt(now, ready, running):
                     break
 
+    def _assign(self, now: int, processor: int) -> None:
+        """Give cores to threads some of which must have a certain one, the most urgent first."""
+        threads = self.threads
+        running = threads.running[processor]
+        wanted = sorted(threads.ready[processor])
+        if threads.preemptive[processor]:
+            wanted = sorted([*wanted, *((threads.key[t], threads.order[t], t) for t in running)])
+            taken: dict[int, int] = {}
+        else:
+            taken = {threads.core[t]: t for t in running}
+        for _, _, thread in wanted:
+            pin, last = threads.affinity[thread], threads.core[thread]
+            cores = [pin] if pin >= 0 else [*([last] if thread in running else []), *range(threads.cores[processor])]
+            core = next((one for one in cores if one not in taken), None)
+            if core is not None:
+                taken[core] = thread
+        self._move(now, processor, taken)
+
+    def _move(self, now: int, processor: int, taken: dict[int, int]) -> None:
+        """Take threads off their cores that lost them, and start those that got one."""
+        threads = self.threads
+        running, ready = threads.running[processor], threads.ready[processor]
+        for thread in [t for t in running if t not in taken.values()]:
+            running.remove(thread)
+            threads.version[thread] += 1
+            threads.left[thread] = threads.until[thread] - now
+            ready.append((threads.key[thread], threads.order[thread], thread))
+        for core, thread in taken.items():
+            threads.core[thread] = core
+            if thread not in running:
+                ready.remove((threads.key[thread], threads.order[thread], thread))
+                self._start(now, thread, running)
+
     def _choose(self, thread: int) -> None:
         """Let an idle thread take up its next job, if there is one, and queue for a core."""
         threads, steps = self.threads, self.steps
         at = self._next(thread) if threads.shared[thread] else threads.members[thread][0]
         if at < 0 or not steps.pending[at]:
+            return
+        if threads.pool[thread] >= 0 and not self._enter(thread):
             return
         threads.idle[thread] = False
         threads.current[thread] = at
@@ -246,6 +284,27 @@ class Run:
         threads.key[thread], threads.order[thread] = key, self.sequence
         heappush(threads.ready[processor], (key, self.sequence, thread))
         self.touched.add(processor)
+
+    def _enter(self, thread: int) -> bool:
+        """Take one of a container's threads, or wait for one."""
+        threads = self.threads
+        pool = threads.pool[thread]
+        if threads.free[pool]:
+            threads.free[pool] -= 1
+            return True
+        if not threads.queued[thread]:
+            threads.queued[thread] = True
+            threads.queue[pool].append(thread)
+        return False
+
+    def _leave(self, pool: int) -> None:
+        """Give one of a container's threads to who waits longest for it."""
+        threads = self.threads
+        threads.free[pool] += 1
+        if threads.queue[pool]:
+            thread = threads.queue[pool].popleft()
+            threads.queued[thread] = False
+            self.awake.insert(0, thread)
 
     def _next(self, thread: int) -> int:
         """Choose a callback as a single-threaded executor does: it sees who is ready, and serves all of these first."""
@@ -343,6 +402,8 @@ class Run:
             self._finish(now, at, steps.acted[at], wire, steps.started[at] - 1)
         thread = steps.thread[at]
         self.threads.idle[thread] = True
+        if self.threads.pool[thread] >= 0:
+            self._leave(self.threads.pool[thread])
         if self.threads.shared[thread] or steps.pending[at]:
             self.awake.append(thread)
 

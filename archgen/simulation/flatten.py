@@ -43,6 +43,9 @@ def flatten(system: System, pauses: Pauses | None = None) -> Plan:
         system.arcs,
         tuple(made.processor_of_thread),
         tuple(map(tuple, made.members)),
+        tuple(made.affinity),
+        tuple(made.pool_of_thread),
+        tuple(made.pools),
         tuple(made.processors),
         tuple(made.links),
         tuple(made.queues),
@@ -68,10 +71,15 @@ class _Flat:
         self.processor_of_thread: list[int] = []
         self.members: list[list[int]] = []
         self.executors: dict[str, int] = {}
-        self.pinned: dict[str, set[int]] = {}
+        self.pools: list[int] = []
+        self.pool_numbers: dict[str, int] = {}
+        self.pool_of_thread: list[int] = []
+        self.affinity: list[int] = []
+        self.pinned: dict[str, list[int]] = {}
         for activity in system.activities.values():
             if activity.host is not None and activity.core is not None:
-                self.pinned.setdefault(activity.host, set()).add(activity.core)
+                cores = self.pinned.setdefault(activity.host, [])
+                cores += [activity.core] if activity.core not in cores else []
 
     def units(self, ticks: int) -> int:
         return ticks * self.scale
@@ -193,32 +201,61 @@ class _Flat:
         return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
 
     def thread(self, activity: Activity) -> int:
+        """Give the thread: one of its own, or that of its container."""
         container = activity.container
-        alone = container is None or self.system.threads.get(container) != 1
-        if not alone and container in self.executors:
-            self.members[self.executors[container]].append(self.number[activity.id])
+        threads = self.system.threads.get(container) if container is not None else None
+        if container is not None and threads == 1:
+            if container not in self.executors:
+                together = [a for a in self.system.activities.values() if a.container == container]
+                self.executors[container] = self.new_thread(together, -1)
             return self.executors[container]
-        self.members.append([self.number[activity.id]])
-        self.processor_of_thread.append(self.processor(activity))
-        if not alone and container is not None:
-            self.executors[container] = len(self.members) - 1
+        pool = -1
+        if container is not None and threads is not None:
+            if container not in self.pool_numbers:
+                self.pool_numbers[container] = len(self.pools)
+                self.pools.append(threads)
+            pool = self.pool_numbers[container]
+        return self.new_thread([activity], pool)
+
+    def new_thread(self, members: list[Activity], pool: int) -> int:
+        self.members.append([self.number[activity.id] for activity in members])
+        core = next((a.core for a in members if a.core is not None), None)
+        self.processor_of_thread.append(self.processor(members[0], core))
+        self.affinity.append(self.pin(members[0].host, core))
+        self.pool_of_thread.append(pool)
         return len(self.members) - 1
 
-    def processor(self, activity: Activity) -> int:
+    def processor(self, activity: Activity, core: int | None) -> int:
+        """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
         host = activity.host
         if host is None:
             self.processors.append(Processor(activity.id, None, 1, fixed=False))
             return len(self.processors) - 1
-        place = (host, activity.core)
-        if place not in self.places:
-            sharing = [a for a in self.system.activities.values() if (a.host, a.core) == place]
-            pinned = len(self.pinned.get(host, ()))
-            cores = 1 if activity.core is not None else max(1, (self.system.cores.get(host) or 1) - pinned)
-            fixed = all(a.priority is not None for a in sharing)
-            name = host if activity.core is None else f"{host} core {activity.core}"
-            self.places[place] = len(self.processors)
-            self.processors.append(Processor(name, host, cores, fixed))
-        return self.places[place]
+        cores = self.system.cores.get(host) or 1
+        if cores == 1 or self.mixed(host):
+            core = None
+        if (host, core) not in self.places:
+            self.places[host, core] = len(self.processors)
+            free = max(cores - len(self.pinned.get(host, ())), 1) if cores > 1 and not self.mixed(host) else cores
+            name = host if core is None else f"{host} core {core}"
+            self.processors.append(Processor(name, host, free if core is None else 1, self.fixed(host)))
+        return self.places[host, core]
+
+    def mixed(self, host: str) -> bool:
+        """Tell whether no core is left for what is not pinned: then it runs anywhere, between what is."""
+        cores = self.system.cores.get(host) or 1
+        loose = any(a.host == host and a.core is None for a in self.system.activities.values())
+        return 1 < cores <= len(self.pinned.get(host, ())) and loose
+
+    def pin(self, host: str | None, core: int | None) -> int:
+        """Give the core that a thread must have, among the shared ones of a host where no core is left."""
+        if host is None or core is None or not self.mixed(host):
+            return -1
+        return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)
+
+    def fixed(self, host: str) -> bool:
+        """Tell whether everything on a host has a priority: then these count."""
+        return all(a.priority is not None for a in self.system.activities.values() if a.host == host)
 
 
 def _slot(reader: Activity, arc: Arc) -> int:

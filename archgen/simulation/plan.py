@@ -97,6 +97,12 @@ class Plan:
     """The processor of each thread."""
     members: tuple[tuple[int, ...], ...]
     """The activities of each thread."""
+    affinity: tuple[int, ...]
+    """The core that a thread must have, among those of its processor; -1 for any."""
+    pool_of_thread: tuple[int, ...]
+    """The container whose threads it shares, -1 for none."""
+    pools: tuple[int, ...]
+    """How many threads each such container has."""
     processors: tuple[Processor, ...]
     links: tuple[str, ...]
     queues: tuple[tuple[str, str, str], ...]

@@ -117,6 +117,16 @@ class Threads:
         self.shared = [len(members) > 1 for members in plan.members]
         self.round: list[deque[int]] = [deque() for _ in range(count)]
         """Who is ready, as the executor last saw it."""
+        self.affinity = list(plan.affinity)
+        pinned = {plan.threads[at] for at, core in enumerate(plan.affinity) if core >= 0}
+        self.mixed = [at in pinned for at in range(len(plan.processors))]
+        """Whether some of a processor's threads must have a core of their own choice."""
+        self.core = [-1] * count
+        self.pool = list(plan.pool_of_thread)
+        self.free = list(plan.pools)
+        self.queue: list[deque[int]] = [deque() for _ in plan.pools]
+        """Who waits for a thread of its container."""
+        self.queued = [False] * count
         self.idle = [True] * count
         self.current = [-1] * count
         self.key = [0] * count
