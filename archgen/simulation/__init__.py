@@ -4,8 +4,6 @@
 traces, and `simulate` puts the seeds together. What is seen is a lower bound on the worst case, never the worst case.
 """
 
-
-
 from archgen.simulation.simulate import ActivitySeen, ChainSeen, Distribution, HostSeen, LinkSeen, Result, simulate
 
 __all__ = ["ActivitySeen", "ChainSeen", "Distribution", "HostSeen", "LinkSeen", "Result", "simulate"]

@@ -119,17 +119,15 @@ def text(title: str, result: Result, analysis: Analysis, chains: Mapping[str, Ch
     lines = [
         title,
         "",
-        f"Seen in {result.seconds} s from each of {result.seeds} seeds ({result.events} events). The largest figures are "
-        "lower bounds on the worst case.",
+        f"Seen in {result.seconds} s from each of {result.seeds} seeds ({result.events} events).",
+        "The largest figures seen are lower bounds on the worst case; what stands beside them are bounds from above.",
     ]
     lines += _chains_text(result, chains)
     lines += _activities_text(result, analysis)
     lines += _hosts_text(result, analysis)
     if result.drops:
         lines += ["", f"  {'Samples pushed out of a queue unread':62}{'count':>10}"]
-        lines += [
-            f"  {f'{element} <- {topic}':62}{count:>10}" for (element, _, topic), count in result.drops.items()
-        ]
+        lines += [f"  {f'{element} <- {topic}':62}{count:>10}" for (element, _, topic), count in result.drops.items()]
     if result.unknown:
         lines += ["", "Not known, and taken as nothing: " + ", ".join(result.unknown) + "."]
     return "\n".join(lines) + "\n"

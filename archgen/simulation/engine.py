@@ -12,11 +12,12 @@ from random import Random
 from typing import Any
 
 from archgen.simulation.plan import KEPT, PERIODIC, Plan
-from archgen.simulation.state import CRITICAL, FIFO, LAST_FIRST, LOTTERY, Job, Steps, Threads, Wires
+from archgen.simulation.state import CRITICAL, FIFO, LAST_FIRST, LOTTERY, RANKS, Job, Steps, Threads, Wires
 
 END, ARRIVAL, RELEASE = range(3)
 """The order of events at one moment."""
 _SAMPLED, _ANY = -2, -1
+_ORDINARY = 1 << 80
 _NOBODY, _SEVERAL, _LOAD = -1, -2, -3
 
 
@@ -35,6 +36,7 @@ class Run:
             self.steps.phase = [0] * len(plan.steps)
         self.worst_share = [1.0 if self.critical else dice.choice((0.2, 0.6, 0.9)) for _ in plan.steps]
         self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.steps]
+        self.priority = [step.priority for step in plan.steps]
         self.calls = [step.calls for step in plan.steps]
         self.outputs = [
             tuple((at, o.wires, o.conditional, o.patience) for at, o in enumerate(step.outputs) if step.kind != KEPT)
@@ -272,18 +274,20 @@ class Run:
         threads.left[thread] = -1
         processor = threads.processor[thread]
         self.sequence += 1
-        scheduler = threads.scheduler[processor]
-        if scheduler < 0:
-            key = -self.plan.steps[at].priority
-        elif scheduler == FIFO:
-            key = steps.pending[at][0][0]
-        elif scheduler == LAST_FIRST:
-            key = -self.sequence
-        else:
-            key = int(self.random() * (1 << 30)) if scheduler == LOTTERY else threads.rank[thread]
+        priority = self.priority[at]
+        key = self._turn(at, thread, processor) if priority is None else -priority
         threads.key[thread], threads.order[thread] = key, self.sequence
         heappush(threads.ready[processor], (key, self.sequence, thread))
         self.touched.add(processor)
+
+    def _turn(self, at: int, thread: int, processor: int) -> int:
+        """Give the place of a thread without a priority among its like: behind all that have one."""
+        scheduler = self.threads.scheduler[processor]
+        if scheduler == FIFO:
+            return _ORDINARY + self.steps.pending[at][0][0]
+        if scheduler == LAST_FIRST:
+            return _ORDINARY * 2 - self.sequence
+        return _ORDINARY + (int(self.random() * _ORDINARY) if scheduler == LOTTERY else self.threads.rank[thread])
 
     def _enter(self, thread: int) -> bool:
         """Take one of a container's threads, or wait for one."""
@@ -347,7 +351,8 @@ class Run:
         """Take the least urgent running thread off its core, if a more urgent one waits."""
         threads = self.threads
         last = max(running, key=lambda t: (threads.key[t], threads.order[t]))
-        if ready[0][0] >= threads.key[last]:
+        key = ready[0][0]
+        if key >= threads.key[last] or (key >= _ORDINARY and threads.scheduler[threads.processor[last]] != RANKS):
             return False
         running.remove(last)
         threads.version[last] += 1
@@ -407,11 +412,10 @@ class Run:
         if self.threads.shared[thread] or steps.pending[at]:
             self.awake.append(thread)
 
-    def _finish(self, now: int, at: int, fired: int, wire: int, number: int) -> None:
+    def _note(self, now: int, at: int, response: int) -> None:
+        """Note the end of a job."""
         steps = self.steps
-        response = now - fired
-        if response > steps.worst[at]:
-            steps.worst[at] = response
+        steps.worst[at] = max(steps.worst[at], response)
         if response < steps.best[at] or steps.best[at] < 0:
             steps.best[at] = response
         before = steps.end[at]
@@ -421,6 +425,11 @@ class Run:
         steps.finished[at] += 1
         if steps.watched[at]:
             steps.ends[at].append(now)
+
+    def _finish(self, now: int, at: int, fired: int, wire: int, number: int) -> None:
+        """End a job's work: publish, and answer who waits for it."""
+        steps = self.steps
+        self._note(now, at, now - fired)
         for place, targets, conditional, patience in self.outputs[at]:
             if not conditional or self._publishes(now, at, place, patience):
                 for one in targets:
@@ -454,9 +463,7 @@ class Run:
         there = now + (self._between(wires.target[wire], wires.best[wire], spread) if spread else wires.best[wire])
         if wires.link[wire] >= 0:
             there = self._over_link(now, there, wire)
-        if there < wires.last[wire]:
-            there = wires.last[wire]
-        wires.last[wire] = there
+        there = wires.last[wire] = max(there, wires.last[wire])
         heappush(self.heap, (there << 2 | ARRIVAL, wire, sample))
 
     def _over_link(self, now: int, there: int, wire: int) -> int:

@@ -133,8 +133,8 @@ class _Flat:
             min(self.units(activity.bcet or 0), wcet),
             wcet,
             None if activity.response is None else self.units(activity.response),
-            activity.every,
-            self.units(activity.throttle),
+            1 if kind == PERIODIC else activity.every,
+            0 if kind == PERIODIC else self.units(activity.throttle),
             len(activity.triggers),
             self.kept(activity) if fixed else (),
             tuple(e for e, arc in into if fixed and _slot(activity, arc) >= 0),
@@ -142,7 +142,7 @@ class _Flat:
             tuple(self.output(activity, key) for key in self.outputs(activity)),
             tuple(self.calls(activity)),
             self.thread(activity),
-            activity.priority or 0,
+            activity.priority,
         )
 
     def cores(self) -> dict[str, int]:
@@ -229,7 +229,7 @@ class _Flat:
         """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
         host = activity.host
         if host is None:
-            self.processors.append(Processor(activity.id, None, 1, fixed=False))
+            self.processors.append(Processor(activity.id, None, 1))
             return len(self.processors) - 1
         cores = self.system.cores.get(host) or 1
         if cores == 1 or self.mixed(host):
@@ -238,7 +238,7 @@ class _Flat:
             self.places[host, core] = len(self.processors)
             free = max(cores - len(self.pinned.get(host, ())), 1) if cores > 1 and not self.mixed(host) else cores
             name = host if core is None else f"{host} core {core}"
-            self.processors.append(Processor(name, host, free if core is None else 1, self.fixed(host)))
+            self.processors.append(Processor(name, host, free if core is None else 1))
         return self.places[host, core]
 
     def mixed(self, host: str) -> bool:
@@ -252,10 +252,6 @@ class _Flat:
         if host is None or core is None or not self.mixed(host):
             return -1
         return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)
-
-    def fixed(self, host: str) -> bool:
-        """Tell whether everything on a host has a priority: then these count."""
-        return all(a.priority is not None for a in self.system.activities.values() if a.host == host)
 
 
 def _slot(reader: Activity, arc: Arc) -> int:

@@ -72,17 +72,16 @@ class Step:
     outputs: tuple[Output, ...]
     calls: tuple[tuple[Fraction, tuple[int, ...]], ...]
     thread: int
-    priority: int
+    priority: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class Processor:
-    """Cores that share one queue of threads. With `fixed` the written priorities count, preemptively."""
+    """Cores that share one queue of threads. `name` says which."""
 
     name: str
     host: str | None
     cores: int
-    fixed: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,8 @@ def quantiles(spans: Sequence[Span], shares: Sequence[float]) -> tuple[float, ..
         return tuple(float(figures[min(len(figures) - 1, int(share * len(figures)))]) for share in shares)
     edges = sorted([(low, 1) for low, _ in spans] + [(high, -1) for _, high in spans])
     total = sum(high - low for low, high in spans)
-    found, passed, depth, last = [], 0, 0, edges[0][0]
+    found: list[float] = []
+    passed, depth, last = 0, 0, edges[0][0]
     wanted = [share * total for share in shares]
     for edge, change in edges:
         grown = passed + depth * (edge - last)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 from archgen.simulation.engine import Run
 from archgen.simulation.flatten import Pauses, flatten
@@ -84,7 +85,7 @@ class Result:
     """Figures that are not written: they were taken as nothing, or what rests on them did not run."""
 
 
-def simulate(  # noqa: PLR0913 - the question has these parts
+def simulate(
     system: System,
     seconds: int = 60,
     seeds: int = 20,
@@ -111,10 +112,7 @@ def simulate(  # noqa: PLR0913 - the question has these parts
 
 def _arcs(plan: Plan, way: Sequence[str]) -> list[list[int]] | None:
     """Give the wires of each step of a way; None where a step has none."""
-    found = [
-        [at for at, arc in enumerate(plan.arcs) if (arc.source, arc.target) == pair]
-        for pair in zip(way, way[1:], strict=False)
-    ]
+    found = [[at for at, arc in enumerate(plan.arcs) if (arc.source, arc.target) == pair] for pair in pairwise(way)]
     return found if way and all(found) else None
 
 
@@ -148,14 +146,16 @@ class _Seen:
         self.firing_gap = list(map(max, self.firing_gap, steps.firing_gap))
         self.silence = [list(map(max, a, b)) for a, b in zip(self.silence, steps.silence, strict=True)]
         self.drops = [a + b for a, b in zip(self.drops, run.wires.drops, strict=True)]
-        self.busy.append([min(busy, horizon * p.cores) for busy, p in zip(run.threads.busy, self.plan.processors, strict=True)])
+        self.busy.append(
+            [min(busy, horizon * p.cores) for busy, p in zip(run.threads.busy, self.plan.processors, strict=True)]
+        )
         self.link_wait = list(map(max, self.link_wait, run.wires.link_wait))
         self.link_busy = [a + b for a, b in zip(self.link_busy, run.wires.link_busy, strict=True)]
         for key, way in self.ways.items():
             self.found[key].append(self._series(run, key, way))
 
     def _series(self, run: Run, key: str, way: Sequence[int]) -> Series:
-        logs = [_stalest(run, at, wires) for at, wires in zip(way[1:], self.wires[key], strict=True)]
+        logs = [_stalest(run, wires) for wires in self.wires[key]]
         first = way[0]
         samples = self.plan.steps[first].kind == PERIODIC
         return series(run.steps.firings[first], logs, run.steps.ends[way[-1]], samples=samples)
@@ -218,7 +218,7 @@ def _number(plan: Plan, name: str) -> int:
     return next(at for at, step in enumerate(plan.steps) if step.id == name)
 
 
-def _stalest(run: Run, at: int, wires: Sequence[int]) -> list[int]:
+def _stalest(run: Run, wires: Sequence[int]) -> list[int]:
     """Tell for each job of an activity which job of the one before it has reached it by all of several arcs."""
     return list(map(min, *(run.wires.log[wire] for wire in wires))) if len(wires) > 1 else run.wires.log[wires[0]]
 

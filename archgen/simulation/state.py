@@ -137,8 +137,9 @@ class Threads:
         self.version = [0] * count
         self.rank = dice.sample(range(count), count)
         self.cores = [processor.cores for processor in plan.processors]
-        self.scheduler = [-1 if p.fixed else dice.choice((FIFO, LAST_FIRST, LOTTERY, RANKS)) for p in plan.processors]
-        self.preemptive = [scheduler in {-1, RANKS} for scheduler in self.scheduler]
+        self.scheduler = [dice.choice((FIFO, LAST_FIRST, LOTTERY, RANKS)) for _ in plan.processors]
+        ranked = {plan.threads[step.thread] for step in plan.steps if step.priority is not None}
+        self.preemptive = [at in ranked or chosen == RANKS for at, chosen in enumerate(self.scheduler)]
         self.ready: list[list[tuple[int, int, int]]] = [[] for _ in plan.processors]
         self.running: list[list[int]] = [[] for _ in plan.processors]
         self.busy = [0] * len(plan.processors)

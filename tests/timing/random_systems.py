@@ -65,9 +65,7 @@ class _Maker:
         links: Tree = {}
         if len(hosts) > 1:
             links["lan"] = {"connects": list(hosts), "bandwidth": "10 Mbit/s", **self.latency()}
-        chains = {
-            f"chain_{at}": {"through": self.walk(), "deadline": "1 s"} for at in range(3)
-        }
+        chains = {f"chain_{at}": {"through": self.walk(), "deadline": "1 s"} for at in range(3)}
         found: Tree = {
             "groups": {"g": {"components": self.components}},
             "nodes": self.nodes,
@@ -107,8 +105,8 @@ class _Maker:
         if kind == "event":
             self.event(at, timing, inputs)
         if kind != "once":
-            self.work(at, kind, timing)
-            self.client(at, kind, timing, inputs)
+            self.work(kind, timing)
+            self.client(kind, timing, inputs)
         if kind in {"periodic", "event"} and self.chance(0.15):
             limit = {"max_gap": f"{self.dice.randint(50, 400)} ms"} if self.chance(0.6) else {}
             timing["outputs"] = {"out": {"conditional": True, **limit}}
@@ -128,7 +126,7 @@ class _Maker:
         chosen = self.dice.sample(writers, min(len(writers), self.dice.choice((1, 1, 2, 2, 3))))
         for place, writer in enumerate(chosen):
             inputs[f"i{place}"] = f"{writer}.out"
-        if len(chosen) > 2 and self.chance(0.3):  # noqa: PLR2004 - two for one input, one for another
+        if len(chosen) > 2 and self.chance(0.3):
             inputs.clear()
             inputs.update({"i0": [f"{chosen[0]}.out", f"{chosen[1]}.out"], "i1": f"{chosen[2]}.out"})
         names = list(inputs)
@@ -139,7 +137,7 @@ class _Maker:
         if self.chance(0.15):
             timing["throttle"] = f"{self.dice.choice((7, 15, 30))} ms"
 
-    def work(self, at: int, kind: str, timing: Tree) -> None:
+    def work(self, kind: str, timing: Tree) -> None:
         if self.chance(0.04):
             return
         longest = self.dice.uniform(0.02, self.load) * (3 if kind != "server" else 1)
@@ -151,7 +149,7 @@ class _Maker:
         if self.chance(0.06):
             timing["response"] = f"{self.dice.randint(5, 60)} ms"
 
-    def client(self, at: int, kind: str, timing: Tree, inputs: Tree) -> None:
+    def client(self, kind: str, timing: Tree, inputs: Tree) -> None:
         servers = [name for name, c in self.components.items() if "serve" in c["outputs"]]  # type: ignore[operator]
         if servers and self.chance(0.5 if kind != "server" else 0.2):
             inputs["ask"] = f"{self.dice.choice(servers)}.serve"
@@ -164,7 +162,9 @@ class _Maker:
             assert isinstance(timing, dict)
             assert isinstance(inputs, dict)
             writers = [
-                name for name, c in self.components.items() if name != f"c{at}" and "out" in c["outputs"]  # type: ignore[operator]
+                name
+                for name, c in self.components.items()
+                if name != f"c{at}" and "out" in c["outputs"]  # type: ignore[operator]
             ]
             named = isinstance(timing.get("trigger"), list | dict)
             if writers and timing["behaviour"] != "once" and (named or timing["behaviour"] != "event"):
@@ -178,9 +178,9 @@ class _Maker:
             timing = node["timing"]
             assert isinstance(timing, dict)
             drawn = self.dice.random()
-            if drawn < 0.25:  # noqa: PLR2004 - the share of those in containers
+            if drawn < 0.25:
                 node["container"] = self.dice.choice(("box_a", "box_b"))
-            elif drawn < 0.85:  # noqa: PLR2004 - and of those with a host
+            elif drawn < 0.85:
                 node["host"] = self.dice.choice(list(hosts))
                 if pinned and self.chance(0.7):
                     timing["core"] = self.dice.randrange(int(str(hosts[str(node["host"])].get("cores", 1))))
@@ -205,7 +205,11 @@ class _Maker:
         for _ in range(self.dice.randint(1, 4)):
             inputs = self.components[way[0]]["inputs"]
             assert isinstance(inputs, dict)
-            sources = [str(one).split(".")[0] for some in inputs.values() for one in (some if isinstance(some, list) else [some])]
+            sources = [
+                str(one).split(".")[0]
+                for some in inputs.values()
+                for one in (some if isinstance(some, list) else [some])
+            ]
             fresh = [source for source in sources if source not in way]
             if not fresh:
                 break
