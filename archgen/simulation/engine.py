@@ -11,13 +11,12 @@ from heapq import heapify, heappop, heappush
 from random import Random
 from typing import Any
 
-from archgen.simulation.plan import KEPT, PERIODIC, Plan
+from archgen.simulation.plan import ANY, KEPT, PERIODIC, SAMPLED, Plan
 from archgen.simulation.state import CRITICAL, FIFO, LAST_FIRST, LOTTERY, RANKS, Job, Steps, Threads, Wires
 
 END, ARRIVAL, RELEASE = range(3)
 """The order of events at one moment."""
-_SAMPLED, _ANY = -2, -1
-_ORDINARY = 1 << 80
+_LATER = 1 << 61
 _NOBODY, _SEVERAL, _LOAD = -1, -2, -3
 
 
@@ -139,7 +138,7 @@ class Run:
         """Let a sample arrive: it fires its reader, fills a place among all that must be there, or is kept."""
         wires, steps = self.wires, self.steps
         slot = wires.slot[wire]
-        if slot == _ANY:
+        if slot == ANY:
             at = wires.target[wire]
             if wires.request[wire]:
                 self._fire(now, at, wire, sample)
@@ -151,7 +150,7 @@ class Run:
                     self._drop(at, queue)
                 wires.waiting[queue] += 1
                 self._fire(now, at, wire, sample)
-        elif slot == _SAMPLED:
+        elif slot == SAMPLED:
             wires.newest[wire] = sample
             queue = wires.queue[wire]
             if wires.request[wire]:
@@ -275,19 +274,19 @@ class Run:
         processor = threads.processor[thread]
         self.sequence += 1
         priority = self.priority[at]
-        key = self._turn(at, thread, processor) if priority is None else -priority
+        key = self._turn(at, thread, processor) if priority is None else -1 - priority
         threads.key[thread], threads.order[thread] = key, self.sequence
         heappush(threads.ready[processor], (key, self.sequence, thread))
         self.touched.add(processor)
 
     def _turn(self, at: int, thread: int, processor: int) -> int:
-        """Give the place of a thread without a priority among its like: behind all that have one."""
+        """Give the place of a thread without a priority among its like; whoever has one comes first, below zero."""
         scheduler = self.threads.scheduler[processor]
         if scheduler == FIFO:
-            return _ORDINARY + self.steps.pending[at][0][0]
+            return self.steps.pending[at][0][0]
         if scheduler == LAST_FIRST:
-            return _ORDINARY * 2 - self.sequence
-        return _ORDINARY + (int(self.random() * _ORDINARY) if scheduler == LOTTERY else self.threads.rank[thread])
+            return _LATER - self.sequence
+        return int(self.random() * _LATER) if scheduler == LOTTERY else self.threads.rank[thread]
 
     def _enter(self, thread: int) -> bool:
         """Take one of a container's threads, or wait for one."""
@@ -352,7 +351,7 @@ class Run:
         threads = self.threads
         last = max(running, key=lambda t: (threads.key[t], threads.order[t]))
         key = ready[0][0]
-        if key >= threads.key[last] or (key >= _ORDINARY and threads.scheduler[threads.processor[last]] != RANKS):
+        if key >= threads.key[last] or (key >= 0 and threads.scheduler[threads.processor[last]] != RANKS):
             return False
         running.remove(last)
         threads.version[last] += 1

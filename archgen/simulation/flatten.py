@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from archgen.simulation.plan import (
+    ANY,
     FINEST,
     IDLE,
     KEPT,
     PERIODIC,
+    SAMPLED,
     TRIGGERED,
     Output,
     Plan,
@@ -256,7 +258,7 @@ class _Flat:
 
 def _slot(reader: Activity, arc: Arc) -> int:
     if arc.role == "request":
-        return -2 if reader.behaviour == "periodic" else -1
+        return SAMPLED if reader.behaviour == "periodic" else ANY
     if arc.role == "answer" or arc.input not in reader.triggers:
-        return -2
-    return reader.triggers.index(arc.input) if reader.mode == "all" else -1
+        return SAMPLED
+    return reader.triggers.index(arc.input) if reader.mode == "all" else ANY

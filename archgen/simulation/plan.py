@@ -15,6 +15,8 @@ from archgen.timing.system import Arc
 
 PERIODIC, TRIGGERED, KEPT, IDLE = range(4)
 """What starts an activity: the clock, an arrival, the start of everything (its data are kept), nothing that is known."""
+SAMPLED, ANY = -2, -1
+"""Slots of wires that fire nobody, and of those that fire by themselves."""
 FINEST = 1000
 """Times are counted in units of at most so many ns: phases and execution times fall between the written figures too."""
 

@@ -11,7 +11,7 @@ from collections.abc import Collection
 from random import Random
 from typing import Any
 
-from archgen.simulation.plan import PERIODIC, Plan
+from archgen.simulation.plan import PERIODIC, SAMPLED, Plan, Step
 
 FIFO, LAST_FIRST, LOTTERY, RANKS = range(4)
 """Schedulers: first come first served, last come first served, at random, and ranks drawn once, preemptively."""
@@ -104,7 +104,13 @@ class Wires:
         logs: list[list[int]] = [[] for _ in wires]
         self.log = logs
         self.logged = [tuple(e for e in step.wires if e in logged) for step in plan.steps]
-        self.sampled = [tuple({wires[e].queue for e in step.wires if wires[e].slot == -2}) for step in plan.steps]  # noqa: PLR2004 - see Wire
+        self.sampled = [_sampled(plan, step) for step in plan.steps]
+
+
+def _sampled(plan: Plan, step: Step) -> tuple[int, ...]:
+    """Give the queues that a job empties at its start."""
+    kept = [plan.wires[e] for e in step.wires if plan.wires[e].slot == SAMPLED]
+    return tuple(dict.fromkeys(wire.queue for wire in kept if wire.queue >= 0))
 
 
 class Threads:
