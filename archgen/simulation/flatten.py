@@ -1,0 +1,264 @@
+"""From a system to a plan. Unknown figures are taken as nothing, and named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from archgen.simulation.plan import (
+    ANY,
+    FINEST,
+    IDLE,
+    KEPT,
+    PERIODIC,
+    SAMPLED,
+    TRIGGERED,
+    Output,
+    Plan,
+    Processor,
+    Step,
+    Wire,
+)
+from archgen.timing.system import Activity, Arc, System
+
+_SECOND = 10**9
+Pauses = Mapping[tuple[str, str], Fraction]
+"""The largest time between two chances to publish an output, in ns, by activity and output key."""
+
+
+def flatten(system: System, pauses: Pauses | None = None) -> Plan:
+    """Make a plan. `pauses` say when a conditional output must be published to keep its promised largest gap."""
+    made = _Flat(system, pauses or {})
+    wires = tuple(made.wire(arc) for arc in system.arcs)
+    steps = tuple(made.step(activity) for activity in system.activities.values())
+    answers = {
+        e: back
+        for e, arc in enumerate(system.arcs)
+        if arc.role == "request"
+        for back, other in enumerate(system.arcs)
+        if other.role == "answer" and (other.source, other.target, other.topic) == (arc.target, arc.source, arc.topic)
+    }
+    return Plan(
+        system.tick / made.scale,
+        steps,
+        wires,
+        system.arcs,
+        tuple(made.processor_of_thread),
+        tuple(map(tuple, made.members)),
+        tuple(made.affinity),
+        tuple(made.pool_of_thread),
+        tuple(made.pools),
+        tuple(made.processors),
+        tuple(made.links),
+        tuple(made.queues),
+        made.cores(),
+        answers,
+        tuple(made.unknown),
+    )
+
+
+class _Flat:
+    """Numbers for everything, given in order of appearance."""
+
+    def __init__(self, system: System, pauses: Pauses) -> None:
+        self.system = system
+        self.pauses = pauses
+        self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * FINEST)))
+        self.number = {key: at for at, key in enumerate(system.activities)}
+        self.links: dict[str, int] = {}
+        self.queues: dict[tuple[str, str, str], int] = {}
+        self.unknown: dict[str, None] = {}
+        self.processors: list[Processor] = []
+        self.places: dict[tuple[str, int | None], int] = {}
+        self.processor_of_thread: list[int] = []
+        self.members: list[list[int]] = []
+        self.executors: dict[str, int] = {}
+        self.pools: list[int] = []
+        self.pool_numbers: dict[str, int] = {}
+        self.pool_of_thread: list[int] = []
+        self.affinity: list[int] = []
+        self.pinned: dict[str, list[int]] = {}
+        for activity in system.activities.values():
+            if activity.host is not None and activity.core is not None:
+                cores = self.pinned.setdefault(activity.host, [])
+                cores += [activity.core] if activity.core not in cores else []
+
+    def units(self, ticks: int) -> int:
+        return ticks * self.scale
+
+    def known(self, ticks: int | None, what: str) -> int:
+        if ticks is None:
+            self.unknown[what] = None
+            return 0
+        return self.units(ticks)
+
+    def wire(self, arc: Arc) -> Wire:
+        reader = self.system.activities[arc.target]
+        worst = self.units(arc.worst or 0)
+        if arc.worst is None:
+            self.unknown[f"latency from {arc.source} to {arc.target}"] = None
+        link, transmission = -1, 0
+        bandwidth = self.system.bandwidths.get(arc.link or "")
+        if arc.link is not None and arc.size is not None and bandwidth:
+            link = self.links.setdefault(arc.link, len(self.links))
+            transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
+        queue = -1
+        if arc.role == "data":
+            queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
+        best = min(self.units(arc.best or 0), worst)
+        request = arc.role == "request"
+        return Wire(
+            target=self.number[arc.target],
+            slot=_slot(reader, arc),
+            best=best,
+            worst=worst,
+            queue=queue,
+            depth=arc.depth or 0,
+            link=link,
+            transmission=transmission,
+            limit=None if arc.worst is None else worst,
+            request=request,
+        )
+
+    def step(self, activity: Activity) -> Step:
+        kind = self.kind(activity)
+        wcet = self.known(activity.wcet, f"execution time of {activity.id}")
+        if activity.wcet is None and (activity.response is not None or kind == KEPT):
+            self.unknown.pop(f"execution time of {activity.id}", None)
+        fixed = activity.mode == "all"
+        into = [(e, arc) for e, arc in enumerate(self.system.arcs) if arc.target == activity.id]
+        return Step(
+            activity.id,
+            kind,
+            self.units(activity.period or 0) if kind == PERIODIC else 0,
+            self.units(activity.jitter),
+            min(self.units(activity.bcet or 0), wcet),
+            wcet,
+            None if activity.response is None else self.units(activity.response),
+            1 if kind == PERIODIC else activity.every,
+            0 if kind == PERIODIC else self.units(activity.throttle),
+            len(activity.triggers),
+            self.kept(activity) if fixed else (),
+            tuple(e for e, arc in into if fixed and _slot(activity, arc) >= 0),
+            tuple(e for e, _ in into),
+            tuple(self.output(activity, key) for key in self.outputs(activity)),
+            tuple(self.calls(activity)),
+            self.thread(activity),
+            activity.priority,
+        )
+
+    def cores(self) -> dict[str, int]:
+        """Give the cores of each host that something runs on."""
+        found: dict[str, int] = {}
+        for processor in self.processors:
+            if processor.host is not None:
+                found[processor.host] = found.get(processor.host, 0) + processor.cores
+        return found
+
+    def kind(self, activity: Activity) -> int:
+        if activity.behaviour == "once":
+            return KEPT
+        if activity.behaviour == "periodic":
+            if activity.period:
+                return PERIODIC
+            self.unknown[f"period of {activity.id}"] = None
+            return IDLE
+        if activity.behaviour is None:
+            self.unknown[f"behaviour of {activity.id}"] = None
+        for outside in self.system.external.get(activity.id, ()):
+            if outside in activity.triggers:
+                self.unknown[f"events from outside at {outside}"] = None
+        return TRIGGERED
+
+    def kept(self, activity: Activity) -> tuple[int, ...]:
+        once = {
+            arc.input
+            for arc in self.system.arcs
+            if arc.target == activity.id and self.system.activities[arc.source].behaviour == "once"
+        }
+        return tuple(slot for slot, key in enumerate(activity.triggers) if key in once)
+
+    def outputs(self, activity: Activity) -> tuple[str, ...]:
+        carried = [arc.output for arc in self.system.arcs if arc.source == activity.id and arc.role == "data"]
+        return tuple(dict.fromkeys((*carried, *(key for key in activity.outputs if key in activity.conditional))))
+
+    def output(self, activity: Activity, key: str) -> Output:
+        wires = tuple(
+            e
+            for e, arc in enumerate(self.system.arcs)
+            if arc.source == activity.id and arc.output == key and arc.role == "data"
+        )
+        largest = activity.max_gaps.get(key)
+        pause = self.pauses.get((activity.id, key))
+        patience = None
+        if largest is not None:
+            patience = self.units(largest) - int(pause / self.system.tick * self.scale) - 1 if pause is not None else -1
+        return Output(key, wires, key in activity.conditional, patience)
+
+    def calls(self, activity: Activity) -> list[tuple[Fraction, tuple[int, ...]]]:
+        found: dict[str, list[int]] = {}
+        for e, arc in enumerate(self.system.arcs):
+            if arc.source == activity.id and arc.role == "request":
+                found.setdefault(arc.output, []).append(e)
+        return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
+
+    def thread(self, activity: Activity) -> int:
+        """Give the thread: one of its own, or that of its container."""
+        container = activity.container
+        threads = self.system.threads.get(container) if container is not None else None
+        if container is not None and threads == 1:
+            if container not in self.executors:
+                together = [a for a in self.system.activities.values() if a.container == container]
+                self.executors[container] = self.new_thread(together, -1)
+            return self.executors[container]
+        pool = -1
+        if container is not None and threads is not None:
+            if container not in self.pool_numbers:
+                self.pool_numbers[container] = len(self.pools)
+                self.pools.append(threads)
+            pool = self.pool_numbers[container]
+        return self.new_thread([activity], pool)
+
+    def new_thread(self, members: list[Activity], pool: int) -> int:
+        self.members.append([self.number[activity.id] for activity in members])
+        core = next((a.core for a in members if a.core is not None), None)
+        self.processor_of_thread.append(self.processor(members[0], core))
+        self.affinity.append(self.pin(members[0].host, core))
+        self.pool_of_thread.append(pool)
+        return len(self.members) - 1
+
+    def processor(self, activity: Activity, core: int | None) -> int:
+        """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
+        host = activity.host
+        if host is None:
+            self.processors.append(Processor(activity.id, None, 1))
+            return len(self.processors) - 1
+        cores = self.system.cores.get(host) or 1
+        if cores == 1 or self.mixed(host):
+            core = None
+        if (host, core) not in self.places:
+            self.places[host, core] = len(self.processors)
+            free = max(cores - len(self.pinned.get(host, ())), 1) if cores > 1 and not self.mixed(host) else cores
+            name = host if core is None else f"{host} core {core}"
+            self.processors.append(Processor(name, host, free if core is None else 1))
+        return self.places[host, core]
+
+    def mixed(self, host: str) -> bool:
+        """Tell whether no core is left for what is not pinned: then it runs anywhere, between what is."""
+        cores = self.system.cores.get(host) or 1
+        loose = any(a.host == host and a.core is None for a in self.system.activities.values())
+        return 1 < cores <= len(self.pinned.get(host, ())) and loose
+
+    def pin(self, host: str | None, core: int | None) -> int:
+        """Give the core that a thread must have, among the shared ones of a host where no core is left."""
+        if host is None or core is None or not self.mixed(host):
+            return -1
+        return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)
+
+
+def _slot(reader: Activity, arc: Arc) -> int:
+    if arc.role == "request":
+        return SAMPLED if reader.behaviour == "periodic" else ANY
+    if arc.role == "answer" or arc.input not in reader.triggers:
+        return SAMPLED
+    return reader.triggers.index(arc.input) if reader.mode == "all" else ANY

@@ -1,0 +1,68 @@
+"""Systems by hand, in ms, for tests of the simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.simulation.engine import Run
+from archgen.simulation.flatten import flatten
+from archgen.timing.system import Activity, Arc, System
+
+MS = 1000
+"""Units of the engine in one ms."""
+
+
+def arc(source: str, target: str, **rest: object) -> Arc:
+    """Make an arc from an activity's `out` to another's input, which is called as the source is."""
+    return replace(Arc(source, "out", target, source, f"/{source}", "topic"), **rest)  # type: ignore[arg-type]
+
+
+def call(client: str, server: str) -> tuple[Arc, Arc]:
+    """Make the two arcs between a client and a server."""
+    answer = Arc(server, "serve", client, "ask", "/serve", "service", role="answer")
+    return replace(answer, source=client, output="ask", target=server, input="serve", role="request"), answer
+
+
+def timed(name: str, period: int, wcet: int, **rest: object) -> Activity:
+    """Make a periodic activity whose execution time never changes."""
+    return replace(Activity(name, name, None, "periodic", period=period, wcet=wcet, bcet=wcet), **rest)  # type: ignore[arg-type]
+
+
+def event(name: str, wcet: int, *triggers: str, **rest: object) -> Activity:
+    """Make an activity that inputs fire."""
+    made = Activity(name, name, None, "event", wcet=wcet, bcet=wcet, triggers=triggers)
+    return replace(made, **rest)  # type: ignore[arg-type]
+
+
+def system(
+    activities: Sequence[Activity], arcs: Sequence[Arc] = (), cores: Mapping[str, int] | None = None, **rest: object
+) -> System:
+    """Put a system together."""
+    names = [activity.id for activity in activities]
+    return replace(
+        System(
+            Fraction(1_000_000),
+            dict(zip(names, activities, strict=True)),
+            tuple(arcs),
+            {name: tuple(one for one in arcs if one.target == name) for name in names},
+            {name: tuple(one for one in arcs if one.source == name) for name in names},
+            cores=cores or {},
+        ),
+        **rest,  # type: ignore[arg-type]
+    )
+
+
+def jobs(of: System, until: int, seed: int = 0) -> dict[str, list[tuple[float, float, float]]]:
+    """Run a system (seed 0: all phases zero, all execution times the longest); give (fired, started, ended) in ms."""
+    plan = flatten(of)
+    run = Run(plan, seed, range(len(plan.steps)))
+    run.go(until * MS)
+    return {
+        step.id: [
+            (fired / MS, start / MS, end / MS)
+            for fired, start, end in zip(run.steps.firings[at], run.steps.starts[at], run.steps.ends[at], strict=False)
+        ]
+        for at, step in enumerate(plan.steps)
+    }
