@@ -74,7 +74,8 @@ def _keep(reading: Reading, file: str, document: Document | None, found: tuple[D
         reading.documents.append(document)
 
 
-_KEY = re.compile(r"([A-Za-z0-9][A-Za-z0-9_.-]*)[\"']?[ \t]*:")
+_KEY = re.compile(r"(?<![A-Za-z0-9_.-])([A-Za-z0-9][A-Za-z0-9_.-]*+)[\"']?[ \t]*+:")
+"""Begins at a word's first letter and never goes back: a long word without a colon is looked at once."""
 
 
 def _written(reading: Reading, file: str) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label
@@ -28,7 +27,7 @@ class Lines:
 
     def __init__(self, text: str) -> None:
         """Note where each line begins."""
-        self._starts = [0, *accumulate(map(len, re.findall(r"[^\r\n]*(?:\r\n|\r|\n)", text)))]
+        self._starts = [0, *(found.end() for found in re.finditer(r"\r\n?|\n", text))]
 
     def span(self, file: str, start: int, end: int) -> Span:
         """Give the place of a stretch of text."""
