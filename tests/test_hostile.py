@@ -18,7 +18,7 @@ import yaml
 from click.testing import CliRunner
 from lxml import etree
 from markdown_it import MarkdownIt
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Dialog, sync_playwright
 
 from archgen.cli import main as verbs
 from archgen.cli.list_ import SORTS
@@ -192,7 +192,12 @@ def test_no_script_runs_in_a_browser(project: Path) -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
         page = browser.new_page()
-        page.on("dialog", lambda dialog: (seen.append(dialog.message), dialog.dismiss()))
+
+        def dismiss(dialog: Dialog) -> None:
+            seen.append(dialog.message)
+            dialog.dismiss()
+
+        page.on("dialog", dismiss)
         page.on("request", lambda request: seen.append(request.url) if not local(request.url) else None)
         page.on("pageerror", lambda error: seen.append(str(error)))
         for path in pages:

@@ -25,7 +25,7 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     from archgen import simulation
     from archgen.findings.escape import visible
     from archgen.simulation import compared
-    from archgen.timing.analyse import analyse
+    from archgen.timing.analyse import analyse_system
     from archgen.timing.build import system
     from archgen.timing.chains import chains
 
@@ -33,8 +33,8 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     run.report(checked, least=run.ERROR)
     architecture = checked.architecture
     _known(asked, tuple(architecture.chains))
-    built, _ = system(architecture)
-    analysis = analyse(built)
+    built, notes = system(architecture)
+    analysis = analyse_system(built, notes)
     found = {key: one for key, one in chains(analysis, architecture).items() if not asked or key in asked}
     through = {key: one.through for key, one in found.items()}
     seen = simulation.simulate(built, seconds, seeds, through, compared.pauses(analysis))
