@@ -61,6 +61,9 @@ class HostLoad:
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
     parts: tuple[tuple[str, Value], ...]
     """What each activity adds."""
+    places: tuple[tuple[str, int, Value], ...] = ()
+    """The cores to which something is pinned, and those that all else shares: name, number of cores, utilisation."""
+    earliest_deadline_bound: Value = UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
