@@ -204,7 +204,7 @@ def load_of(view: Index, timed: Timed, host: str, load: HostLoad) -> Chart:
         f"load/{host}",
         f"{view.architecture.hosts[host].title}: load by activity",
         "%",
-        (*_steps(timed, load, shown, ordered[len(shown) :]), _total(load, total)),
+        (*_steps(timed, load, shown, ordered[len(shown) :]), _total(load, total), *_places(load)),
         limit=(100.0, "all cores busy" if load.cores > 1 else "busy all the time"),
         said=load_verdict(load),
         legend=(
@@ -247,14 +247,39 @@ def _total(load: HostLoad, total: Value) -> Bar:
     return Bar("Together", (*parts, *more), figures.share(total), mark=_bound(load), strong=True)
 
 
+def _places(load: HostLoad) -> Iterator[Bar]:
+    """Draw the cores to which something is pinned and those that the rest shares, each against itself."""
+    if len(load.places) < 2:  # noqa: PLR2004 - one place is the host
+        return
+    for name, cores, used in load.places:
+        share = of_cores(used, cores)
+        full = used.value is not None and used.value >= cores
+        known = None if share.value is None else _float(share.value * 100)
+        title = _place(name, cores)
+        tooltip = f"{title}: {figures.share(share)} of {plural(cores, 'core')}"
+        stretches = (Stretch(known, "missed" if full else "best", "", tooltip),)
+        if known is not None and not used.complete:
+            stretches += (Stretch(None, "open", "?", tooltip),)
+        yield Bar(f"of which {title}", stretches, figures.share(share))
+
+
+def _place(name: str, cores: int) -> str:
+    """Name a place on a host: `core 7`, or the cores that all else shares."""
+    return name.partition(" ")[2] or f"not pinned, {plural(cores, 'core')}"
+
+
 def load_verdict(load: HostLoad) -> str:
     """Say in a sentence how a host stands."""
     said = figures.share(of_cores(load.utilisation, load.cores))
     cores = plural(load.cores, "core")
     if load.verdict == "overload":
-        return f"Overloaded: {said} of {cores}."
+        full = [
+            _place(name, count) for name, count, used in load.places if used.value is not None and used.value >= count
+        ]
+        where = f" ({', '.join(full)})" if full and len(load.places) > 1 else ""
+        return f"Overloaded{where}: {said} of {cores}."
     if load.verdict == "schedulable":
-        return f"In time by the rate-monotonic bound: {said} of {cores}."
+        return f"In time: {said} of {cores}, and everything is done before it is due again."
     unknown = sum(value.value is None for _, value in load.parts)
     if unknown and said == figures.UNKNOWN:
         return f"The load is not known: that of {plural(unknown, 'activity')} is missing."

@@ -28,6 +28,8 @@ NAMES: dict[Pace, str] = {
     "unknown": "unknown",
 }
 """The steps of the scale in words."""
+_LINE = 24
+"""Characters in a line of a box."""
 _WORDS = {"event": "event", "on_demand": "on demand", "once": "once"}
 
 
@@ -47,16 +49,25 @@ def step(pace: analysis.Pace | None) -> Pace:
 
 def said(pace: analysis.Pace | None) -> str:
     """Say a pace in one line: `10 Hz · 100 ms`, `<= 10 Hz · >= 100 ms, event`, `on demand`, `?`."""
-    return ", ".join(lines(pace))
+    return ", ".join(word for word in (_figure(pace, " · "), _kind(pace)) if word) or "?"
 
 
 def lines(pace: analysis.Pace | None) -> tuple[str, ...]:
     """Say a pace in a box: the rate with its period, then what fires it where that is no clock."""
-    if pace is None:
-        return ("?",)
-    known = f"{figures.rate(pace.rate)} · {figures.period(pace.rate)}" if pace.rate.value else ""
-    kind = _WORDS.get(pace.behaviour or "", "")
-    return tuple(word for word in (known, kind) if word) or ("?",)
+    figure = _figure(pace, " · ")
+    if len(figure) > _LINE:
+        figure = _figure(pace, "\n")
+    return tuple(word for word in (*figure.split("\n"), _kind(pace)) if word) or ("?",)
+
+
+def _figure(pace: analysis.Pace | None, between: str) -> str:
+    if pace is None or not pace.rate.value:
+        return ""
+    return f"{figures.rate(pace.rate)}{between}{figures.period(pace.rate)}"
+
+
+def _kind(pace: analysis.Pace | None) -> str:
+    return _WORDS.get(pace.behaviour or "", "") if pace else ""
 
 
 def sentence(pace: analysis.Pace, origin: tuple[str, ...]) -> str:

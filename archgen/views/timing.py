@@ -32,7 +32,7 @@ TIERS = {
     "unknown": "",
 }
 _VERDICTS = {
-    "schedulable": "below the rate-monotonic bound",
+    "schedulable": "in time",
     "overload": "overloaded",
     "undecided": "not decided by load alone",
     "unknown": "unknown",

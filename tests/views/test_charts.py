@@ -66,7 +66,7 @@ LOADS = [
         exact(Fraction(1, 2)),
         "schedulable",
         (("a", exact(Fraction(1, 2))),),
-        "In time by the rate-monotonic bound: 50 % of 1 core.",
+        "In time: 50 % of 1 core, and everything is done before it is due again.",
     ),
     (exact(Fraction(5, 4)), "overload", (("a", exact(Fraction(5, 4))),), "Overloaded: 125 % of 1 core."),
     (
@@ -93,6 +93,16 @@ LOADS = [
 @pytest.mark.parametrize(("load", "verdict", "parts", "said"), LOADS)
 def test_loads(load: Value, verdict: str, parts: tuple[tuple[str, Value], ...], said: str) -> None:
     assert charts.load_verdict(HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts)) == said  # type: ignore[arg-type]
+
+
+def test_a_full_core_is_seen_on_a_host_that_is_not_full() -> None:
+    places = (("onboard_pc core 7", 1, exact(Fraction(11, 10))), ("onboard_pc", 7, exact(Fraction(7, 10))))
+    load = HostLoad(exact(Fraction(9, 5)), 8, UNKNOWN, "overload", (("a", exact(Fraction(9, 5))),), places)
+    assert charts.load_verdict(load) == "Overloaded (core 7): 22.5 % of 8 cores."
+    architecture = pipeline.check(resources.path("example_ramcip")).architecture
+    chart = charts.load_of(index(architecture), timed(architecture), "onboard_pc", load)
+    alone = [(bar.title, bar.value, bar.stretches[0].kind) for bar in chart.bars[-2:]]
+    assert alone == [("of which core 7", "110 %", "missed"), ("of which not pinned, 7 cores", "10 %", "best")]
 
 
 def test_many_activities_are_summed_up_in_the_last_bar(drawn: dict[str, Chart]) -> None:

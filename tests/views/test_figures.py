@@ -70,6 +70,11 @@ def test_missing_figures_are_named_with_what_is_missing() -> None:
         (Pace("periodic", exact(Fraction(1, 30)), exact(30_000 * MS)), ("0.0333 Hz · 30 s",), "slower"),
         (Pace("event", Value(Fraction(10), side="at most"), UNKNOWN), ("<= 10 Hz · >= 100 ms", "event"), "to_100_ms"),
         (Pace("event", Value(Fraction(10), complete=False), UNKNOWN), (">= 10 Hz · <= 100 ms", "event"), "to_100_ms"),
+        (
+            Pace("event", Value(Fraction(10004, 1000), side="at most")),
+            ("<= 10.004 Hz", ">= 99.96 ms", "event"),
+            "to_100_ms",
+        ),
         (Pace("event"), ("event",), "event"),
         (Pace("on_demand", exact(2), UNKNOWN), ("2 Hz · 500 ms", "on demand"), "on_demand"),
         (Pace("once", exact(0), UNKNOWN), ("once",), "once"),

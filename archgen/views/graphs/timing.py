@@ -21,7 +21,7 @@ from archgen.views.timed import Timed
 from archgen.views.words import plural
 
 _MANY = 45
-_BOUNDS = "<= at most, >= at least: not every figure that this one rests on is known."
+_BOUNDS = "<= at most, >= at least: a bound, where no exact figure follows from what is written."
 
 
 @dataclass(frozen=True, slots=True)
