@@ -100,8 +100,8 @@ def _fill(element: dict[str, Any], kind: str, text: str) -> None:
             for inner in element[key].values():
                 _fill(inner, ELEMENTS[key], text)
         elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
-            made: dict[str, dict[str, Any]] = {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}
-            element |= made.get(sort, {})
+            filled: dict[str, dict[str, Any]] = {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}
+            element |= filled.get(sort, {})
 
 
 def written(data: object) -> str:

@@ -9,7 +9,7 @@ import json
 import re
 import shutil
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -192,13 +192,8 @@ def test_no_script_runs_in_a_browser(project: Path) -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
         page = browser.new_page()
-
-        def dismiss(dialog: Dialog) -> None:
-            seen.append(dialog.message)
-            dialog.dismiss()
-
-        page.on("dialog", dismiss)
-        page.on("request", lambda request: seen.append(request.url) if not local(request.url) else None)
+        page.on("dialog", dialogs(seen))
+        page.on("request", lambda request: seen.extend([] if local(request.url) else [request.url]))
         page.on("pageerror", lambda error: seen.append(str(error)))
         for path in pages:
             page.goto(f"file://{project.parent}/out/{path}")
@@ -206,6 +201,16 @@ def test_no_script_runs_in_a_browser(project: Path) -> None:
             assert set(page.evaluate(schemes)) <= {"file:", *(f"{scheme}:" for scheme in SCHEMES)}, path
         browser.close()
     assert seen == []
+
+
+def dialogs(seen: list[str]) -> Callable[[Dialog], None]:
+    """Note what a script says, and let the page go on."""
+
+    def note(dialog: Dialog) -> None:
+        seen.append(dialog.message)
+        dialog.dismiss()
+
+    return note
 
 
 def local(url: str) -> bool:
