@@ -251,7 +251,7 @@ def _places(load: HostLoad) -> Iterator[Bar]:
     """Draw the cores to which something is pinned and those that the rest shares, each against itself."""
     if len(load.places) < 2:  # noqa: PLR2004 - one place is the host
         return
-    for name, cores, used in load.places:
+    for name, cores, used in sorted(load.places, key=lambda place: (" " not in place[0], len(place[0]), place[0])):
         share = of_cores(used, cores)
         full = used.value is not None and used.value >= cores
         known = None if share.value is None else _float(share.value * 100)
@@ -260,12 +260,12 @@ def _places(load: HostLoad) -> Iterator[Bar]:
         stretches: tuple[Stretch, ...] = (Stretch(known, "missed" if full else "best", "", tooltip),)
         if known is not None and not used.complete:
             stretches += (Stretch(None, "open", "?", tooltip),)
-        yield Bar(f"of which {title}", stretches, figures.share(share))
+        yield Bar(title, stretches, figures.share(share))
 
 
 def _place(name: str, cores: int) -> str:
     """Name a place on a host: `core 7`, or the cores that all else shares."""
-    return name.partition(" ")[2] or f"not pinned, {plural(cores, 'core')}"
+    return name.partition(" ")[2] or f"the other {plural(cores, 'core')}"
 
 
 def load_verdict(load: HostLoad) -> str:

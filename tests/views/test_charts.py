@@ -102,7 +102,7 @@ def test_a_full_core_is_seen_on_a_host_that_is_not_full() -> None:
     architecture = pipeline.check(resources.path("example_ramcip")).architecture
     chart = charts.load_of(index(architecture), timed(architecture), "onboard_pc", load)
     alone = [(bar.title, bar.value, bar.stretches[0].kind) for bar in chart.bars[-2:]]
-    assert alone == [("of which core 7", "110 %", "missed"), ("of which not pinned, 7 cores", "10 %", "best")]
+    assert alone == [("core 7", "110 %", "missed"), ("the other 7 cores", "10 %", "best")]
 
 
 def test_many_activities_are_summed_up_in_the_last_bar(drawn: dict[str, Chart]) -> None:
