@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -124,7 +123,9 @@ def _summary(asked: Asked) -> None:
 
 def _chain(asked: Asked, name: str) -> None:
     from archgen.findings import timing_json, timing_text
+    from archgen.timing import chains as chains_of
     from archgen.timing import duerr
+    from archgen.timing.network import Network
 
     analysis, chains = _computed(asked.architecture)
     result = _known(chains, name)
@@ -132,7 +133,8 @@ def _chain(asked: Asked, name: str) -> None:
     if asked.as_json:
         _json({"version": timing_json.VERSION, "chain": name, **timing_json.chain(result)})
     else:
-        _lines(timing_text.chain(result, published))
+        age = chains_of.data_age(Network.of(analysis), result)
+        _lines(timing_text.chain(result, age, published))
 
 
 def _why(asked: Asked, word: str) -> None:
@@ -256,9 +258,13 @@ def _wrong(text: str) -> NoReturn:
 
 
 def _json(document: object) -> None:
-    click.echo(json.dumps(document, ensure_ascii=False, indent=2))
+    from archgen.findings.escape import json_text
+
+    click.echo(json_text(document), nl=False)
 
 
 def _lines(lines: Iterable[str]) -> None:
+    from archgen.findings.escape import visible
+
     for line in lines:
-        click.echo(line)
+        click.echo(visible(line))

@@ -72,7 +72,7 @@ def terms(network: Network, way: Way) -> tuple[Term, ...]:
     start = steps.start(name)
     made = [Term(name, start.value, steps.response(name), ZERO, start.why, start.at)]
     for arc in (network.arcs[at] for at in way.arcs):
-        waits = steps.sampling(arc)
+        waits = steps.delay(arc)
         made.append(Term(arc.target, waits.value, steps.response(arc.target), steps.link(arc), waits.why, waits.at))
     return tuple(made)
 
@@ -96,6 +96,17 @@ def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> 
         deadline=deadline,
         verdict=verdict(bound, deadline),
     )
+
+
+def data_age(network: Network, result: ChainResult) -> Value:
+    """Give the largest age of what a chain makes of a sample, until the next one replaces it.
+
+    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be a
+    gap away, and that comes on top.
+    """
+    if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
+        return result.bound
+    return total((result.bound, network.steps.arrivals.gap(result.through[0])))
 
 
 def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "open"]:
