@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import sys
@@ -13,10 +14,16 @@ def main() -> None:
     gc.disable()
     import click
 
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by whoever called: what is written goes nowhere
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
     from archgen.cli import main as verbs
 
     try:
-        sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
+        try:
+            sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
+        finally:
+            sys.stdout.flush()  # here, where a reader who is gone or a full disk is still told
     except click.ClickException as error:
         error.show()
         sys.exit(2)
@@ -25,14 +32,26 @@ def main() -> None:
         sys.exit(130)
     except BrokenPipeError:
         # Whoever read our output has had enough (`archgen list | head`): that is no failure.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _leave_quietly()
         sys.exit(0)
+    except OSError as error:  # a full disk behind the output, for instance
+        _leave_quietly()
+        sys.stderr.write(
+            f"archgen: failed: {error.strerror or error}{f': {error.filename}' if error.filename else ''}\n"
+        )
+        sys.exit(2)
     except Exception as error:  # a traceback is never shown; ARCHGEN_DEBUG brings it back
         if os.environ.get("ARCHGEN_DEBUG"):
             raise
         what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         sys.stderr.write(f"archgen: failed: {what}\nThis is a mistake in archgen. ARCHGEN_DEBUG=1 shows where.\n")
         sys.exit(2)
+
+
+def _leave_quietly() -> None:
+    """Let what is still to be written go nowhere, so that Python's own last flush says nothing."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

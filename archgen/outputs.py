@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
-from archgen.emit import tree
+from archgen.emit import kept, tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
 from archgen.model import selector
@@ -80,8 +80,10 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
         shown = ", ".join(list(made.graphs)[:8])
         msg = f"no picture is called {' or '.join(only)}"
         raise tree.OutputError(msg, f"there are {shown}, ...")
-    formats = tuple(form for form in forms if form != "dot")
-    pictures = draw(tuple(chosen.values()), formats, ask)
+    pictures = draw(tuple(chosen.values()), tuple(form for form in forms if form != "dot"), ask)
+    if chosen and not pictures:
+        msg = "no picture could be drawn, nothing was written"
+        raise tree.OutputError(msg)
     tree.write(_picture_files(pictures, forms), target)
     return len(pictures)
 
@@ -111,7 +113,8 @@ def build(
     tree.write(_site(checked, made, pictures), target / "site")
     yield target / "site" / "index.html"
     tree.write(_picture_files(pictures, ("svg", "png")), target / "diagrams")
-    yield target / "diagrams"
+    if pictures:
+        yield target / "diagrams"
     pack(checked, target / "packed.yaml")
     yield target / "packed.yaml"
     for backend in chosen:
@@ -227,14 +230,19 @@ def cache_folder() -> Path | None:
 
 
 def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: Ask, template: Path | None) -> bytes:
-    from archgen.emit import docx
-
     outline = report_view.report(made.view, made.edition)
     data = template.read_bytes() if template else None
-    try:
-        document, warnings = docx.write(outline, pictures, template=data, chapter_files=checked.chapters.picture)
-    except docx.TemplateError as error:
-        raise tree.OutputError(str(error)) from None
+
+    def write(chapter_files: kept.ChapterFiles) -> kept.Written:
+        from archgen.emit import docx
+
+        try:
+            return docx.write(outline, pictures, template=data, chapter_files=chapter_files)
+        except docx.TemplateError as error:
+            raise tree.OutputError(str(error)) from None
+
+    shown = checked.chapters.picture
+    document, warnings = kept.report(cache_folder(), outline, pictures, template=data, chapter_files=shown, write=write)
     for warning in warnings:
         ask.warn(warning)
     return document

@@ -131,6 +131,7 @@ def judge(loaded: Loaded) -> Checked:
         shipped=shipped.shipped_types(loaded.distro),
         interfaces=known,
         lost=loaded.lost,
+        partial=loaded.partial,
     )
     architecture = transform.transform(linked)
     read, chapter_findings = chapters.chapters(merged, loaded.root)
@@ -145,7 +146,8 @@ def judge(loaded: Loaded) -> Checked:
         *rules.judge_settings(loaded.rule_places.items(), _BY_NAME),
     )
     ignores = [ignore for found in loaded.ignores.values() for ignore in found]
-    kept = suppress.suppress(raw, ignores, _BY_NAME, suppress.first_lines(architecture))
+    first_lines = suppress.first_lines(architecture) if ignores else {}
+    kept = suppress.suppress(raw, ignores, _BY_NAME, first_lines)
     return Checked(loaded, merged, architecture, read, settle(kept, _BY_NAME, loaded.rules))
 
 

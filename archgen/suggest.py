@@ -8,6 +8,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+_LONGEST = 200
+"""Characters of the longest name there can be (a type's). Comparing longer words takes time and finds nothing."""
+
+
 def closest(word: str, candidates: Iterable[str]) -> str | None:
     """Give the candidate that `word` most likely stands for, or None where none is near enough.
 
@@ -19,6 +23,8 @@ def closest(word: str, candidates: Iterable[str]) -> str | None:
     for name in names:
         if _fold(name) == folded:
             return name
+    if len(word) > _LONGEST:
+        return None
     limit = max(1, len(word) // 3)
     best: tuple[int, str] | None = None
     for name in names:

@@ -1,8 +1,9 @@
-"""Fixtures that turn a project in one short text into an architecture, with the real reader."""
+"""Fixtures of several rooms: a project in one short text as an architecture, and the case study with all its outputs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,7 @@ from archgen.model.mapping import Type
 from archgen.schema import normalise, validate
 from archgen.syntax import yaml
 from archgen.transform import transform
+from tests.running import RAMCIP, REVISION, archgen, made_once
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 SHIPPED = {
@@ -64,3 +66,20 @@ def derived() -> Callable[[str], Architecture]:
         return transform(architecture)
 
     return derive
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-golden", action="store_true", help="Renew what stands in tests/golden.")
+
+
+@pytest.fixture(scope="session")
+def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """Build the case study with every output, once for all workers; give the folder."""
+    base = tmp_path_factory.getbasetemp()
+    place = base if worker_id == "master" else base.parent
+
+    def make(folder: Path) -> None:
+        made = ("--backend", "wiki", "--revision", REVISION, "-o", folder)
+        archgen("build", RAMCIP, *made, cwd=place, env={"XDG_CACHE_HOME": str(place)})
+
+    return made_once(place / "ramcip", make)

@@ -8,11 +8,11 @@ from typing import NamedTuple
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
-from archgen.model.interfaces import DISTROS, Answer, Interfaces
+from archgen.model.interfaces import Answer, Interfaces
 from archgen.model.mapping import flow_of
 from archgen.model.node import Endpoint
 from archgen.source import NOWHERE, Span
-from archgen.suggest import closest, did_you_mean
+from archgen.suggest import closest
 
 _KIND = {"topic": "message", "service": "service", "action": "action"}
 
@@ -148,6 +148,8 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
           Tags: {message: demo_msgs/msg/Tags}
     """
     interfaces = architecture.interfaces
+    if interfaces.distro is not None and not interfaces.held:
+        return  # `unknown_distro` says it once
     for message, at, element in _answered(architecture, "not held"):
         yield Diagnostic(
             "unchecked-message",
@@ -163,8 +165,6 @@ def _unheld(message: str, interfaces: Interfaces) -> str:
     package = message.partition("/")[0]
     if interfaces.distro is None:
         return "the project names no distribution (`ros: {distro: jazzy}`)"
-    if not interfaces.held:
-        return f"archgen holds no interfaces of `{interfaces.distro}`, only of {', '.join(sorted(DISTROS))}"
     if package in interfaces.packages():
         return f"it is not among the names held of `{package}`, and newer ones may be missing there"
     return f"archgen holds no names of `{package}` for {interfaces.distro}"
@@ -177,8 +177,6 @@ def _meant(message: str, interfaces: Interfaces) -> str | None:
 
 def _slip(message: str, interfaces: Interfaces) -> str | None:
     """Guess as above, but a namesake in a package of quite another name is no guess: the name may well be right."""
-    if interfaces.distro is not None and not interfaces.held:
-        return did_you_mean(interfaces.distro, DISTROS)
     guess = interfaces.nearest(message)
     near = guess and closest(message.partition("/")[0], [guess.partition("/")[0]])
     return f"did you mean `{guess}`?" if near else None

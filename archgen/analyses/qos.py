@@ -106,10 +106,10 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
             for reader in topic.readers:
                 # Nobody has decided anything about a node that archgen itself put in.
                 if architecture.nodes[writer.node].written and architecture.nodes[reader.node].written:
-                    yield from _judge(topic, writer, reader)
+                    yield from _judge(architecture, topic, writer, reader)
 
 
-def _judge(topic: Topic, writer: Endpoint, reader: Endpoint) -> Iterator[Diagnostic]:
+def _judge(architecture: Architecture, topic: Topic, writer: Endpoint, reader: Endpoint) -> Iterator[Diagnostic]:
     found = tuple(clashes(writer.qos, reader.qos))
     if not found:
         return
@@ -119,9 +119,9 @@ def _judge(topic: Topic, writer: Endpoint, reader: Endpoint) -> Iterator[Diagnos
     yield Diagnostic(
         "incompatible-qos",
         f"`{reader.node}` receives nothing from `{writer.node}` on `{topic.name}`: it asks for {wants}, and is offered {gets}{assumed}",
-        _place(reader),
+        _place(architecture, reader),
         severity=Severity.WARNING if assumed else None,
-        labels=(Label(_place(writer), "offered here"),),
+        labels=(Label(_place(architecture, writer), "offered here"),),
         help=f"needed: {'; '.join(clash.cure for clash in found)}",
         element=reader.node,
     )
@@ -136,8 +136,10 @@ def _assumption(endpoint: Endpoint) -> str:
     return ""
 
 
-def _place(endpoint: Endpoint) -> Span:
-    return endpoint.at if endpoint.qos.at == NOWHERE else endpoint.qos.at
+def _place(architecture: Architecture, endpoint: Endpoint) -> Span:
+    """Give where the settings were written, or else the topic, or the node that leaves both out."""
+    written = (endpoint.qos.at, endpoint.at)
+    return next((at for at in written if at != NOWHERE), architecture.nodes[endpoint.node].at)
 
 
 def _given(duration: Quantity | None) -> bool:

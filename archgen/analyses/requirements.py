@@ -10,7 +10,7 @@ from archgen.suggest import closest, did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from archgen.model.architecture import Architecture
+    from archgen.model.architecture import Architecture, Requirement
     from archgen.source import Span
 
 
@@ -46,12 +46,17 @@ def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for component in architecture.components.values():
         for use in component.requirements:
-            if use.is_id and use.text not in architecture.requirements:
+            if use.is_id and not _is_declared(architecture, use.text):
                 yield _unknown(architecture, use.text, use.at, component.id)
     for chain in architecture.chains.values():
         for requirement in chain.requirements:
-            if requirement not in architecture.requirements and " " not in requirement:
+            if not _is_declared(architecture, requirement) and " " not in requirement:
                 yield _unknown(architecture, requirement, chain.at, chain.id)
+
+
+def _is_declared(architecture: Architecture, requirement: str) -> bool:
+    """Say whether a requirement is there, or may be in what could not be read."""
+    return requirement in architecture.requirements or requirement in architecture.lost
 
 
 def _unknown(architecture: Architecture, text: str, at: Span, element: str) -> Diagnostic:
@@ -101,11 +106,15 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
         if requirement.id not in named and requirement.id not in meant:
             yield Diagnostic(
                 "uncovered-requirement",
-                f"no component serves the requirement `{requirement.id}` ({requirement.title})",
+                f"no component serves the requirement `{requirement.id}`{_titled(requirement)}",
                 requirement.at,
                 help=f"name `{requirement.id}` in `requirements` of the component whose task it is",
                 element=requirement.id,
             )
+
+
+def _titled(requirement: Requirement) -> str:
+    return "" if requirement.title == requirement.id else f" ({requirement.title})"
 
 
 def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:

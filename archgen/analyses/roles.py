@@ -99,7 +99,7 @@ def role_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
         better = [role for role in ("source", "filter", "sink", "reactive") if _fault(role, seen) is None]
         yield Diagnostic(
             "role-mismatch",
-            f"`{component.id}` says that it is a {component.role}, but {fault}",
+            f"`{component.id}` says that its role is `{component.role}`, but {fault}",
             component.role_at,
             help=f"its ports fit the role {' or '.join(f'`{role}`' for role in better)}" if better else None,
             element=component.id,

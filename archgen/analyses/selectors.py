@@ -70,6 +70,8 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
         for problem in selecting.select(written.text)[1]:
             if problem.severity == "warning" and "finding:" in written.text[problem.start : problem.end]:
                 continue  # what is found stands only behind the rules
+            if _is_lost(architecture, written.text[problem.start : problem.end]):
+                continue  # where it may be declared, something else is reported
             yield Diagnostic(
                 "wrong-selector",
                 f"in the selector of {written.whose}: {problem.message}",
@@ -123,6 +125,12 @@ def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
                 help="see what a selector selects with `archgen list SELECTOR`",
                 element=view.id,
             )
+
+
+def _is_lost(architecture: Architecture, path: str) -> bool:
+    return not architecture.lost.isdisjoint(path.split(".")[-2:]) or (
+        architecture.partial and ("*" in path or ":" in path)
+    )
 
 
 def _place(written: Written, problem: Problem) -> Span:

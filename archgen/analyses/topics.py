@@ -99,6 +99,7 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
             if writer.port
             and writer.component != reader.component
             and writer.port not in traffic.named[reader.component]
+            and writer.port not in architecture.suspects
         ]
         if extra:
             told.add((reader.component, reader.name))
@@ -181,6 +182,9 @@ def _not_among_sources(architecture: Architecture, traffic: _Traffic, reader: En
     writers = traffic.writers.get((reader.name, reader.flow), [])
     if not expected or reader.name in expected or any(w.port for w in writers):
         return None  # nothing to compare, right, or another output's topic: `unnamed_source` tells
+    meant = {name for output in traffic.sources[reader.port] for name in (output, output.rpartition(".")[0])}
+    if not architecture.suspects.isdisjoint(meant):
+        return None  # what its source's node wrote of the topic was not understood, and is reported
     entry = architecture.inputs[reader.port]
     listed = " and ".join(f"`{name}`" for name in expected)
     message = f"no source of `{entry.name}` publishes on `{reader.name}`: they use {listed}"

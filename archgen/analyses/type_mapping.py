@@ -114,6 +114,8 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         types:
           Colour picture: {message: sensor_msgs/msg/Image}
     """
+    if architecture.partial:
+        return
     used = {port.type for port in _ports(architecture)}
     for type_ in architecture.types.values():
         used |= {type_.request, type_.response, type_.feedback}

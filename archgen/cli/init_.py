@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from archgen.cli import run
+
 SCHEMA = ".archgen/archgen.schema.json"
 
 PROJECT = """\
@@ -24,7 +26,7 @@ groups:
         functionality: Measures the distance to what stands around the robot.
         role: source
         inputs:
-          surroundings: {{external: Walls, furniture and people, medium: physical}}
+          surroundings: {{external: "Walls, furniture and people", medium: physical}}
         outputs:
           scan: Laser scan
   driving:
@@ -74,7 +76,8 @@ def command(folder: Path | None, title: str | None) -> None:
         raise click.ClickException(msg)
     for file, data in files.items():
         if file not in there:
-            tree.write_file(target / file, data)
+            with run.phrased():
+                tree.write_file(target / file, data)
             click.echo(f"wrote {target / file}")
     click.echo("Now: archgen check, then archgen build.")
 

@@ -76,6 +76,8 @@ def selected(checked: Checked, words: str | None) -> Selection | None:
     selection, problems = outputs.select(checked, words)
     for problem in problems:
         click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
+        if problem.help:
+            click.echo(visible(f"  = help: {problem.help}"), err=True)
     if any(problem.severity == "error" for problem in problems):
         msg = f"the selector '{visible(words)}' cannot be used"
         raise click.UsageError(msg)

@@ -46,7 +46,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
 def laid_out(shown: Card) -> str:
     """Lay a card out for the terminal, control characters taken out."""
-    from archgen.findings.escape import visible
+    from archgen.findings.escape import plain_line, visible
 
     place = f"   {shown.at}" if shown.at.file else ""
     title = f" - {shown.title}" if shown.title != shown.id else ""
@@ -56,4 +56,4 @@ def laid_out(shown: Card) -> str:
     for name, items in shown.lists:
         lines.append(f"  {name}:" + ("" if items else " none"))
         lines += [f"    {visible(item)}" for item in items]
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(plain_line, lines)) + "\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
@@ -27,6 +26,7 @@ def command(project: Path | None, form: str) -> None:
     """
     from archgen.analyses.size import progress, size
     from archgen.diagnostic import Severity
+    from archgen.findings.escape import json_text
 
     checked = run.check(project)
     run.report(checked, least=Severity.ERROR)
@@ -34,14 +34,14 @@ def command(project: Path | None, form: str) -> None:
     if form == "json":
         plain = {key: float(v) if isinstance(v, Fraction) else v for key, v in asdict(found).items()}
         data = {"version": 1, **plain, "files": len(checked.files), "progress": [asdict(row) for row in rows]}
-        click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+        click.echo(json_text(data), nl=False)
     else:
         click.echo(_text(checked.architecture.project.title, found, rows, len(checked.files)), nl=False)
     run.finish(checked)
 
 
 def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> str:
-    from archgen.findings.escape import visible
+    from archgen.findings.escape import plain_line, visible
     from archgen.views.statistics import STEPS, figures
 
     lines = [visible(title), ""]
@@ -53,7 +53,7 @@ def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> st
     for row in measured:
         counts = "".join(f"{_share(getattr(row, step), row.components):>11}" for step in STEPS)
         lines.append(f"  {visible(row.title)[:31]:32}{row.components:>11}{counts}")
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(plain_line, lines)) + "\n"
 
 
 def _share(count: int, of: int) -> str:

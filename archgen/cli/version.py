@@ -25,5 +25,5 @@ def _installed(name: str) -> str:
     if name == "pyyaml":
         import yaml
 
-        return found if hasattr(yaml, "CParser") else f"{found} (without libyaml: reading is about ten times slower)"
+        return found if yaml.__with_libyaml__ else f"{found} (without libyaml: reading is about ten times slower)"
     return found

@@ -7,13 +7,15 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 Place = tuple[str | int, ...]
-_PLAIN = re.compile(r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ud800-\udfff#:,\[\]{}'\"]*\Z")
+_PLAIN = re.compile(
+    r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff#:,\[\]{}'\"]*\Z"
+)
 _OTHERWISE = re.compile(
     r"(?:~|null|true|false|yes|no|on|off|y|n|[-+]?\.(?:inf|nan)|<<|=)\Z"
     r"|[-+.]?[0-9][0-9_]*(?:[.:eExXobB+\-][0-9a-fA-F_.:eE+\-TtZz ]*)?\Z",
     re.IGNORECASE,
 )
-_UNSAFE_BLOCK = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\u2028\u2029\ufeff\ud800-\udfff\t]")
+_UNSAFE_BLOCK = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff\t]")
 
 
 def write(data: Mapping[str, object], comments: Mapping[Place, str] | None = None) -> str:
@@ -89,7 +91,7 @@ def _quoted(text: str) -> str:
     return json.dumps(text.encode("utf-8", "replace").decode("utf-8"), ensure_ascii=False).translate(_ESCAPES)
 
 
-_ESCAPES = {c: f"\\u{c:04x}" for c in (*range(0x7F, 0xA1), 0x2028, 0x2029, 0xFEFF)}
+_ESCAPES = {c: f"\\u{c:04x}" for c in (*range(0x7F, 0xA1), 0x2028, 0x2029, 0xFEFF, 0xFFFE, 0xFFFF)}
 
 
 def _block(text: str) -> bool:

@@ -14,14 +14,19 @@ if TYPE_CHECKING:
 _LACKS = frozenset(
     {
         "disconnected-component",
+        "incompatible-qos",
         "missing-detail",
         "role-mismatch",
         "unfed-input",
         "unjustified-component",
         "unjustified-node",
+        "unknown-message",
+        "unmapped-type",
     }
 )
-"""Rules that say what an element lacks: nothing is said of one in which something could not be read."""
+"""Rules that say what an element lacks (or that rest on a default or a `status: planned`): nothing is said of one in which
+something could not be read.
+"""
 _UNUSED = frozenset(
     {
         "disconnected-component",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import unicodedata
 
 _KEPT = frozenset("\u200c\u200d")
@@ -16,6 +17,20 @@ def visible(text: str) -> str:
     if text.isascii() and text.isprintable():
         return text
     return "".join(_visible(character) for character in text)
+
+
+def plain_line(line: str) -> str:
+    """Give a visible line so that no workflow takes it for one of its commands, which begin with `::` after blanks."""
+    blanks = len(line) - len(line.lstrip())
+    return f"{line[:blanks]}\\{line[blanks:]}" if line.startswith("::", blanks) else line
+
+
+def json_text(data: object) -> str:
+    """Write JSON in which all that does not print is escaped: it reads the same, and does a terminal no harm."""
+    text = json.dumps(data, ensure_ascii=False, indent=2) + "\n"
+    if text.isascii() and "\x7f" not in text:
+        return text
+    return "".join(c if c == "\n" or c in _KEPT or _visible(c) == c else json.dumps(c)[1:-1] for c in text)
 
 
 def width(text: str) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -38,7 +39,8 @@ def terminal(rule: Rule, *, colour: bool = False) -> str:
     """Give a rule's page as text for a terminal."""
     parts = page(rule)
     bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
-    blocks = [f"{bold[0]}{rule.name}{bold[1]} ({_standing(rule)})", parts.summary, *_paragraphs(parts.why)]
+    prose = (textwrap.fill(paragraph, 100) for paragraph in (parts.summary, *_paragraphs(parts.why)))
+    blocks = [f"{bold[0]}{rule.name}{bold[1]} ({_standing(rule)})", *prose]
     for title, example in (("Reported:", parts.bad), ("Not reported:", parts.good)):
         if example:
             blocks += [f"{bold[0]}{title}{bold[1]}", "\n".join(f"    {line}".rstrip() for line in example.splitlines())]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
+from archgen.findings.escape import json_text
 from archgen.findings.text import severity_counts
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ VERSION = 1
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:
     """Give settled findings as one JSON document, in their order, with a line end behind it."""
-    return json.dumps(document(diagnostics), indent=2, ensure_ascii=False) + "\n"
+    return json_text(document(diagnostics))
 
 
 def document(diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import csv as csv_
 import io
-import json as json_
 from collections.abc import Sequence
 
-from archgen.findings.escape import visible
+from archgen.findings.escape import json_text, plain_line, visible
 
 Rows = Sequence[Sequence[str]]
 
@@ -17,7 +16,8 @@ def text(columns: Sequence[str], rows: Rows) -> str:
     cleaned = [[visible(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
     widths = [max(len(row[place]) for row in cleaned) for place in range(len(columns))]
     return "".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n" for row in cleaned
+        plain_line("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()) + "\n"
+        for row in cleaned
     )
 
 
@@ -37,4 +37,4 @@ def _harmless(cell: str) -> str:
 
 def json(columns: Sequence[str], rows: Rows) -> str:
     """Write a list of objects."""
-    return json_.dumps([dict(zip(columns, row, strict=True)) for row in rows], ensure_ascii=False, indent=2) + "\n"
+    return json_text([dict(zip(columns, row, strict=True)) for row in rows])

@@ -98,6 +98,9 @@ def suppress(
         if not found:
             yield diagnostic
     for ignore in ignores:
+        if not ignore.rules:
+            cure = "name the rule in brackets: `# archgen: ignore[unread-output] why`"
+            yield Diagnostic("unused-ignore", "this comment names no rule", ignore.at, help=cure)
         for name in dict.fromkeys(ignore.rules):
             yield from _judge(ignore, name, rules, used=broken or (ignore.at, name) in used)
 
@@ -127,4 +130,9 @@ def first_lines(architecture: Architecture) -> Mapping[str, Lines]:
     for elements in everything:
         for key, element in elements.items():
             found[key].add((element.at.file, element.at.line))
+    # A type that nobody declared has the lines of its ports: in `image: {type: Image}` its own may be another one.
+    typed = [(port.type, port.at) for port in a.inputs.values()] + [(port.type, port.at) for port in a.outputs.values()]
+    for name, at in typed:
+        if name is not None:
+            found[name].add((at.file, at.line))
     return {key: frozenset(lines) for key, lines in found.items()}

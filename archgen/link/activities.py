@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 
 from archgen.diagnostic import Diagnostic, Label
-from archgen.link.declare_timing import senseless
+from archgen.link import sense
 from archgen.model.component import Component
 from archgen.model.timing import Timing
 
@@ -63,9 +63,7 @@ def _both(node: str, own: Timing, claimed: Timing, found: list[Diagnostic]) -> T
     found += (_twice(node, key, own, claimed) for key in twice)
     missing = {key: getattr(claimed, key) for key in _KEYS if key not in own.places}
     merged = replace(own, **missing, places={**claimed.places, **own.places})
-    known = {d.span for part in (own, claimed) for d in senseless(part, node)}
-    found += [d for d in senseless(merged, node) if d.span not in known]
-    return merged
+    return sense.sound(merged, node, found)
 
 
 def _twice(node: str, key: str, own: Timing, claimed: Timing) -> Diagnostic:

@@ -145,6 +145,8 @@ def _read(root: Path, name: str, at: Span) -> tuple[str, Diagnostic | None]:
         return "", Diagnostic("missing-chapter", f"the chapter `{name}` lies outside the project's folder", at)
     read = files.read(root, clean)
     if read.problem:
-        message = f"the chapter `{name}` cannot be read: {read.problem.message}"
+        message = (
+            f"the chapter `{name}` cannot be read: {read.problem.message.removeprefix('the file cannot be read: ')}"
+        )
         return "", Diagnostic("missing-chapter", message, at, help=read.problem.help)
     return read.text, None

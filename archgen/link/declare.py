@@ -28,10 +28,12 @@ def link(  # noqa: PLR0913 - all by name
     shipped: Mapping[str, Type],
     interfaces: Interfaces,
     lost: frozenset[str] = frozenset(),
+    partial: bool = False,
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     """Make the architecture of a project's merged slices. What could not be resolved is left out, and told.
 
-    `lost` are the keys in files that could not be read: what they may declare is not called unknown.
+    `lost` are the keys of what could not be read: what they may declare is not called unknown. With `partial` that was a
+    whole file or section.
     """
     found: list[Diagnostic] = []
     parts = outline(table)
@@ -48,6 +50,7 @@ def link(  # noqa: PLR0913 - all by name
     architecture = Architecture(
         project=declare_rest.project(table, default_id, default_title),
         distro=reading.text(ros, "distro"),
+        distro_at=reading.place(ros, "distro"),
         shared_topics=reading.texts(ros, "shared_topics"),
         layout=reading.layout(table),
         partners=declare_rest.partners(table),
@@ -68,7 +71,8 @@ def link(  # noqa: PLR0913 - all by name
         views=declare_rest.views(table),
         policies=declare_rest.policies(table),
         interfaces=interfaces,
-        partial=bool(lost),
+        partial=partial,
+        lost=lost,
         suspects=frozenset(references.suspects),  # last: complete only now
     )
     return architecture, tuple(found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from archgen.diagnostic import Diagnostic, Label
 from archgen.link import reading
 from archgen.link.activities import Activities
 from archgen.link.declare_timing import declare_timing
@@ -52,6 +53,8 @@ def _node(name: str, entry: Entry, around: Surroundings, implements: tuple[str, 
     kinds = tuple(dict.fromkeys(kind for kind in reading.texts(below, "kind") if kind in _KINDS))
     container = references.plain(reading.scalar(below, "container"), "container", name)
     host = references.plain(reading.scalar(below, "host"), "host", name)
+    if host and container and around.containers[container].host not in {None, host}:
+        references.found.append(_elsewhere(below, name, around.containers[container]))
     owner = references.plain(reading.scalar(below, "owner"), "partner", name)
     if reading.scalar(below, "owner") is None and implements:
         owner = around.components[implements[0]].owner
@@ -81,6 +84,17 @@ def _node(name: str, entry: Entry, around: Surroundings, implements: tuple[str, 
         implements_written=below.get("implements") is not None,
         at=entry.at,
         name_at=reading.place(below, "name"),
+    )
+
+
+def _elsewhere(below: Table, node: str, container: Container) -> Diagnostic:
+    return Diagnostic(
+        "conflicting-values",
+        f"`{node}` runs in the container `{container.id}`, which is on another host: `{container.host}`",
+        reading.place(below, "host"),
+        labels=(Label(container.at, "the container"),),
+        help="leave `host` out: a node in a container runs on the container's host",
+        element=node,
     )
 
 

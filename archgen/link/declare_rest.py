@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostic import Diagnostic
-from archgen.link import reading
+from archgen.link import reading, sense
 from archgen.link.references import References
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
-from archgen.syntax.tree import Entry, Table
+from archgen.syntax.tree import Table
 
 _WAY = ("node", "component", "output")
 
@@ -98,15 +97,14 @@ def links(root: Table, references: References) -> dict[str, Link]:
     """Declare the links between hosts."""
     found: dict[str, Link] = {}
     for name, entry, below in reading.elements(root, "links"):
-        latency = reading.table(below, "latency")
-        _needs(below, entry, "link", references)
+        best, worst = sense.latency(reading.table(below, "latency"), name, references.found)
         found[name] = Link(
             id=name,
             title=reading.title(below, name),
             connects=tuple(_known(below, "connects", "host", references, name)),
-            bandwidth=reading.measure(below, "bandwidth", "bandwidth"),
-            best=reading.measure(latency, "best", "duration"),
-            worst=reading.measure(latency, "worst", "duration"),
+            bandwidth=sense.positive(below, "bandwidth", "bandwidth", name, references.found),
+            best=best,
+            worst=worst,
             at=entry.at,
         )
     return found
@@ -116,7 +114,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
     """Declare the chains of effect."""
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
-        _needs(below, entry, "chain", references)
+        sense.no_entry(below, "through", "element", name, references.found)
         through = (
             (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
         )
@@ -124,7 +122,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
             id=name,
             title=reading.title(below, name),
             through=tuple(Waypoint(e.kind, e.id, at) for e, at in through if e),  # type: ignore[arg-type]
-            deadline=reading.measure(below, "deadline", "duration"),
+            deadline=sense.positive(below, "deadline", "duration", name, references.found),
             requirements=reading.texts(below, "requirements"),
             at=entry.at,
         )
@@ -167,17 +165,3 @@ def policies(root: Table) -> dict[str, Policy]:
                 to_at=reading.place(forbid, "to"),
             )
     return found
-
-
-_NEEDS = {
-    "link": ("connects", "write the hosts that it joins, such as `connects: [onboard_pc, arm_pc]`"),
-    "chain": ("through", "write its elements in order, such as `through: [camera, planner, drive]`"),
-}
-"""What an element of each kind cannot do without, once all slices are together."""
-
-
-def _needs(below: Table, entry: Entry, kind: str, references: References) -> None:
-    key, cure = _NEEDS[kind]
-    if below.get(key) is None:
-        message = f"the {kind} `{entry.key}` has no `{key}`"
-        references.found.append(Diagnostic("missing-key", message, entry.at, help=cure, element=entry.key))

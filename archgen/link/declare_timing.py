@@ -1,12 +1,12 @@
-"""Timing: what was written, its ports resolved, and what makes no sense in it."""
+"""Timing: what was written, its ports resolved; what makes no sense in it is left out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
 
-from archgen.diagnostic import Diagnostic, Label
-from archgen.link import reading
+from archgen.diagnostic import Diagnostic
+from archgen.link import reading, sense
 from archgen.link.references import Ports
 from archgen.model.timing import OutputTiming, Timing, Trigger
 from archgen.syntax.tree import Entry, Listing, Scalar, Table
@@ -29,10 +29,10 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         jitter=reading.measure(below, "jitter", "duration"),
         wcet=reading.measure(below, "wcet", "duration"),
         bcet=reading.measure(below, "bcet", "duration"),
-        trigger=_trigger(below, ports),
+        trigger=_trigger(below, ports, found),
         every=reading.whole(below, "every"),
         throttle=reading.measure(below, "throttle", "duration"),
-        outputs=dict(_outputs(below, ports)),
+        outputs=dict(_outputs(below, ports, found)),
         calls=dict(_calls(below, ports)),
         priority=reading.whole(below, "priority"),
         core=reading.whole(below, "core"),
@@ -40,11 +40,10 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         places={e.key: e.value.at for e in below},
         at=entry.at,
     )
-    found += senseless(timing, ports.owner)
-    return timing
+    return sense.sound(timing, ports.owner, found)
 
 
-def _trigger(below: Table, ports: Ports) -> Trigger | None:
+def _trigger(below: Table, ports: Ports, found: list[Diagnostic]) -> Trigger | None:
     entry = below.entries.get("trigger")
     if entry is None:
         return None
@@ -52,26 +51,27 @@ def _trigger(below: Table, ports: Ports) -> Trigger | None:
     if type(value) is Scalar:
         return Trigger(value.text, None, value.at) if value.text in {"any", "all"} else None  # type: ignore[arg-type]
     if type(value) is Listing:
-        inputs = _inputs(below, "trigger", ports)
+        inputs = _inputs(below, "trigger", ports, found)
         return None if inputs is None else Trigger("any", inputs, value.at)
     if type(value) is Table and value.get("all") is not None:
-        inputs = _inputs(value, "all", ports)
+        inputs = _inputs(value, "all", ports, found)
         return None if inputs is None else Trigger("all", inputs, value.at)
     return None
 
 
-def _inputs(of: Table, key: str, ports: Ports) -> tuple[str, ...] | None:
-    """Resolve a list of inputs; None where nothing in it could be resolved."""
+def _inputs(of: Table, key: str, ports: Ports, found: list[Diagnostic]) -> tuple[str, ...] | None:
+    """Resolve a list of inputs; None where nothing stands in it, or nothing could be resolved."""
+    sense.no_entry(of, key, "input", ports.owner, found)
     named = [ports.follow(written.text, written.at, "input") for written in reading.scalars(of, key)]
     resolved = tuple(dict.fromkeys(port for port in named if port))
-    return resolved if resolved or not named else None
+    return resolved or None
 
 
-def _outputs(below: Table, ports: Ports) -> Iterator[tuple[str, OutputTiming]]:
+def _outputs(below: Table, ports: Ports, found: list[Diagnostic]) -> Iterator[tuple[str, OutputTiming]]:
     for key, entry, parts in reading.elements(below, "outputs"):
         port = ports.follow(key, entry.at, "output")
         if port:
-            max_gap = reading.measure(parts, "max_gap", "duration")
+            max_gap = sense.positive(parts, "max_gap", "duration", ports.owner, found)
             yield port, OutputTiming(reading.flag(parts, "conditional"), max_gap, entry.at)
 
 
@@ -88,24 +88,3 @@ def _fraction(text: str) -> Fraction | None:
         return Fraction(text) if len(text) <= _NUMBER_LENGTH else None
     except (ValueError, ZeroDivisionError):
         return None
-
-
-def senseless(timing: Timing, element: str) -> Iterator[Diagnostic]:
-    """Say what cannot be: a period of nothing, two ways to say how often, a best case above the worst."""
-    for key, quantity in (("period", timing.period), ("rate", timing.rate)):
-        if quantity is not None and quantity.value == 0:
-            yield _wrong(timing, key, f"a {key} cannot be zero", "leave it out where it is not known", element)
-    if timing.period is not None and timing.rate is not None:
-        label = Label(timing.places["period"], "the period")
-        message = "`rate` and `period` are both written"
-        yield _wrong(timing, "rate", message, "write one of them: each follows from the other", element, label)
-    if timing.bcet is not None and timing.wcet is not None and timing.bcet.value > timing.wcet.value:
-        label = Label(timing.places["wcet"], "the worst case")
-        message = f"the best case execution time (`bcet`, {timing.bcet}) is above the worst (`wcet`, {timing.wcet})"
-        yield _wrong(timing, "bcet", message, "exchange them, or leave `bcet` out", element, label)
-    if timing.every is not None and timing.every < 1:
-        yield _wrong(timing, "every", "`every` is 1 or more", "`every: 3` fires at each third input", element)
-
-
-def _wrong(timing: Timing, key: str, message: str, cure: str, element: str, *labels: Label) -> Diagnostic:
-    return Diagnostic("wrong-value", message, timing.places[key], labels=labels, help=cure, element=element)

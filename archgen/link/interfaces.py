@@ -18,6 +18,7 @@ from archgen.diagnostic import Diagnostic, Label
 from archgen.model.distro import is_ros_1
 from archgen.model.interfaces import DISTROS, Field, Interface, Interfaces
 from archgen.source import Span
+from archgen.suggest import closest
 from archgen.syntax.interfaces import NAME, Definition, parse
 
 _DATA = Path(__file__).resolve().parent / "ros_interfaces"
@@ -82,6 +83,7 @@ def load(
     interfaces = _merge(shipped, {name: definition.interface for name, definition in own.items()})
     for definition in own.values():
         diagnostics += _unknown_fields(definition, interfaces)
+    diagnostics += _circles(own)
     return interfaces, tuple(diagnostics)
 
 
@@ -133,12 +135,37 @@ def _moved(definition: Definition, place: Span) -> Definition:
 
 
 def _unknown_fields(definition: Definition, interfaces: Interfaces) -> Iterator[Diagnostic]:
-    """Find fields whose type is a message that certainly does not exist."""
+    """Find fields whose type is a message that certainly does not exist, or looks like a slip in the name of one."""
     for message, place in definition.references:
-        if interfaces.answer(message) == "wrong":
-            guess = interfaces.nearest(message)
-            help_ = f"did you mean `{_inside(guess)}`?" if guess and "/msg/" in guess else None
+        answer = interfaces.answer(message)
+        if answer == "known":
+            continue
+        guess = interfaces.nearest(message)
+        help_ = f"did you mean `{_inside(guess)}`?" if guess and "/msg/" in guess else None
+        if answer == "wrong":
             yield Diagnostic(NAME, f"there is no message `{message}`", place, help=help_)
+        elif guess and help_ and interfaces.held and closest(message.split("/")[0], [guess.split("/")[0]]):
+            yield Diagnostic("unchecked-message", f"archgen holds no message `{message}`", place, help=help_)
+
+
+def _circles(own: Mapping[str, Definition]) -> Iterator[Diagnostic]:
+    """Find the fields through which a message of the project holds itself: it would have no end, and ROS refuses it."""
+    for name, definition in own.items():
+        for message, place in definition.references:
+            if name in _inner(message, own):
+                through = "" if message == name else f", through `{message}`"
+                yield Diagnostic(NAME, f"`{name}` holds itself{through}", place, help="name it by an id or an index")
+
+
+def _inner(name: str, own: Mapping[str, Definition]) -> set[str]:
+    """Give a message and all messages of the project in it."""
+    found, waiting = set[str](), [name]
+    while waiting:
+        message = waiting.pop()
+        if message not in found and message in own:
+            found.add(message)
+            waiting += (inner for inner, _ in own[message].references)
+    return found
 
 
 def _inside(message: str) -> str:

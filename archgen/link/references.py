@@ -67,11 +67,12 @@ class References:
 
     def is_lost(self, words: str) -> bool:
         """Tell whether a file that could not be read may declare what a path names."""
-        return words.rpartition(".")[2] in self.lost
+        return not self.lost.isdisjoint(words.split(".")[-2:])
 
     def guess(self, word: str, pool: Collection[str]) -> str | None:
         """Guess what a word stands for, as long as guessing is cheap enough."""
         if len(pool) > self._left:
+            self._left = 0
             return None
         self._left -= len(pool)
         return closest(word, pool)
@@ -104,11 +105,25 @@ class References:
             message = f"no {what} named `{words}`: `{inputs[0]}` is an input"
             help_line = "name the output that the data comes from"
             return Diagnostic("unknown-reference", message, written.at, labels=label, help=help_line, element=element)
+        if words in self.places["group"] and "group" not in kinds:
+            return self._not_a_group(written, what, element)
         guess = self._guess_path(words, kinds)
         candidates = self.names.find(guess, kinds, component=component) if guess else NOTHING
         self.suspects.update(name.id for name in candidates.elements)
         meant = candidates.one
         return unknown(written, what, guess, self._place(meant) if meant else NOWHERE, element)
+
+    def _not_a_group(self, written: Scalar, what: str, element: str) -> Diagnostic:
+        group, place = written.text, self.places["group"][written.text]
+        self.suspects.update(path for path in self.places["component"] if path.startswith(f"{group}."))
+        return Diagnostic(
+            "unknown-reference",
+            f"no {what} named `{group}`: it is a group",
+            written.at,
+            labels=(Label(place, "the group"),),
+            help="name its components",
+            element=element,
+        )
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
         others = [name for name in hidden if name.id not in self.implements.get(one.id, ())]
@@ -126,6 +141,8 @@ class References:
 
     def _guess_path(self, words: str, kinds: Sequence[str]) -> str | None:
         """Guess first among paths with the same last word, then among all of this length, then elsewhere by its end."""
+        if not self._left:
+            return None
         length = words.count(".") + 1
         fitting = [kind for kind in kinds if _DEPTH[kind] >= length]
         last = words.rpartition(".")[2]

@@ -129,6 +129,7 @@ class Architecture:
 
     project: ProjectInfo
     distro: str | None = None
+    distro_at: Span = field(default=NOWHERE, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()
     layout: Layout = field(default_factory=Layout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
@@ -154,6 +155,8 @@ class Architecture:
     interfaces: Interfaces = field(default_factory=Interfaces)
     partial: bool = False
     """A file could not be read at all: what nobody seems to use may be used there."""
+    lost: frozenset[str] = frozenset()
+    """The keys of what could not be read: of what they may declare no rule says that it is unknown."""
     suspects: frozenset[str] = frozenset()
     """Complete ids of what references that could not be resolved most likely meant (the guess, or the candidates). No rule
     says of these that nobody uses them: the reference is reported already."""

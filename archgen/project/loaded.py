@@ -26,7 +26,8 @@ class Loaded:
     `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
     stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to `root`.
     `chapters` are the entries of `report.chapters`, None where nobody wrote them.
-    Nothing is used of the files in `broken`; `lost` are the keys in them, so that nobody complains of what they declare.
+    Nothing is used of the files in `broken`. `lost` are the keys in them, and in whatever else was not understood, so that
+    nobody complains of what they declare; with `partial` that was a whole file or section.
     """
 
     root: Path
@@ -44,6 +45,7 @@ class Loaded:
     layout: Table | None = None
     broken: tuple[str, ...] = ()
     lost: frozenset[str] = frozenset()
+    partial: bool = False
 
 
 def load(path: Path | None = None) -> Loaded:
@@ -54,9 +56,6 @@ def load(path: Path | None = None) -> Loaded:
     if first == MARKER:
         read_sources(reading)
     return _finish(reading, first)
-
-
-_KEY = re.compile(r"([A-Za-z][A-Za-z0-9_.-]*)[\"']?[ \t]*:")
 
 
 def _finish(reading: Reading, first: str) -> Loaded:
@@ -87,7 +86,8 @@ def _finish(reading: Reading, first: str) -> Loaded:
         interfaces=tuple(dict.fromkeys(interfaces)),
         chapters=tuple(item for item in chapters.items if isinstance(item, Scalar)) if chapters else None,
         broken=tuple(reading.broken),
-        lost=frozenset(key for file in reading.broken for key in _KEY.findall(reading.sources.text(file) or "")),
+        lost=frozenset(reading.lost),
+        partial=reading.partial,
         layout=next((value for value in _values(reading, "layout") if isinstance(value, Table)), None),
     )
 

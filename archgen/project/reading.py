@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic
 from archgen.project.find import MARKER
-from archgen.schema import normalise, sections, validate
+from archgen.schema import better_keys, normalise, sections, validate
 from archgen.source import Sources, Span
 from archgen.suggest import closest
 from archgen.syntax import files, globs, yaml
-from archgen.syntax.tree import Listing, Scalar
+from archgen.syntax.tree import Listing, Scalar, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from archgen.syntax.tree import Document, Value
 
@@ -34,6 +35,10 @@ class Reading:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     seen: set[str] = field(default_factory=set)
     broken: list[str] = field(default_factory=list)
+    lost: set[str] = field(default_factory=set)
+    """The keys of what was not understood, and what those that cannot be ids may have been meant to be."""
+    partial: bool = False
+    """Whether a whole file or section was not understood."""
 
 
 def _read(reading: Reading, file: str) -> tuple[Document | None, tuple[Diagnostic, ...]]:
@@ -56,10 +61,44 @@ def _keep(reading: Reading, file: str, document: Document | None, found: tuple[D
     reading.diagnostics.extend(found)
     if document is None:
         reading.broken.append(file)
+        reading.partial = True
+        reading.lost.update(_written(reading, file))
     else:
-        reading.diagnostics.extend(validate(document))
+        written = len(document.root.entries)
+        wrong = validate(document)
+        if wrong:
+            reading.partial |= len(document.root.entries) < written
+            reading.lost.update(_lost(reading, document, wrong))
+        reading.diagnostics.extend(wrong)
         reading.diagnostics.extend(normalise(document))
         reading.documents.append(document)
+
+
+_KEY = re.compile(r"([A-Za-z0-9][A-Za-z0-9_.-]*)[\"']?[ \t]*:")
+
+
+def _written(reading: Reading, file: str) -> list[str]:
+    """Give the keys in a file, read or not, as its text shows them."""
+    return _KEY.findall(reading.sources.text(file) or "")
+
+
+def _lost(reading: Reading, document: Document, wrong: Sequence[Diagnostic]) -> Iterator[str]:
+    """Give the keys that were taken out of a document, and the ids that were meant by those that cannot be one."""
+    yield from Counter(_written(reading, document.file)) - Counter(_keys(document.root))
+    for diagnostic in wrong:
+        at = diagnostic.span
+        line = reading.sources.line(at.file, at.line) or ""
+        yield from better_keys(line[at.column - 1 : at.end_column - 1])
+
+
+def _keys(value: Value) -> Iterator[str]:
+    if isinstance(value, Table):
+        for entry in value:
+            yield entry.key
+            yield from _keys(entry.value)
+    elif isinstance(value, Listing):
+        for item in value.items:
+            yield from _keys(item)
 
 
 def read_sources(reading: Reading) -> None:

@@ -72,14 +72,19 @@ def _key_help(entry: Entry, known: tuple[str, ...]) -> str | None:
 def wrong_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
     """Phrase a key that cannot be the id of what it names."""
     message = f"`{entry.key}` cannot be {_article(part.get('title', 'key').split(' of ')[0])}"
-    better = re.sub(r"[^a-z0-9]+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", entry.key).lower()).strip("_")
-    fits = re.search(part["pattern"], better) if "pattern" in part and better else None
+    better = next((key for key in better_keys(entry.key) if re.search(part.get("pattern", r"\Z."), key)), None)
     help_line = part.get("patternErrorMessage") or "it is too long"
     if len(entry.key) > part.get("maxLength", len(entry.key)):
         help_line = f"at most {part['maxLength']} characters are allowed"
-    elif fits and better != entry.key:
+    elif better and better != entry.key:
         help_line = f"{help_line}; write `{better}`"
     return Diagnostic("wrong-value", message, entry.at, help=help_line, element=element(path))
+
+
+def better_keys(key: str) -> tuple[str, str]:
+    """Give what may have been meant by a key that is no id: as the id of a requirement, and as any other."""
+    snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", key).lower()
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", key).strip("-"), re.sub(r"[^a-z0-9]+", "_", snake).strip("_")
 
 
 def wrong(kind: str, place: Place, part: dict[str, Any]) -> Diagnostic:
@@ -111,18 +116,32 @@ def _wrong_type(name: str, value: Value, part: dict[str, Any]) -> tuple[str, str
 
 def _scalar_help(text: str, part: dict[str, Any]) -> str | None:
     types = part.get("type", ())
-    if "boolean" in types and text.lower() in _YES:
-        return f"write `{_YES[text.lower()]}`"
+    if "boolean" in types:
+        return _yes_or_no(text.lower())
     if "integer" in types:
         digits = re.match(r"\s*([0-9]+)", text)
         return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
     if "array" in types:
-        return f"write `[{_short(text)}]`"
+        return f"write `[{_in_list(text)}]`"
     if "propertyNames" in part:
         return "write one `id: ...` line for each below it, or `{}` for none"
     if "patternErrorMessage" in part:
         return str(part["patternErrorMessage"])
     return f"its keys are {_listed(tuple(part['properties']))}" if part.get("properties") else None
+
+
+def _yes_or_no(word: str) -> str | None:
+    if word in _YES:
+        return f"write `{_YES[word]}`"
+    return f"write `{word}`, without quotes" if word in {"true", "false"} else None
+
+
+_PLAIN = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
+
+
+def _in_list(text: str) -> str:
+    """Write a text as an entry of a list: quoted, where YAML would read it otherwise."""
+    return _short(text) if _PLAIN.match(text) else f'"{_short(text)}"'
 
 
 def _container_help(name: str, value: Value, part: dict[str, Any]) -> str | None:
@@ -182,24 +201,36 @@ def _wrong_quantity(name: str, text: str, dimension: str, part: dict[str, Any]) 
     number = number.replace(",", ".")
     if not unit:
         return f"`{_short(text)}` has no unit", f"write `{number} {_EXAMPLE_UNIT[dimension]}`; {explained}"
-    better = _better_unit(unit, dimension)
-    if better and (unit in quantity.UNITS[dimension]):
-        return f"{name} cannot be `{_short(text)}`", f"write `{number} {better}`"
-    message = f"{name} has no unit `{_short(unit)}`"
+    if unit in quantity.UNITS[dimension]:
+        if max(map(len, number.split("."))) > quantity.DIGITS:
+            return f"{name} has too many digits", f"at most {quantity.DIGITS} are read before and after the point"
+        return f"{name} cannot be `{_short(text)}`", f"write `{number} {unit}`"
+    return _wrong_unit(name, number, unit, dimension, explained)
+
+
+def _wrong_unit(name: str, number: str, unit: str, dimension: str, explained: str) -> tuple[str, str]:
+    better, message = _better_unit(unit, dimension), f"{name} has no unit `{_short(unit)}`"
+    other = _OTHER_KEY.get((name.strip("`"), unit))
+    if other:
+        return message, f"write `{other}: {number} {unit}`"
     if dimension in {"size", "bandwidth"} and better and unit.lower() == better.lower():
         return message, f"write `{number} {better}`; case counts: kB is 1000 bytes, KiB is 1024"
     return message, f"write `{number} {better}`; case counts" if better else explained
 
 
+_OTHER_KEY = {("rate", unit): "period" for unit in quantity.UNITS["duration"]} | {
+    ("period", unit): "rate" for unit in quantity.UNITS["frequency"]
+}
+"""What is meant where somebody writes `rate: 20 ms` or `period: 50 Hz`."""
+
+
 def _better_unit(unit: str, dimension: str) -> str | None:
     units = quantity.UNITS[dimension]
-    if unit in units:
-        return unit
-    folded = [known for known in units if known.lower() == unit.lower()]
     spelled = _SPELLED.get(unit)
-    if folded:
-        return folded[0]
-    return spelled if spelled in units else None
+    if spelled in units:
+        return spelled
+    folded = [known for known in units if known.lower() == unit.lower()]
+    return folded[0] if folded else None
 
 
 def _expected(part: dict[str, Any]) -> str:

@@ -121,7 +121,9 @@ def _bad_start(character: str) -> _Words:
 def _bad_node(character: str) -> _Words:
     if character == ":":
         return _Words("a key is missing before `:`", "write `key: value`")
-    return _Words(f"a value cannot begin with `{character}`" if character else "a value is missing", QUOTE)
+    if not character:
+        return _Words("the text ends where a value should stand", "close what is open: `]` ends a list, `}` a mapping")
+    return _Words(f"a value cannot begin with `{character}`", QUOTE)
 
 
 def _out_of_place(line: str, column: int) -> _Words:

@@ -178,7 +178,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
             if end.index > start.index:  # a closing brace or bracket; without one it ends with what is last in it
                 line, column = end.line + 1, end.column + 1
             entries, items, key, key_at, key_end, value, anchor, before = stack.pop()
-            begun = value.at
+            begun, wants_key = value.at, False
             value.at = new(Span, (file, begun.line, begun.column, line, column))
             if anchor is not None:
                 anchors[anchor] = (value, count - before + 1)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group, Input, Output
 from archgen.model.node import Node, Topic
 from archgen.source import Span
@@ -25,29 +26,33 @@ class Card:
     lists: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
+def _sorts(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
+    """Give all elements by the sort that the card's heading names."""
+    a = architecture
+    return {
+        "group": a.groups,
+        "component": a.components,
+        "output": a.outputs,
+        "input": a.inputs,
+        "node": a.nodes,
+        "topic": a.topics,
+        "type": a.types,
+        "requirement": a.requirements,
+        "use case": a.use_cases,
+        "partner": a.partners,
+        "host": a.hosts,
+        "container": a.containers,
+        "link": a.links,
+        "chain": a.chains,
+        "view": a.views,
+        "policy": a.policies,
+    }
+
+
 def ids(view: Index) -> dict[str, list[str]]:
     """Give every element's id with the sorts of element that bear it."""
-    found = view.architecture
-    sorts = {
-        "group": found.groups,
-        "component": found.components,
-        "output": found.outputs,
-        "input": found.inputs,
-        "node": found.nodes,
-        "topic": found.topics,
-        "type": found.types,
-        "requirement": found.requirements,
-        "use case": found.use_cases,
-        "partner": found.partners,
-        "host": found.hosts,
-        "container": found.containers,
-        "link": found.links,
-        "chain": found.chains,
-        "view": found.views,
-        "policy": found.policies,
-    }
     result: dict[str, list[str]] = {}
-    for sort, elements in sorts.items():
+    for sort, elements in _sorts(view.architecture).items():
         for name in elements:
             result.setdefault(name, []).append(sort)
     return result
@@ -86,7 +91,7 @@ def card(view: Index, sort: str, name: str) -> Card:
     if sort == "node":
         return _node(view, found.nodes[name])
     if sort == "topic":
-        return _topic(found.topics[name])
+        return _topic(view, found.topics[name])
     return _other(view, sort, name)
 
 
@@ -177,11 +182,11 @@ def _node(view: Index, node: Node) -> Card:
     return Card("node", node.id, node.title, node.at, _shown(facts), lists)
 
 
-def _topic(topic: Topic) -> Card:
+def _topic(view: Index, topic: Topic) -> Card:
     facts = [
         ("message", ", ".join(topic.messages) or "?"),
         ("types", ", ".join(topic.types)),
-        ("size", str(topic.size or "")),
+        ("size", view.size(topic)),
     ]
     ends = (("from", topic.writers), ("to", topic.readers))
     lists = tuple((name, tuple(f"{end.node} ({words.qos_words(end.qos)})" for end in found)) for name, found in ends)
@@ -191,21 +196,9 @@ def _topic(topic: Topic) -> Card:
 
 def _other(view: Index, sort: str, name: str) -> Card:
     found = view.architecture
-    tables = {
-        "type": found.types,
-        "requirement": found.requirements,
-        "use case": found.use_cases,
-        "partner": found.partners,
-        "host": found.hosts,
-        "container": found.containers,
-        "link": found.links,
-        "chain": found.chains,
-        "view": found.views,
-        "policy": found.policies,
-    }
-    element: Any = tables[sort][name]
+    element = _sorts(found)[sort][name]
     facts = [
-        (key, _fact(getattr(element, key, None)))
+        (key, view.size(element) if sort == "type" and key == "size" else _fact(getattr(element, key, None)))
         for key in (
             "message",
             "size",

@@ -9,8 +9,10 @@ from typing import TypeVar
 
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component, Connection, Output
-from archgen.model.node import Endpoint, Node
+from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.mapping import Type
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.timing import sizes
 
 T = TypeVar("T")
 
@@ -51,8 +53,12 @@ class Index:
     components_for: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
     """Components that serve a requirement, by the requirement's id."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
+    physical_types: frozenset[str] = frozenset()
+    """Types that only physical ports use: they need no message."""
     hues: Mapping[str, int] = field(default_factory=dict)
     """Each group's place among the groups: its colour."""
+    message_size: sizes.Asked = field(kw_only=True, compare=False, repr=False)
+    """What a message takes on the wire, by message and type."""
 
     def groups(self) -> list[str]:
         """Name the groups of which something is shown, in order."""
@@ -70,6 +76,13 @@ class Index:
         """Give the nodes that are shown, in order."""
         return [node for node in self.architecture.nodes.values() if self.scope.node(node.id)]
 
+    def size(self, carrier: Type | Topic) -> str:
+        """Say how large the messages of a type or topic are: as written, else as computed, else nothing."""
+        if carrier.size is not None:
+            return str(carrier.size)
+        messages = carrier.messages if isinstance(carrier, Topic) else (carrier.message,)
+        return str(self.message_size(messages[0], None)) if len(messages) == 1 else ""
+
 
 def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope: Scope | None = None) -> Index:
     """Make the look-ups, each in one pass."""
@@ -85,8 +98,16 @@ def index(architecture: Architecture, findings: Iterable[Diagnostic] = (), scope
         findings_of=_grouped((_owner(architecture, f.element), f) for f in found if f.element),
         components_for=_grouped((use.text, c) for c in components for use in c.requirements if use.is_id),
         outputs_of_type=_grouped((o.type, o) for o in architecture.outputs.values() if o.type),
+        physical_types=_physical(architecture),
         hues={group: place for place, group in enumerate(architecture.groups)},
+        message_size=sizes.known(architecture),
     )
+
+
+def _physical(architecture: Architecture) -> frozenset[str]:
+    ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
+    digital = {port.type for port in ports if not port.physical}
+    return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
 
 
 def _owner(architecture: Architecture, element: str) -> str:

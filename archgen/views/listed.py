@@ -73,7 +73,7 @@ def _topics(view: Index) -> Iterator[Row]:
 
 def _types(view: Index) -> Iterator[Row]:
     for mapped in tables.shown_types(view):
-        yield (mapped.name, mapped.message or "", str(mapped.size or ""), tables.type_remarks(mapped))
+        yield (mapped.name, mapped.message or "", view.size(mapped), tables.type_remarks(mapped))
 
 
 def _requirements(view: Index) -> Iterator[Row]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from archgen.model.architecture import Partner, Requirement
 from archgen.model.component import Component
 from archgen.model.deployment import Host
-from archgen.model.mapping import Type
+from archgen.model.mapping import Type, flow_of
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.views import tables, words
 from archgen.views.functional import component_table
@@ -87,7 +87,7 @@ def _topic(view: Index, topic: Topic) -> Page:
     facts: list[tuple[str, Inlines]] = [
         ("Message", words.joined((Text(message, code=True),) for message in topic.messages) or words.UNKNOWN),
         ("Type", words.joined(words.type_link(name) for name in topic.types)),
-        ("Size", words.text(str(topic.size)) if topic.size else ()),
+        ("Size", words.text(size) if (size := view.size(topic)) else ()),
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
@@ -151,8 +151,8 @@ def _timing(node: Node) -> Inlines:
 
 def _type(view: Index, mapped: Type) -> Page:
     facts = [
-        ("Message", words.text(Text(mapped.message, code=True)) if mapped.message else words.UNKNOWN),
-        ("Size", words.text(str(mapped.size)) if mapped.size else ()),
+        ("Message", tables.message_of(view, mapped)),
+        ("Size", _size(view, mapped)),
         ("Remarks", words.text(tables.type_remarks(mapped))),
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
@@ -171,6 +171,14 @@ def _type(view: Index, mapped: Type) -> Page:
         ]
     section = Section(f"type:{mapped.name}", mapped.name, tuple(blocks))
     return _page(section, "types", ("Types", "page:types"), "Conceptual type")
+
+
+def _size(view: Index, mapped: Type) -> Inlines:
+    if size := view.size(mapped):
+        return words.text(size)
+    if mapped.message is None or flow_of(mapped.message) != "topic":
+        return ()
+    return words.text(Text(f"unknown: {view.message_size(mapped.message, None).why.replace('`', '')}", muted=True))
 
 
 def _requirement(view: Index, requirement: Requirement) -> Page:

@@ -10,7 +10,10 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from fractions import Fraction
 
-from archgen.model.component import Component, Input, Output
+from archgen.model.architecture import Chain, Requirement
+from archgen.model.component import Component, Group, Input, Output
+from archgen.model.deployment import Link
+from archgen.model.mapping import Type
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.model.timing import Timing
@@ -22,43 +25,17 @@ VERSION = 1
 
 def record(view: Index) -> Record:
     """Give the whole architecture, or what the scope shows of it, as dicts, lists and scalars."""
-    found = view.architecture
-    inside = view.scope.component
+    found, inside = view.architecture, view.scope.component
     return {
         "archgen_resolved": VERSION,
-        "project": _known(
-            {key: getattr(found.project, key) for key in ("id", "title", "version", "description")}
-            | {"distro": found.distro}
-        ),
-        "partners": {p.id: _known({"title": p.title, "description": p.description}) for p in found.partners.values()},
-        "use_cases": {u.id: _known({"title": u.title, "description": u.description}) for u in found.use_cases.values()},
-        "requirements": {
-            r.id: _known(
-                {
-                    "title": r.title,
-                    "description": r.description,
-                    "use_cases": list(r.use_cases),
-                    "served_by": [c.id for c in view.components_for.get(r.id, ())],
-                    "tags": list(r.tags),
-                }
-            )
-            for r in found.requirements.values()
-        },
-        "groups": {
-            name: _known(
-                {
-                    "title": found.groups[name].title,
-                    "description": found.groups[name].description,
-                    "owner": found.groups[name].owner,
-                    "tags": list(found.groups[name].tags),
-                    "components": [component.id for component in view.components(name)],
-                }
-            )
-            for name in view.groups()
-        },
+        "project": _picked(found.project, "id", "title", "version", "description") | _known({"distro": found.distro}),
+        "partners": {p.id: _picked(p, "title", "description") for p in found.partners.values()},
+        "use_cases": {u.id: _picked(u, "title", "description") for u in found.use_cases.values()},
+        "requirements": {r.id: _requirement(view, r) for r in found.requirements.values()},
+        "groups": {name: _group(view, found.groups[name]) for name in view.groups()},
         "components": {c.id: _component(view, c) for c in found.components.values() if inside(c.id)},
         "connections": [
-            {"input": c.input, "kind": c.kind, "target": c.target, "outputs": list(c.outputs)}
+            _picked(c, "input", "kind", "target", "outputs")
             for c in found.connections
             if inside(found.inputs[c.input].component)
         ],
@@ -69,50 +46,45 @@ def record(view: Index) -> Record:
         ],
         "nodes": {node.id: _node(view, node) for node in view.nodes()},
         "topics": _topics(view),
-        "types": {
-            t.name: _known(
-                {
-                    "message": t.message,
-                    "comment": t.comment,
-                    "size": _quantity(t.size, "B"),
-                    "status": t.status,
-                    "request": t.request,
-                    "response": t.response,
-                    "feedback": t.feedback,
-                }
-            )
-            for t in found.types.values()
-        },
-        "hosts": {
-            h.id: _known({"title": h.title, "cores": h.cores, "tags": list(h.tags)}) for h in found.hosts.values()
-        },
-        "containers": {
-            c.id: _known({"title": c.title, "host": c.host, "threads": c.threads}) for c in found.containers.values()
-        },
-        "links": {
-            link.id: _known(
-                {
-                    "title": link.title,
-                    "connects": list(link.connects),
-                    "bandwidth": _quantity(link.bandwidth, "bit/s"),
-                    "best": _quantity(link.best, "ns"),
-                    "worst": _quantity(link.worst, "ns"),
-                }
-            )
-            for link in found.links.values()
-        },
-        "chains": {
-            c.id: _known(
-                {
-                    "title": c.title,
-                    "through": [{"kind": point.kind, "id": point.id} for point in c.through],
-                    "deadline": _quantity(c.deadline, "ns"),
-                    "requirements": list(c.requirements),
-                }
-            )
-            for c in found.chains.values()
-        },
+        "types": {t.name: _type(t) for t in found.types.values()},
+        "hosts": {h.id: _picked(h, "title", "cores", "tags") for h in found.hosts.values()},
+        "containers": {c.id: _picked(c, "title", "host", "threads") for c in found.containers.values()},
+        "links": {link.id: _link(link) for link in found.links.values()},
+        "chains": {chain.id: _chain(chain) for chain in found.chains.values()},
     }
+
+
+def _picked(element: object, *keys: str) -> dict[str, object]:
+    """Take some fields of an element; tuples become lists."""
+    values = {key: getattr(element, key) for key in keys}
+    return _known({key: list(value) if isinstance(value, tuple) else value for key, value in values.items()})
+
+
+def _requirement(view: Index, requirement: Requirement) -> dict[str, object]:
+    served = {"served_by": [component.id for component in view.components_for.get(requirement.id, ())]}
+    return _picked(requirement, "title", "description", "use_cases", "tags") | _known(dict(served))
+
+
+def _group(view: Index, group: Group) -> dict[str, object]:
+    components = {"components": [component.id for component in view.components(group.id)]}
+    return _picked(group, "title", "description", "owner", "tags") | _known(dict(components))
+
+
+def _type(mapped: Type) -> dict[str, object]:
+    keys = ("message", "comment", "status", "request", "response", "feedback")
+    return _picked(mapped, *keys) | _known({"size": _quantity(mapped.size, "B")})
+
+
+def _link(link: Link) -> dict[str, object]:
+    figures = {"bandwidth": _quantity(link.bandwidth, "bit/s")}
+    latency = {"best": _quantity(link.best, "ns"), "worst": _quantity(link.worst, "ns")}
+    return _picked(link, "title", "connects") | _known({**figures, **latency})
+
+
+def _chain(chain: Chain) -> dict[str, object]:
+    through = [{"kind": point.kind, "id": point.id} for point in chain.through]
+    figures = {"through": through, "deadline": _quantity(chain.deadline, "ns")}
+    return _picked(chain, "title", "requirements") | _known(dict(figures))
 
 
 def _known(data: dict[str, object]) -> dict[str, object]:

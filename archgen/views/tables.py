@@ -97,8 +97,8 @@ def types(view: Index) -> Table | None:
     rows = tuple(
         (
             words.type_link(mapped.name),
-            words.text(Text(mapped.message, code=True)) if mapped.message else words.UNKNOWN,
-            words.text(str(mapped.size)) if mapped.size else (),
+            message_of(view, mapped),
+            words.text(size) if (size := view.size(mapped)) else (),
             words.text(str(len(view.outputs_of_type.get(mapped.name, ())))),
             words.text(type_remarks(mapped)),
         )
@@ -112,6 +112,13 @@ def types(view: Index) -> Table | None:
         Column("Remarks", 1.6),
     )
     return Table("table:types", "Mapping of conceptual types to ROS messages", columns, rows) if rows else None
+
+
+def message_of(view: Index, mapped: Type) -> Inlines:
+    """Name the message of a type, or say that it needs none, or that it is not known yet."""
+    if mapped.message:
+        return words.text(Text(mapped.message, code=True))
+    return words.text(Text("none: physical", muted=True)) if mapped.name in view.physical_types else words.UNKNOWN
 
 
 def type_remarks(mapped: Type) -> str:

@@ -137,24 +137,6 @@ def test_unknown_message_of_the_project() -> None:
             ),
         ),
         (
-            "foxy",
-            "sensor_msgs/msg/Image",
-            (
-                "cannot tell whether the message `sensor_msgs/msg/Image` exists: archgen holds no interfaces of `foxy`, "
-                "only of humble, jazzy, kilted, lyrical, noetic, rolling "
-                "(add its definition, for instance as `msgs/sensor_msgs/msg/Image.msg` with "
-                '`ros: {interfaces: ["msgs/**/*.msg"]}`)'
-            ),
-        ),
-        (
-            "jazy",
-            "sensor_msgs/msg/Image",
-            (
-                "cannot tell whether the message `sensor_msgs/msg/Image` exists: archgen holds no interfaces of `jazy`, "
-                "only of humble, jazzy, kilted, lyrical, noetic, rolling (did you mean `jazzy`?)"
-            ),
-        ),
-        (
             None,
             "sensor_msgs/msg/Imgae",
             (

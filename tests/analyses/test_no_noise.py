@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from archgen.diagnostic import Severity
 from archgen.pipeline import check, check_text
 
@@ -104,8 +106,77 @@ nodes:
     ]
 
 
+def test_a_message_that_is_none_is_told_once() -> None:
+    text = """\
+groups: {g: {components: {c: {outputs: {o: {type: Image, external: Out}, p: {type: Plan, external: Out}}}}}}
+nodes: {n: g.c}
+types:
+  Image: sensor_msgs.msg.Image
+  Plan: {message: std_msgs/msg/Plan, status: plannd}
+ros: {distro: noetic}
+"""
+    assert _rules(text) == ["4 wrong-value", "5 wrong-value"]
+
+
 def test_a_project_of_stubs_has_no_errors_and_says_only_what_is_open() -> None:
     text = "groups: {sensing: {components: {camera: Camera, lidar: Laser}}, speech: Speech}\n"
     found = check_text(text)
     assert {d.severity for d in found} == {Severity.NOTE, Severity.WARNING}
     assert {d.rule for d in found} == {"missing-detail", "unmapped-component"}
+
+
+_ROBOT = """\
+partners: {certh: CERTH}
+requirements:
+  R-1: Sees
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
+      screen: {requirements: [R-1], inputs: {image: camera.image}}
+nodes:
+  camera: {implements: camera, publishes: {image: {topic: /image, qos: sensor_data}}}
+  screen: {implements: screen, subscribes: {image: {topic: /image, qos: sensor_data}}}
+views: {eyes: {show: screen}}
+policies: {no: {forbid: {from: screen, to: camera}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ("groups:", "grups:", ["4 unknown-key"]),  # a whole section that is not read
+        ("partners:", "parters:", ["1 unknown-key"]),
+        ("implements: camera", "implements: sensing", ["11 unknown-reference"]),
+        ("      camera:", "      Camera:", ["8 wrong-value"]),
+        ("  R-1: Sees", "  R 1: Sees", ["3 wrong-value"]),
+        ("{image: {topic", "{imag: {topic", ["11 unknown-reference"]),  # not the topic's reader as well
+        ("camera.image}", "camera.imag}", ["9 unknown-reference"]),
+        ("qos: sensor_data}}}\nviews", "qos: sensordata}}}\nviews", ["12 wrong-value"]),
+        ("R-1: Sees", "R-1: {title: Sees}, x", ["3 syntax-error"]),
+    ],
+)
+def test_one_slip_is_told_once(before: str, after: str, told: list[str]) -> None:
+    assert before in _ROBOT
+    assert _rules(_ROBOT) == []
+    assert _rules(_ROBOT.replace(before, after, 1)) == told
+
+
+def test_a_project_of_stubs_has_no_errors() -> None:
+    text = """\
+groups:
+  a:
+  b: Second
+  c: {components: {x: , y: Y, z: {inputs: {i: , j: x, k: b}, outputs: {o: }}}}
+nodes: {n1: , n2: x, n3: [x, y]}
+types: {T1: , T2: std_msgs/Bool}
+hosts: {h: }
+containers: {k: }
+links: {l: }
+chains: {c1: , c2: [x, z]}
+requirements: {R-1: }
+use_cases: {U-1: }
+partners: {p: }
+"""
+    assert [d for d in check_text(text) if d.severity is Severity.ERROR] == []

@@ -12,6 +12,7 @@ from archgen.diagnostic import Diagnostic, Severity
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.quantity import Quantity, parse
+from archgen.pipeline import check_text
 from archgen.source import Span
 
 _VALUES: dict[str, tuple[str | None, ...]] = {
@@ -99,3 +100,18 @@ def test_a_side_left_to_the_middleware_makes_it_a_warning() -> None:
     (diagnostic,) = _judge(_SENSOR, Qos("system_default", written=True))
     assert diagnostic.severity is Severity.WARNING
     assert diagnostic.message.endswith("(`mapper` leaves it to the middleware, whose usual values count)")
+
+
+def test_a_side_that_nobody_wrote_has_its_node_as_place() -> None:
+    text = """\
+groups:
+  g:
+    components:
+      scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+      mapper: {inputs: {scan: scanner.scan}}
+nodes:
+  lidar: {implements: scanner, publishes: {scan: {qos: sensor_data}}}
+  mapper: {implements: mapper}
+"""
+    (diagnostic,) = (d for d in check_text(text) if d.rule == "incompatible-qos")
+    assert (diagnostic.span.line, diagnostic.span.column, diagnostic.labels[0].span.line) == (8, 3, 7)

@@ -17,7 +17,7 @@ _AROUND = """
     out z.other.call type=Call
     in z.other.back from=a
 """
-_SAYS = "6: `a.c` says that it is a"
+_SAYS = "6: `a.c` says that its role is"
 
 
 @pytest.mark.parametrize(
@@ -25,14 +25,14 @@ _SAYS = "6: `a.c` says that it is a"
     [
         # A stub is not checked; one port is enough to be.
         ("source", [], None),
-        ("filter", ["out a.c.x type=Data"], "filter, but it takes no data from another component"),
+        ("filter", ["out a.c.x type=Data"], "`filter`, but it takes no data from another component"),
         # source: an output, no input from inside.
         ("source", ["out a.c.x"], None),
         ("source", ["out a.c.x physical external"], None),
-        ("source", ["in a.c.i external"], "source, but it has no output"),
+        ("source", ["in a.c.i external"], "`source`, but it has no output"),
         ("source", ["out a.c.x", "in a.c.i external"], None),
-        ("source", ["out a.c.x", "in a.c.i from=z.other.data"], "source, but it takes data from another component"),
-        ("source", ["out a.c.x", "in a.c.i from=z.other"], "source, but it takes data from another component"),
+        ("source", ["out a.c.x", "in a.c.i from=z.other.data"], "`source`, but it takes data from another component"),
+        ("source", ["out a.c.x", "in a.c.i from=z.other"], "`source`, but it takes data from another component"),
         ("source", ["out a.c.x type=Data", "in a.c.i from=a.c.x"], None),
         # A call that it makes does not count as data from others; neither does what could not be resolved.
         ("source", ["out a.c.x", "in a.c.i from=z.other.call"], None),
@@ -42,16 +42,20 @@ _SAYS = "6: `a.c` says that it is a"
         ("filter", ["out a.c.x type=Call", "in a.c.i from=z.other.data"], None),
         ("filter", ["out a.c.x type=Data", "in a.c.i from=?"], None),
         ("filter", ["out a.c.x type=Data", "in a.c.i"], None),
-        ("filter", ["out a.c.x type=Data", "in a.c.i external"], "filter, but it takes no data from another component"),
+        (
+            "filter",
+            ["out a.c.x type=Data", "in a.c.i external"],
+            "`filter`, but it takes no data from another component",
+        ),
         (
             "filter",
             ["out a.c.x type=Data", "in a.c.i from=z.other.call"],
-            "filter, but it takes no data from another component",
+            "`filter`, but it takes no data from another component",
         ),
         (
             "filter",
             ["out a.c.x physical", "in a.c.i from=z.other.data"],
-            "filter, but it has no output that is not physical",
+            "`filter`, but it has no output that is not physical",
         ),
         # sink: fed from inside, and a physical or external output or no message output at all.
         ("sink", ["in a.c.i from=z.other.data"], None),
@@ -63,14 +67,14 @@ _SAYS = "6: `a.c` says that it is a"
         (
             "sink",
             ["in a.c.i from=z.other.data", "out a.c.x type=Data"],
-            "sink, but all that it sends stays inside the architecture",
+            "`sink`, but all that it sends stays inside the architecture",
         ),
-        ("sink", ["in a.c.i external"], "sink, but no other component feeds it"),
+        ("sink", ["in a.c.i external"], "`sink`, but no other component feeds it"),
         # reactive: serves a service or action.
         ("reactive", ["out a.c.x type=Call"], None),
         ("reactive", ["out a.c.x type='Not mapped'"], None),
-        ("reactive", ["out a.c.x type=Data"], "reactive, but it serves no service and no action"),
-        ("reactive", ["in a.c.i from=z.other.data"], "reactive, but it serves no service and no action"),
+        ("reactive", ["out a.c.x type=Data"], "`reactive`, but it serves no service and no action"),
+        ("reactive", ["in a.c.i from=z.other.data"], "`reactive`, but it serves no service and no action"),
     ],
 )
 def test_a_role_is_held_against_the_ports(found: Found, role: str, ports: list[str], fault: str | None) -> None:

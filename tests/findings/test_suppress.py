@@ -92,3 +92,12 @@ def test_settings_name_rules_that_can_be_set() -> None:
         "2 there is no rule `unfed-inputs` (did you mean `unfed-input`?)",
         "3 `unknown-reference` is always an error: what comes after reading and linking rests on it (take this line out)",
     ]
+
+
+def test_a_comment_without_a_rule_says_how_it_is_written() -> None:
+    assert _left([], _ignore(3)) == [
+        (
+            "3 unused-ignore: this comment names no rule"
+            " (name the rule in brackets: `# archgen: ignore[unread-output] why`)"
+        )
+    ]

@@ -181,27 +181,29 @@ layout: {direction: left-right}
     assert (architecture.distro, architecture.shared_topics) == ("jazzy", ("/estop",))
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
+def test_links_and_chains_may_be_stubs(linked: Linked) -> None:
+    architecture, found = linked("links: {lan: {title: LAN}}\nchains: {c: {deadline: 1 s}}")
+    assert found == ()
+    assert (architecture.links["lan"].connects, architecture.chains["c"].through) == ((), ())
+
+
+def test_latencies_are_in_their_order(told: Told) -> None:
+    assert told("hosts: {a: , b: }\nlinks: {l: {connects: [a, b], latency: {best: 2 ms, worst: 1.5 ms}}}") == [
+        "2:47 wrong-value: the best latency (2 ms) is above the worst (1.5 ms) (2:60 the worst) | exchange them"
+    ]
+    assert told("hosts: {a: , b: }\nlinks: {l: {connects: [a, b], latency: 2 ms}}") == []
+
+
+def test_a_node_runs_on_the_host_of_its_container(told: Told) -> None:
+    text = "hosts: {a: , b: }\ncontainers: {c: {host: a}, d: }\nnodes: {n: {container: %s, host: %s}}"
+    assert told(text % ("c", "a")) == []
+    assert told(text % ("d", "b")) == []  # nobody has said yet where the container runs
+    assert told(text % ("c", "b")) == [
         (
-            "links: {lan: {title: LAN}}",
-            (
-                "1:9 missing-key: the link `lan` has no `connects`"
-                " | write the hosts that it joins, such as `connects: [onboard_pc, arm_pc]`"
-            ),
-        ),
-        (
-            "chains: {c: {deadline: 1 s}}",
-            (
-                "1:10 missing-key: the chain `c` has no `through`"
-                " | write its elements in order, such as `through: [camera, planner, drive]`"
-            ),
-        ),
-    ],
-)
-def test_missing_keys(told: Told, text: str, line: str) -> None:
-    assert told(text) == [line]
+            "3:33 conflicting-values: `n` runs in the container `c`, which is on another host: `a` (2:14 the container)"
+            " | leave `host` out: a node in a container runs on the container's host"
+        )
+    ]
 
 
 def test_views_and_policies_that_say_nothing_are_left_out(linked: Linked) -> None:

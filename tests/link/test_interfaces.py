@@ -203,3 +203,30 @@ def test_what_is_wrong_with_own_definitions() -> None:
         "demo_msgs/msg/Grasp.msg:3:1 there is no message `nav2_msgs/msg/Costmop` (did you mean `nav2_msgs/Costmap`?)",
     ]
     assert diagnostics[2].labels[0].span == Span.of_file("demo_msgs/msg/Grasp.msg")
+
+
+def test_a_message_that_holds_itself() -> None:
+    _, diagnostics = load(
+        "jazzy",
+        [
+            ("demo_msgs/msg/Tree.msg", "float64 x\nBranch[] branches\nLeaf leaf"),
+            ("demo_msgs/msg/Branch.msg", "Tree below\nBranch next"),
+            ("demo_msgs/msg/Leaf.msg", "std_msgs/ColorRGBA colour"),
+        ],
+    )
+    assert [f"{diagnostic.span} {diagnostic.message}" for diagnostic in diagnostics] == [
+        "demo_msgs/msg/Tree.msg:2:1 `demo_msgs/msg/Tree` holds itself, through `demo_msgs/msg/Branch`",
+        "demo_msgs/msg/Branch.msg:1:1 `demo_msgs/msg/Branch` holds itself, through `demo_msgs/msg/Tree`",
+        "demo_msgs/msg/Branch.msg:2:1 `demo_msgs/msg/Branch` holds itself",
+    ]
+
+
+def test_a_slip_in_the_type_of_a_field_is_noted() -> None:
+    text = "geometry_msgs/Piont a\ngeomtry_msgs/Point b\nfar_off_msgs/Strange c\nfar_off_msgs/Wrench d"
+    _, diagnostics = load("humble", [("demo_msgs/msg/Thing.msg", text)])
+    assert [brief(diagnostic) for diagnostic in diagnostics] == [
+        "demo_msgs/msg/Thing.msg:1:1 archgen holds no message `geometry_msgs/msg/Piont` (did you mean `geometry_msgs/Point`?)",
+        "demo_msgs/msg/Thing.msg:2:1 archgen holds no message `geomtry_msgs/msg/Point` (did you mean `geometry_msgs/Point`?)",
+    ]
+    assert {diagnostic.rule for diagnostic in diagnostics} == {"unchecked-message"}
+    assert load("foxy", [("demo_msgs/msg/Thing.msg", text)])[1] == ()

@@ -173,7 +173,7 @@ def test_what_a_file_that_could_not_be_read_may_declare_is_not_called_unknown() 
         root, default_id="r", default_title="R", shipped={}, interfaces=Interfaces(), lost=frozenset({"radar"})
     )
     assert found == ()
-    assert architecture.partial
+    assert (architecture.lost, architecture.partial) == (frozenset({"radar"}), False)
 
 
 NODES = """
@@ -281,7 +281,12 @@ def test_a_chain_goes_through_nodes_components_and_outputs(linked: Linked, told:
 
 
 def test_a_chain_takes_no_group(told: Told) -> None:
-    assert told(CHAIN % "[g]") == ["9:17 unknown-reference: no node, component or output named `g` | None"]
+    assert told(CHAIN % "[g]") == [
+        (
+            "9:17 unknown-reference: no node, component or output named `g`: it is a group (3:3 the group)"
+            " | name its components"
+        )
+    ]
 
 
 @pytest.mark.parametrize(
@@ -311,4 +316,15 @@ def test_requirements_of_components_are_kept_known_or_not(linked: Linked) -> Non
     assert [(use.text, use.is_id) for use in architecture.components["g.c"].requirements] == [
         ("R-9", True),
         ("Works in the dark", False),
+    ]
+
+
+def test_a_group_where_components_are_asked_for(told: Told) -> None:
+    group = "groups: {g: {components: {c: }}}\n"
+    said = "it is a group (1:10 the group) | name its components"
+    assert told(f"{group}nodes: {{n: {{implements: g}}}}") == [
+        f"2:25 unknown-reference: no component named `g`: {said}"
+    ]
+    assert told(f"{group}chains: {{x: {{through: [g]}}}}") == [
+        f"2:24 unknown-reference: no node, component or output named `g`: {said}"
     ]

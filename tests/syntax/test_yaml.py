@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
+import yaml as pyyaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -240,3 +241,11 @@ def test_both_parsers_agree_where_both_read(text: str) -> None:
     assert slow is not None or found
     if fast is not None and slow is not None:
         assert repr(plain(fast.root)) == repr(plain(slow.root))
+
+
+@pytest.mark.parametrize(
+    "text", ["[{}, {}, 1, [], ~, {a: 1}, x, {b: {}}, [{}], {c: 2}, 3]", "\n- {}\n- a: 1\n- b: 2\n-\n  - {}\n  - 5\n- 6"]
+)
+def test_lists_of_mappings(text: str) -> None:
+    document = read(f"a: {text}\nb: 2")
+    assert plain(document.root) == pyyaml.safe_load(f"a: {text}\nb: 2")

@@ -27,9 +27,9 @@ def figure(draft: Draft, shape: Figure) -> Iterator[Piece]:
     """Give a drawn picture with its caption below, or a sentence where there is no picture."""
     picture = draft.pictures.get(shape.graph)
     if picture is None or not (picture.png or picture.svg_outlines):
-        draft.warn(
-            f"the report lacks the picture `{shape.graph}`: {(picture.warning if picture else None) or 'it was not drawn'}"
-        )
+        if draft.pictures:  # where there is none at all, who draws has said why, once
+            why = (picture.warning if picture else None) or "it was not drawn"
+            draft.warn(f"the report lacks the picture `{shape.graph}`: {why}")
         yield from missing(draft, shape)
         return
     sheet, scale = fitting(draft, picture.width, picture.height)

@@ -60,11 +60,16 @@ def word_width(word: str) -> float:
 
 
 @lru_cache(maxsize=65536)
+def word_widths(text: str) -> tuple[float, ...]:
+    """Give the widths of a text's words, in units of the type size."""
+    return tuple([word_width(word) for word in text.split()])
+
+
+@lru_cache(maxsize=65536)
 def lines(text: str, width: float) -> int:
     """Give the number of lines that a text takes in a width (in units of the type size); at least one."""
     count, used = 1, 0.0
-    for word in text.split():
-        wide = word_width(word)
+    for wide in word_widths(text):
         if used and used + _SPACE + wide > width:
             count, used = count + 1, 0.0
         used += wide + (_SPACE if used else 0)

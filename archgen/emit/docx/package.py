@@ -215,7 +215,7 @@ def _store(archive: zipfile.ZipFile, name: str, data: bytes) -> None:
     info = zipfile.ZipInfo(name, _STAMP)
     info.create_system = 0
     method = zipfile.ZIP_STORED if name.lower().endswith(_PACKED_ALREADY) else zipfile.ZIP_DEFLATED
-    archive.writestr(info, data, method, compresslevel=3 if name.endswith(".svg") else 6)
+    archive.writestr(info, data, method, compresslevel=2 if name.endswith(".svg") else 6)
 
 
 def _inside(folder: str, target: str) -> str:

@@ -10,7 +10,7 @@ from archgen.emit.docx.draft import Draft
 from archgen.emit.docx.flow import Piece
 from archgen.emit.docx.inlines import plain, runs
 from archgen.emit.docx.markup import escape, paragraph, run, twips
-from archgen.emit.docx.metrics import MONOSPACE, Face, word_width
+from archgen.emit.docx.metrics import MONOSPACE, Face, word_width, word_widths
 from archgen.emit.docx.sheets import Sheet
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
@@ -198,17 +198,14 @@ def _needs(
 ) -> tuple[list[float], list[float]]:
     """Give the width of each column's longest word and of its longest line, with the cell's margins."""
     text, head = draft.styles.face(kind.text), draft.styles.face(kind.heading)
-    words = [
-        max((word_width(word) for word in column.title.split()), default=0) * head.size * head.factor
-        for column in columns
-    ]
+    words = [max(word_widths(column.title), default=0) * head.size * head.factor for column in columns]
     whole = list(words)
     for row in rows:
         for index, cell in enumerate(row[: len(words)]):
             used = 0.0
             for item in cell:
                 scale = text.size * (text.factor if not item.code else MONOSPACE)
-                widths = [word_width(word) * scale for word in item.text.split()]
+                widths = [width * scale for width in word_widths(item.text)]
                 words[index] = max(words[index], *widths, 0)
                 used = sum(widths) + (0.0 if item.line_break else used)
                 whole[index] = max(whole[index], used + len(widths) * scale / 4)

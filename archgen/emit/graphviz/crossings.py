@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 from archgen.emit.graphviz.labels import along
 from archgen.emit.graphviz.scene import Line, Point, Rectangle, meet
@@ -12,28 +13,35 @@ from archgen.emit.graphviz.scene import Line, Point, Rectangle, meet
 Segment = tuple[Point, Point]
 
 
+class _Path(NamedTuple):
+    """A line's segments, each with the rectangle that it spans, and the rectangle of all."""
+
+    segments: Sequence[tuple[Segment, Rectangle]]
+    span: Rectangle
+
+
 def crossings(lines: Sequence[Line]) -> int:
     """Count the crossings of all pairs of lines."""
-    paths = [_segments(line) for line in lines]
-    spans = [_span(path) for path in paths]
+    paths = [_path(line) for line in lines]
     return sum(
-        _count(paths[at], paths[to], spans[at], spans[to])
-        for at in range(len(paths))
-        for to in range(at + 1, len(paths))
-        if meet(spans[at], spans[to])
+        _count(one, other) for at, one in enumerate(paths) for other in paths[at + 1 :] if meet(one.span, other.span)
     )
 
 
-def _count(one: Sequence[Segment], other: Sequence[Segment], span: Rectangle, other_span: Rectangle) -> int:
+def _path(line: Line) -> _Path:
+    segments = _segments(line)
+    return _Path([(segment, _span(segment)) for segment in segments], _span([p for each in segments for p in each]))
+
+
+def _count(one: _Path, other: _Path) -> int:
     """Count the crossings of two lines; only what lies near the other one is looked at."""
-    near = [each for each in one if meet(_span([each]), other_span)]
-    rest = [each for each in other if meet(_span([each]), span)] if near else []
-    return sum(_cross(each, to) for each in near for to in rest)
+    near = [each for each in one.segments if meet(each[1], other.span)]
+    rest = [each for each in other.segments if meet(each[1], one.span)] if near else []
+    return sum(_cross(segment, to) for segment, span in near for to, box in rest if meet(span, box))
 
 
-def _span(path: Sequence[Segment]) -> Rectangle:
-    xs = [point[0] for segment in path for point in segment] or [0.0]
-    ys = [point[1] for segment in path for point in segment] or [0.0]
+def _span(points: Sequence[Point]) -> Rectangle:
+    xs, ys = [x for x, _ in points] or [0.0], [y for _, y in points] or [0.0]
     return (min(xs), min(ys), max(xs), max(ys))
 
 
@@ -48,10 +56,6 @@ def _segments(line: Line) -> list[Segment]:
 
 def _cross(one: Segment, other: Segment) -> bool:
     (a, b), (c, d) = one, other
-    if max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0]):
-        return False
-    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
-        return False
     return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import shutil
+from html import escape
 from pathlib import Path
-from xml.sax.saxutils import escape
 
 FOLDER = Path(__file__).resolve().parent.parent / "fonts"
 """Where DejaVu Sans lies, with its licence."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from archgen.emit.graphviz.scene import Frame, Line, Part, Point, Rectangle, Scene, meet
+from archgen.emit.graphviz.scene import Line, Part, Point, Rectangle, Scene, meet
 
 _GAP = 1.0
 
@@ -65,16 +65,6 @@ def along(line: Line, steps: int = 8) -> Iterator[Point]:
             )
     if points:
         yield points[-1]
-
-
-def settle_title(scene: Scene, part: Part, frame: Frame) -> Scene:
-    """Put a frame's title where the fewest arrows pass: in the middle, at the left or at the right of its strip."""
-    left, _, right, _ = frame.rectangle
-    places = [part.x, left + part.width / 2 + 8, right - part.width / 2 - 8]
-    passing = [point for line in scene.lines for point in along(line)]
-    moved = [replace(part, x=x) for x in places]
-    best = min(moved, key=lambda spot: sum(_inside(point, spot.rectangle) for point in passing))
-    return replace(scene, parts=tuple(best if each is part else each for each in scene.parts))
 
 
 def _inside(point: Point, rectangle: Rectangle) -> bool:

@@ -71,7 +71,8 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     start: Command | None = None,
 ) -> tuple[Picture, ...]:
     """Draw all tasks, the largest first; gives the pictures in the order of the tasks."""
-    environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder))}
+    # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
+    environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
     run = _Run(tasks, progress, timeout, start or command(), environment)
     threads = [threading.Thread(target=run.work) for _ in range(max(1, min(workers, len(tasks))))]
     for thread in threads:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from html import escape as _escape
 
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -16,11 +17,13 @@ def clean(text: str) -> str:
     return _FORBIDDEN.sub("\ufffd", text) if _FORBIDDEN.search(text) else text
 
 
+@lru_cache(65536)
 def escape(text: str) -> str:
     """Escape text for HTML, in an element or in a quoted attribute."""
     return _escape(clean(text))
 
 
+@lru_cache(65536)
 def words(text: str) -> str:
     """Escape text for an element, with places to break in long ids, topics and messages."""
     safe = escape(text)

@@ -14,31 +14,37 @@ if TYPE_CHECKING:
 _MARKS = re.compile(r"([\\`*_{}\[\]<>&~$])")
 _START = re.compile(r"^(\d*)([-+=#]|(?<=\d)[.)](?=\s|$))")
 _TICKS = re.compile(r"`+")
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 
 
 def markdown(text: object) -> str:
     """Escape text for a line of Markdown: nothing in it is a mark, whatever it holds."""
-    line = " ".join(str(text).split())
+    line = _line(text)
     return _START.sub(r"\1\\\2", _MARKS.sub(r"\\\1", line))
 
 
 def code(text: object) -> str:
     """Make a code span of a line; more ticks stand around it than in it."""
-    line = " ".join(str(text).split()) or " "
+    line = _line(text) or " "
     ticks = "`" * (max((len(run) for run in _TICKS.findall(line)), default=0) + 1)
     pad = " " if line[0] == "`" or line[-1] == "`" else ""
     return f"{ticks}{pad}{line}{pad}{ticks}"
 
 
+def _line(text: object) -> str:
+    return _CONTROL.sub("\ufffd", " ".join(str(text).split()))
+
+
 def commonmark(text: object) -> str:
     """Give CommonMark from the project as it is, if it holds no HTML and no address but of the web; else as text."""
     parser = _reader()
-    tokens = [token for block in parser.parse(str(text)) for token in (block, *(block.children or ()))]
+    text = _CONTROL.sub("\ufffd", str(text))
+    tokens = [token for block in parser.parse(text) for token in (block, *(block.children or ()))]
     addresses = [str(token.attrs.get(name, "")) for token in tokens for name in ("href", "src")]
     if any(token.type.startswith("html_") for token in tokens) or any(_strange(address) for address in addresses):
-        return "\n".join(markdown(line) for line in str(text).split("\n"))
-    return str(text)
+        return "\n".join(markdown(line) for line in text.split("\n"))
+    return text
 
 
 @cache

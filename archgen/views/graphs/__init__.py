@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator
 
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.selector import Selection, select
+from archgen.model.selector import Selecting, Selection
 from archgen.views.graphs import selected
 from archgen.views.graphs.component import component
 from archgen.views.graphs.folding import fold
@@ -60,6 +60,7 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
         yield hosts(view)
     else:
         yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
+    selecting = Selecting(architecture)
     for asked in architecture.views.values():
-        chosen, _ = select(asked.show, architecture)
+        chosen, _ = selecting.select(asked.show)
         yield selected.of_view(view, asked, chosen)

@@ -6,7 +6,7 @@ of its own. A connection to a whole group is one flow for each component of the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -41,6 +41,19 @@ class Flow:
 def flows(architecture: Architecture) -> tuple[Flow, ...]:
     """Give all flows, in order of the connections."""
     return tuple(flow for connection in architecture.connections for flow in _of(architecture, connection))
+
+
+def flows_at(architecture: Architecture, components: Collection[str]) -> list[Flow]:
+    """Give the flows that begin or end at some components, in order of the connections."""
+    inputs, outputs = architecture.inputs, architecture.outputs
+    near = (
+        connection
+        for connection in architecture.connections
+        if inputs[connection.input].component in components
+        or any(outputs[each].component in components for each in connection.outputs if each in outputs)
+    )
+    found = (flow for connection in near for flow in _of(architecture, connection))
+    return [flow for flow in found if flow.tail in components or flow.head in components]
 
 
 def _of(architecture: Architecture, connection: Connection) -> Iterable[Flow]:

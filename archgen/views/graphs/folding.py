@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 from archgen.views.graphs.legend import with_legend
@@ -14,10 +15,14 @@ ARROWS = 160
 
 def fold(graph: Graph) -> Graph:
     """Fold a graph until it fits the budget; one that cannot be folded any further says that it is larger."""
-    members = {cluster.id: sum(box.cluster == cluster.id for box in graph.boxes) for cluster in graph.clusters}
-    largest = sorted((name for name in members if members[name] > 1), key=lambda name: -members[name])
-    folded = graph
+    members = Counter(box.cluster for box in graph.boxes)
+    names = [cluster.id for cluster in graph.clusters if members[cluster.id] > 1]
+    largest = sorted(names, key=lambda name: -members[name])
+    folded, left = graph, len(graph.boxes)
     for count in range(len(largest) + 1):
+        left -= members[largest[count - 1]] - 1 if count else 0
+        if left > BOXES and count < len(largest):
+            continue  # whatever its arrows, it does not fit
         folded = _folded(graph, set(largest[:count])) if count else graph
         if _fits(folded):
             return folded

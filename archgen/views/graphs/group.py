@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Literal
 
 from archgen.views.graphs import boxes
-from archgen.views.graphs.flows import Flow, flows, merged
+from archgen.views.graphs.flows import Flow, flows_at, merged
 from archgen.views.graphs.legend import with_legend
 from archgen.views.index import Index
 from archgen.views.shapes import Arrow, Box, Graph
@@ -25,7 +25,7 @@ def group(view: Index, name: str) -> Graph:
     """Draw one group with its neighbours."""
     found = view.architecture.groups[name]
     mine = {component.id for component in found.components.values()}
-    touching = [flow for flow in flows(view.architecture) if flow.tail in mine or flow.head in mine]
+    touching = flows_at(view.architecture, mine)
     fold = len(touching) > MANY
     placed = [_placed(flow, mine, fold=fold) for flow in touching]
     around = _neighbours(view, placed, mine, fold=fold)

@@ -20,7 +20,7 @@ from archgen.views.words import plural
 _STARS = 3
 """From how many topics on, all taken, an asterisk stands for them."""
 _READERS = 8
-"""More neighbours than this at one topic are one box."""
+"""How many readers the asterisk's list names."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.selector import Selection
 from archgen.views.graphs import boxes, nodes, ros
-from archgen.views.graphs.flows import Flow, flows, merged
+from archgen.views.graphs.flows import Flow, flows_at, merged
 from archgen.views.graphs.folding import fold
 from archgen.views.graphs.legend import with_legend
 from archgen.views.index import Index
@@ -27,7 +27,7 @@ _PER_BOX = 3
 def functional(view: Index, name: str, title: str, chosen: Collection[str]) -> Graph:
     """Draw selected components and their neighbours."""
     found = [component for component in view.architecture.components.values() if component.id in chosen]
-    touching = [flow for flow in flows(view.architecture) if flow.tail in chosen or flow.head in chosen]
+    touching = flows_at(view.architecture, chosen)
     around = dict.fromkeys(end for flow in touching for end in (flow.tail, flow.head) if end not in chosen)
     small = len(found) + len(around) <= _SMALL[0] and len(touching) <= _SMALL[1]
     graph = (_small if small else _large)(view, found, touching, list(around))

@@ -1,0 +1,103 @@
+"""Are the figures of timing plausible? What is legal, and mostly a slip."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.quantity import Quantity
+    from archgen.model.timing import Timing
+    from archgen.source import Span
+
+_NS = 10**9
+
+
+def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An execution takes longer, at worst, than the period in which it is to be done.
+
+    Why: The next activation comes before the last one is done. On one core that cannot go on for long, whatever else
+    runs there; on several it can, where one execution may begin while another still runs. It is worth a second look:
+    mostly a unit is wrong, or the worst case is one of start-up.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz, wcet: 80 ms}}
+          viewer: {implements: viewer}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz, wcet: 8 ms}}
+          viewer: {implements: viewer}
+    """
+    yield from _above_period(architecture, "wcet", "the worst case execution time", "long-execution")
+
+
+def large_jitter(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An activation may come later than the period after which the next one is due.
+
+    Why: With a jitter above the period several activations may fall together, and queues must hold them. That happens
+    where samples come in bursts, from a network for instance; where a timer is meant, a unit may be wrong.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {period: 40 ms, jitter: 60 ms, wcet: 2 ms}}
+          viewer: {implements: viewer}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {period: 40 ms, jitter: 6 ms, wcet: 2 ms}}
+          viewer: {implements: viewer}
+    """
+    yield from _above_period(architecture, "jitter", "the jitter", "large-jitter")
+
+
+def _above_period(architecture: Architecture, key: str, name: str, rule: str) -> Iterator[Diagnostic]:
+    """Compare a figure with the period, where both are written. What a node writes for several components counts once."""
+    said: set[Span] = set()
+    for node in architecture.nodes.values():
+        for timing in node.timing.values():
+            quantity: Quantity | None = getattr(timing, key)
+            period = _period(timing)
+            if quantity and period and quantity.value > period and timing.places[key] not in said:
+                said.add(timing.places[key])
+                message = f"{name} of `{node.id}` (`{key}`, {quantity}) is above its period"
+                cure = "this is legal: correct it only where a figure or a unit is wrong"
+                often = "period" if timing.period else "rate"
+                label = Label(timing.places[often], f"its {often}")
+                yield Diagnostic(rule, message, timing.places[key], labels=(label,), help=cure, element=node.id)
+
+
+def _period(timing: Timing) -> Fraction | None:
+    """Give the period in ns, where it is written as such or as a rate."""
+    if timing.period:
+        return timing.period.value
+    return _NS / timing.rate.value if timing.rate else None
+
+
+RULES = ((long_execution, Severity.NOTE), (large_jitter, Severity.NOTE))

@@ -1,0 +1,161 @@
+"""The verbs that only read: check, stats, show, list, explain, on a sound project and on a broken one."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+
+from archgen import resources
+from tests.cli.conftest import Run
+
+ERROR = """\
+error[unknown-reference]: no component or output named `camera.imgae`
+  --> archgen.yaml:6:32
+   6 |       screen: {inputs: {image: camera.imgae}}
+     |                                ^^^^^^^^^^^^
+"""
+
+
+def test_check_of_a_sound_project(run: Run, first: Path) -> None:
+    ran = run("check", first)
+    assert (ran.status, ran.out, ran.err) == (0, "no findings\n", "")
+
+
+def test_check_of_a_broken_project(run: Run, broken: Path) -> None:
+    ran = run("check", broken)
+    assert (ran.status, ran.err) == (1, "")
+    assert ERROR in ran.out
+    assert "   = help: did you mean `camera.image`?\n" in ran.out
+    assert ran.out.splitlines()[-1].startswith("1 error")
+
+
+def test_quiet_shows_errors_only(run: Run, broken: Path) -> None:
+    ran = run("check", "-q", broken)
+    assert ran.out.startswith(ERROR)
+    assert ran.out.splitlines()[-1] == "1 error"
+
+
+def test_strict_counts_warnings(run: Run, first: Path) -> None:
+    (first / "more.yaml").write_text("nodes: {idle: {title: Idle}}\n", encoding="utf-8")
+    assert run("check", first).status == 0
+    assert run("check", "--strict", first).status == 1
+
+
+def test_json_follows_its_schema(run: Run, broken: Path) -> None:
+    ran = run("check", "--format", "json", broken)
+    data = json.loads(ran.out)
+    schema = json.loads(resources.path("schemas", "diagnostics.schema.json").read_text(encoding="utf-8"))
+    assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
+    assert data["summary"]["error"] == 1
+    (error,) = (d for d in data["diagnostics"] if d["severity"] == "error")
+    assert error["span"]["start"] == {"line": 6, "column": 32}
+
+
+def test_github_annotations_are_relative_to_the_workspace(
+    run: Run, broken: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(broken.parent))
+    ran = run("check", "--format", "github", broken)
+    assert "::error file=broken/archgen.yaml,line=6,endLine=6,col=32,endColumn=44,title=unknown-reference::" in ran.out
+
+
+def test_the_project_around_the_current_folder(run: Run, first: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (first / "deep" / "er").mkdir(parents=True)
+    monkeypatch.chdir(first / "deep" / "er")
+    assert run("check").out == "no findings\n"
+
+
+@pytest.mark.parametrize("words", [("check",), ("stats",), ("pack",), ("list", "-C"), ("show", "x", "-C")])
+def test_a_project_that_is_not_there_is_wrong_usage(run: Run, tmp_path: Path, words: tuple[str, ...]) -> None:
+    ran = run(*words, tmp_path / "nowhere")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.endswith(f"Error: {tmp_path / 'nowhere'} does not exist\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("chek",), "there is no verb 'chek'; did you mean `check`?"),
+        (("check", "--format", "xml"), "'xml' is not one of 'text', 'json', 'github'"),
+        (("check", "--fast"), "No such option '--fast'"),
+        (("check", "a", "b"), "unexpected extra argument"),
+        (("show",), "Missing argument"),
+        (("explain", "unread-outputs"), "there is no rule 'unread-outputs'; did you mean `unread-output`?"),
+        (("list", "--of", "things"), "'things' is not one of"),
+    ],
+)
+def test_wrong_usage(run: Run, words: tuple[str, ...], said: str) -> None:
+    ran = run(*words)
+    assert (ran.status, ran.out) == (2, "")
+    assert said in ran.err
+
+
+def test_stats(run: Run, first: Path, broken: Path) -> None:
+    ran = run("stats", first)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.startswith("Parcel Robot\n\n")
+    data = json.loads(run("stats", "--format", "json", first).out)
+    assert (data["version"], data["files"], data["components"]) == (1, 1, 10)
+    ran = run("stats", broken)
+    assert ran.status == 1
+    assert ERROR in ran.err
+    assert "unknown-reference" not in ran.out
+
+
+def test_show(run: Run, first: Path) -> None:
+    ran = run("show", "obstacle_stop", "-C", first)
+    assert ran.status == 0
+    assert ran.out.startswith("component navigation.obstacle_stop - Obstacle Stop   archgen.yaml:")
+    assert "    velocity (Velocity command) -> devices.drive.velocity\n" in ran.out
+
+
+def test_show_what_is_not_there(run: Run, first: Path) -> None:
+    ran = run("show", "obstacle_stp", "-C", first)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "archgen: nothing is called 'obstacle_stp'; did you mean `obstacle_stop`?\n"
+
+
+def test_list(run: Run, first: Path) -> None:
+    ran = run("list", "tag:safety", "-C", first)
+    assert ran.status == 0
+    assert [line.split()[0] for line in ran.out.splitlines()] == ["id", "navigation.obstacle_stop"]
+    ran = run("list", "--format", "csv", "-C", first, "--", "-navigation", "-service")
+    assert [row.split(",")[0] for row in ran.out.splitlines()] == [
+        "id", "devices.lidar", "devices.camera", "devices.drive", "devices.loudspeaker",
+    ]  # fmt: skip
+    data = json.loads(run("list", "--of", "edges", "--format", "json", "-C", first).out)
+    assert "navigation.obstacle_stop.velocity" in {row["output"] for row in data}
+
+
+@pytest.mark.parametrize("sort", ["components", "nodes", "groups", "connections", "edges", "topics", "types",
+                                  "requirements", "chains", "hosts"])  # fmt: skip
+@pytest.mark.parametrize("form", ["text", "csv", "json"])
+def test_every_list_of_a_broken_project(run: Run, broken: Path, sort: str, form: str) -> None:
+    ran = run("list", "--of", sort, "--format", form, "-C", broken)
+    assert ran.status == 1
+    assert ERROR in ran.err
+    assert "unknown-reference" not in ran.out
+
+
+def test_a_wrong_selector_is_explained(run: Run, first: Path) -> None:
+    ran = run("list", "lidr", "tga:x", "-C", first)
+    assert (ran.status, ran.out) == (2, "")
+    assert "error: nothing is called `lidr`\n  = help: did you mean `lidar`?\n" in ran.err
+    assert "error: no key `tga`\n  = help: did you mean `tag:`?\n" in ran.err
+
+
+def test_explain(run: Run) -> None:
+    assert run("explain", "unread-output").out.startswith("unread-output (warning)\n")
+    names = [line.split()[0] for line in run("explain").out.splitlines()]
+    assert names == sorted(names)
+    assert "merge-conflict" in names
+
+
+def test_version_and_help(run: Run) -> None:
+    assert run("--version").out.startswith("archgen ")
+    ran = run("--help")
+    assert ran.status == 0
+    assert "  check       Find mistakes in the architecture.\n" in ran.out

@@ -1,0 +1,53 @@
+"""What archgen does with its streams: colours, pipes that close early, streams that are closed or full."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import ROOT
+
+
+def _shell(script: str, project: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a shell script in which `$archgen` is archgen and `$project` the project."""
+    known = {**os.environ, "archgen": f"{sys.executable} -m archgen", "project": str(project), "PYTHONPATH": str(ROOT)}
+    return subprocess.run(  # noqa: S603 - the scripts below
+        ["bash", "-c", script],  # noqa: S607 - the shell of the machine
+        env={**known, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_colours(broken: Path) -> None:
+    assert "\x1b[" not in _shell("$archgen check $project", broken).stdout
+    assert "\x1b[" in _shell("$archgen check $project", broken, FORCE_COLOR="1").stdout
+    assert "\x1b[" not in _shell("$archgen check $project", broken, FORCE_COLOR="1", NO_COLOR="1").stdout
+
+
+def test_a_reader_who_has_had_enough(broken: Path) -> None:
+    ran = _shell("for i in 1 2 3; do $archgen explain | head -1; done", broken)
+    assert (ran.stderr, len(ran.stdout.splitlines())) == ("", 3)
+    ran = _shell("set -o pipefail; $archgen list -C $project | true; $archgen stats $project | true", broken)
+    assert "Traceback" not in ran.stderr
+    assert "mistake in archgen" not in ran.stderr
+
+
+@pytest.mark.parametrize("verb", ["check $project", "stats $project", "explain", "list -C $project"])
+def test_closed_streams(broken: Path, verb: str) -> None:
+    ran = _shell(f"$archgen {verb} >&-; $archgen {verb} >&- 2>&-", broken)
+    assert "mistake in archgen" not in ran.stderr
+    assert "Error" not in ran.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("verb", ["check -q $project", "explain", "explain unread-output"])
+def test_a_full_disk(broken: Path, verb: str) -> None:
+    ran = _shell(f"$archgen {verb} > /dev/full", broken)
+    assert (ran.returncode, ran.stderr) == (2, "archgen: failed: No space left on device\n")

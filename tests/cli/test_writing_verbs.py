@@ -1,0 +1,102 @@
+"""The verbs that write: where it goes, what is never overwritten, and that errors stop them unless asked otherwise."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+import yaml
+
+from archgen import resources
+from archgen.pipeline import check
+from tests.cli.conftest import Run
+
+
+def test_pack(run: Run, first: Path, tmp_path: Path) -> None:
+    ran = run("pack", first)
+    assert (ran.status, ran.err) == (0, "")
+    packed = first / "archgen-out" / "packed.yaml"
+    assert packed.read_text(encoding="utf-8").startswith("archgen: 1\nproject:\n")
+    assert run("pack", packed, "-o", tmp_path / "new" / "again.yaml").status == 0
+    assert (tmp_path / "new" / "again.yaml").read_bytes() == packed.read_bytes()
+
+
+def test_pack_resolved(run: Run, first: Path) -> None:
+    assert run("pack", "--resolved", first).status == 0
+    data = yaml.safe_load((first / "archgen-out" / "resolved.yaml").read_text(encoding="utf-8"))
+    schema = json.loads(resources.path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
+    assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
+
+
+@pytest.mark.parametrize("verb", ["pack", "report", "site", "diagram", "build"])
+def test_errors_stop_what_writes(run: Run, broken: Path, verb: str) -> None:
+    ran = run(verb, broken)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.startswith("error[unknown-reference]")
+    assert ran.err.endswith("Nothing was written. With --keep-going outputs are made of what is sound.\n")
+    assert [path.name for path in broken.iterdir()] == ["archgen.yaml"]
+
+
+def test_keep_going(run: Run, broken: Path) -> None:
+    ran = run("pack", "--keep-going", broken)
+    assert ran.status == 1
+    assert (broken / "archgen-out" / "packed.yaml").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("pack", "--select", "lidar"), "--select goes with --resolved: a packed project is whole"),
+        (("pack", "--resolved", "--select", "lidr"), "the selector 'lidr' cannot be used"),
+        (("diagram", "--format", "gif"), "--format takes svg, png, pdf, dot, separated by commas, not 'gif'"),
+        (("report", "--level", "high"), "'high' is not one of 'functional', 'implementation'"),
+    ],
+)
+def test_wrong_usage(run: Run, first: Path, words: tuple[str, ...], said: str) -> None:
+    ran = run(*words, first)
+    assert (ran.status, ran.out) == (2, "")
+    assert said in ran.err
+    assert [path.name for path in first.iterdir()] == ["archgen.yaml"]
+
+
+def test_a_folder_is_no_file_to_write(run: Run, first: Path, tmp_path: Path) -> None:
+    ran = run("pack", first, "-o", tmp_path)
+    assert ran.status == 2
+    assert ran.err == f"Error: {tmp_path} is not a regular file; give the name of a file with `-o`\n"
+
+
+def test_files_of_others_stay(run: Run, first: Path, tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "notes.txt").write_text("keep", encoding="utf-8")
+    ran = run("site", first, "-o", mine)
+    assert ran.status == 2
+    assert "holds files that archgen did not write: `notes.txt`" in ran.err
+    assert [path.name for path in mine.iterdir()] == ["notes.txt"]
+
+
+def test_what_init_writes_has_no_error_and_no_warning(run: Run, tmp_path: Path) -> None:
+    for name, title in (("my-Robot", None), ("2nd robot", 'A: "b" #c'), ("größer", "yes")):
+        folder = tmp_path / name
+        assert run("init", folder, *(("--title", title) if title else ())).status == 0
+        assert [f"{d.rule} {d.span}" for d in check(folder).findings if d.severity != "note"] == []
+        assert title is None or check(folder).architecture.project.title == title
+
+
+def test_init_overwrites_nothing(run: Run, first: Path) -> None:
+    before = (first / "archgen.yaml").read_bytes()
+    ran = run("init", first)
+    assert ran.status == 2
+    assert ran.err == f"Error: {first / 'archgen.yaml'} is there already; nothing was written\n"
+    assert (first / "archgen.yaml").read_bytes() == before
+    assert run("init", first / "archgen.yaml").status == 2
+
+
+def test_init_where_nothing_can_be_written(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    ran = run("init", tmp_path / "file" / "below")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.startswith("Error: cannot write ")
+    assert "mistake in archgen" not in ran.err

@@ -1,0 +1,83 @@
+"""The reference system against the figures that follow from its published graph."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.model.architecture import Architecture
+from archgen.timing import sizes
+
+FOLDER = Path(__file__).parents[2] / "examples" / "reference_system"
+READERS = {
+    "FrontLidarDriver": {"PointsTransformerFront"},
+    "RearLidarDriver": {"PointsTransformerRear"},
+    "PointCloudMap": {"PointCloudMapLoader"},
+    "Visualizer": {"Lanelet2GlobalPlanner"},
+    "Lanelet2Map": {"Lanelet2MapLoader"},
+    "EuclideanClusterSettings": {"EuclideanClusterDetector"},
+    "PointsTransformerFront": {"PointCloudFusion"},
+    "PointsTransformerRear": {"PointCloudFusion"},
+    "VoxelGridDownsampler": {"NDTLocalizer"},
+    "PointCloudMapLoader": {"NDTLocalizer"},
+    "RayGroundFilter": {"EuclideanClusterDetector"},
+    "ObjectCollisionEstimator": {"BehaviorPlanner"},
+    "MPCController": {"VehicleInterface"},
+    "ParkingPlanner": {"BehaviorPlanner"},
+    "LanePlanner": {"BehaviorPlanner"},
+    "PointCloudFusion": {"VoxelGridDownsampler", "RayGroundFilter"},
+    "NDTLocalizer": {"Lanelet2GlobalPlanner", "BehaviorPlanner"},
+    "VehicleInterface": {"VehicleDBWSystem"},
+    "Lanelet2GlobalPlanner": {"Lanelet2MapLoader", "BehaviorPlanner"},
+    "Lanelet2MapLoader": {"ParkingPlanner", "LanePlanner", "BehaviorPlanner"},
+    "BehaviorPlanner": {"MPCController", "VehicleInterface"},
+    "EuclideanClusterDetector": {"ObjectCollisionEstimator"},
+    "EuclideanIntersection": {"IntersectionOutput"},
+}
+"""Every topic with the nodes that read it, as published."""
+
+
+@pytest.fixture(scope="module")
+def checked() -> pipeline.Checked:
+    return pipeline.check(FOLDER)
+
+
+@pytest.fixture(scope="module")
+def architecture(checked: pipeline.Checked) -> Architecture:
+    return checked.architecture
+
+
+def test_it_checks_clean(checked: pipeline.Checked) -> None:
+    assert [f"{f.rule} {f.span}" for f in checked.findings] == []
+
+
+def test_the_graph_is_the_published_one(architecture: Architecture) -> None:
+    names = {node.id: node.name for node in architecture.nodes.values()}
+    read = {topic.name.strip("/"): {names[end.node] for end in topic.readers} for topic in architecture.topics.values()}
+    assert read == READERS
+    for topic in architecture.topics.values():
+        writer = "EuclideanClusterDetector" if topic.name == "/EuclideanIntersection" else topic.name.strip("/")
+        assert [names[end.node] for end in topic.writers] == [writer]
+
+
+def test_its_counts(architecture: Architecture) -> None:
+    uses = Counter(end.use for end in architecture.endpoints)
+    assert len(architecture.nodes) == 24
+    assert sum(len(node.timing) for node in architecture.nodes.values()) == 25
+    assert len(architecture.topics) == 23
+    assert uses == {"publishes": 23, "subscribes": 29}
+
+
+def test_queues_hold_one_sample_but_for_the_ends(architecture: Architecture) -> None:
+    names = {node.id: node.name for node in architecture.nodes.values()}
+    depths = {(names[end.node], end.qos.depth) for end in architecture.endpoints if end.use == "subscribes"}
+    assert {name for name, depth in depths if depth != 1} == {"VehicleDBWSystem", "IntersectionOutput"}
+    assert {depth for _, depth in depths} == {1, 10}
+
+
+def test_the_message_has_4096_bytes_and_4_in_front(architecture: Architecture) -> None:
+    assert sizes.size("reference_interfaces/msg/Message4kb", architecture.interfaces).bytes == 4096 + 4
+    assert sizes.of(architecture)("reference_interfaces/msg/Message4kb", "Sample") == 4096

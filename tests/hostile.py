@@ -1,0 +1,120 @@
+"""A project whose every text tries to be more than text. The schema says which keys hold text, so none is forgotten."""
+
+from __future__ import annotations
+
+import json
+import unicodedata
+from typing import Any
+
+from tests.running import ROOT
+
+SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
+TEXTS = {
+    "markup": (
+        "<script>alert(1)</script>"
+        "](javascript:alert(2)) [a](javascript:alert(3)) ![b](javascript:alert(4)) <javascript:alert(5)>"
+        '"><svg onload=alert(6)><img src=x onerror=alert(7)> \'><b onclick="alert(8)">'
+        '"]; } digraph { evil [URL="javascript:alert(9)"]; <TABLE><TR><TD HREF="javascript:alert(10)">'
+        "A{{7*7}}B {% raw %} ${7*7} <%= 7*7 %> ]]><!-- </title></style></script> &lt;script&gt; \\N\\T\\n"
+        "`<script>alert(11)</script>` ```\n<script>alert(12)</script>\n```\n\n# h\n\n<script>alert(13)</script>\n---\n| a |\n"
+    ),
+    "formula": "=cmd|' /C calc'!A0",
+    "terminal": "\x1b[31m\x1b]0;owned\x07\x1b[2J\x9b2J\n::error file=x::owned\n::add-mask::x\r::warning::%0A::error::owned",
+    "odd": "\u202egpj.exe\u202c \u2066x\u2069 👩‍👩‍👧 🇬🇷 e\u0301 \u0001\u0008\u000b\u001f\u007f\ufffe\uffff\u2028\u2029 \u200b\ufeff",
+    "long": "w" * 5000,
+}
+"""By what they attack: documents and pages, spreadsheets, terminals and workflows, alphabets, layouts."""
+ELEMENTS = {
+    "partners": "partner",
+    "use_cases": "use_case",
+    "requirements": "requirement",
+    "groups": "group",
+    "components": "component",
+    "inputs": "input",
+    "outputs": "output",
+    "performance": "indicator",
+    "nodes": "node",
+    "types": "type",
+    "hosts": "host",
+    "containers": "container",
+    "links": "link",
+    "chains": "chain",
+    "views": "view",
+    "policies": "policy",
+}
+NAMES = {("node", "name"), ("node", "namespace"), ("view", "show"), ("forbid", "from"), ("forbid", "to")}
+"""Text by the schema, but with a grammar of their own."""
+
+
+def project(text: str) -> dict[str, Any]:
+    """Give a sound project (no errors) with a text in every place that takes one."""
+    kind = " ".join(text.split())[:150].strip()
+    data: dict[str, Any] = {
+        "archgen": 1,
+        "project": {"id": "hostile"},
+        "ros": {"distro": "jazzy"},
+        "report": {
+            "chapters": ["docs/evil.md", "groups"],
+            "texts": {"docs/evil.md": f"{text}\n\n> {text}\n\n- {text}\n"},
+        },
+        "partners": {"p": {}},
+        "use_cases": {"UC-1": {}},
+        "requirements": {"R-1": {"use_cases": ["UC-1"]}},
+        "groups": {
+            "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
+            "b": {"components": {"y": _component({"in": {"from": "a.x.out"}}, kind), "z": {}}},
+        },
+        "nodes": {
+            "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
+            "m": {"implements": "b.y", "host": "h"},
+        },
+        "types": {kind: {"message": "std_msgs/msg/String"}},
+        "hosts": {"h": {}, "i": {}},
+        "containers": {"c": {"host": "i"}},
+        "links": {"l": {"connects": ["h", "i"]}},
+        "chains": {"k": {"through": ["a.x", "b.y"]}},
+        "views": {"v": {"show": "a.x+"}},
+        "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
+    }
+    _fill(data["project"], "project", text)
+    for section in ELEMENTS.keys() & data.keys():
+        for element in data[section].values():
+            _fill(element, ELEMENTS[section], text)
+    return data
+
+
+def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:
+    outside = {"medium": "physical"}
+    return {
+        "requirements": ["R-1", f"{kind} {kind}"],
+        "performance": {"overall": {}},
+        "inputs": {**inputs, "felt": {**outside}},
+        "outputs": {"out": {"type": kind}, "seen": {**outside, "type": kind}},
+    }
+
+
+def _fill(element: dict[str, Any], kind: str, text: str) -> None:
+    for key, part in SCHEMA["$defs"][kind]["properties"].items():
+        sort = part.get("$ref", "").rpartition("/")[2]
+        if key in ELEMENTS and isinstance(element.get(key), dict):
+            for inner in element[key].values():
+                _fill(inner, ELEMENTS[key], text)
+        elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
+            element |= {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}.get(sort, {})
+
+
+def written(data: object) -> str:
+    """Write data as JSON, which is YAML; what does not print is escaped."""
+    text = json.dumps(data, ensure_ascii=False, indent=1)
+    return "".join(c if c == "\n" or c.isprintable() or ord(c) > 0xFFFF else _escaped(c) for c in text)
+
+
+def _escaped(character: str) -> str:
+    return f"\\u{ord(character):04x}"
+
+
+def controls(said: str) -> list[str]:
+    """Name what could move a terminal's cursor, or hide or reorder what it shows."""
+    joiners = "\u200c\u200d"
+    bad = {c for c in said if unicodedata.category(c) in {"Cc", "Cf", "Zl", "Zp", "Cs"} and c not in f"\n{joiners}"}
+    return sorted(unicodedata.name(c, f"U+{ord(c):04X}") for c in bad)

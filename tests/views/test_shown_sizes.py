@@ -1,0 +1,63 @@
+"""The size of a type's messages, where documents, pages, lists and cards show it: written, computed, or why neither."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.outputs import Ask, view
+from archgen.views import card, listed, pages_rest, tables
+from archgen.views.index import Index
+from archgen.views.shapes import Facts, Page
+
+PROJECT = """
+archgen: 1
+ros:
+  distro: jazzy
+  definitions:
+    demo_msgs/msg/Word: "string<=8 text"
+groups:
+  driving:
+    components:
+      guard: {outputs: {velocity: Speed, picture: Image, bell: Bell, word: Word, big: Cloud}}
+types:
+  Speed: geometry_msgs/msg/Twist
+  Image: sensor_msgs/msg/Image
+  Bell: {message: std_msgs/msg/Empty, size: 1 kB}
+  Word: demo_msgs/msg/Word
+  Cloud: std_srvs/srv/Trigger
+"""
+SIZES = {"Speed": "52 B (computed)", "Image": "", "Bell": "1 kB", "Word": "at most 17 B (computed)", "Cloud": ""}
+
+
+@pytest.fixture
+def index(tmp_path: Path) -> Index:
+    (tmp_path / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
+    return view(pipeline.check(tmp_path), Ask())
+
+
+def fact(page: Page) -> str:
+    facts = next(block for block in page.section.blocks if isinstance(block, Facts))
+    return "".join(text.text for name, value in facts.rows if name == "Size" for text in value)
+
+
+def test_tables_lists_and_cards(index: Index) -> None:
+    table = tables.types(index)
+    assert table is not None
+    assert {row[0][0].text: "".join(text.text for text in row[2]) for row in table.rows} == SIZES
+    assert {row[0]: row[2] for row in listed.listed(index, "types")[1]} == SIZES
+    assert {name: dict(card.card(index, "type", name).facts).get("size", "") for name in SIZES} == SIZES
+
+
+def test_the_page_of_a_type_says_why_its_size_is_not_known(index: Index) -> None:
+    made = {page.title: fact(page) for page in pages_rest.pages(index, tuple) if page.section.anchor[:5] == "type:"}
+    assert made == {**SIZES, "Image": "unknown: the field header.frame_id may have any length (string)"}
+
+
+def test_the_page_of_a_topic(index: Index) -> None:
+    made = {page.title: fact(page) for page in pages_rest.topics(index)}
+    assert made["/driving/guard/velocity"] == "52 B (computed)"
+    assert made["/driving/guard/bell"] == "1 kB"
+    assert made["/driving/guard/picture"] == ""
