@@ -21,12 +21,24 @@ def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], in
     """Simulate a project; say what exceeded its bound, and how many bounds were held against what was seen."""
     model = architecture(text)
     analysis = analyse(model)
+    if not _kept(analysis):
+        return [], 0
     found = chains(analysis, model)
     seen = simulate(analysis.system, seconds, seeds, {key: c.through for key, c in found.items()}, pauses(analysis))
     pairs = [*_activities(seen, analysis), *_chains(seen, found), *_rest(seen, analysis)]
     held = [(what, seen, bound) for what, seen, value in pairs if (bound := bounded(value)) is not None]
     wrong = [f"{what}: {float(seen) / 1e6} seen, bound {float(bound) / 1e6}" for what, seen, bound in held if seen > bound]
     return wrong, len(held)
+
+
+def _kept(analysis: Analysis) -> bool:
+    """Tell whether every promised largest gap can be kept: whether there is a chance to publish often enough."""
+    chances = pauses(analysis)
+    return all(
+        key in a.conditional and (a.id, key) in chances and chances[a.id, key] <= gap * analysis.system.tick
+        for a in analysis.system.activities.values()
+        for key, gap in a.max_gaps.items()
+    )
 
 
 def bounded(value: Value) -> Fraction | None:
