@@ -25,19 +25,17 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     from archgen import simulation
     from archgen.findings.escape import visible
     from archgen.simulation import compared
-    from archgen.timing.analyse import analyse_system
-    from archgen.timing.build import system
+    from archgen.timing.analyse import analyse
     from archgen.timing.chains import chains
 
     checked = run.check(project)
     run.report(checked, least=run.ERROR)
     architecture = checked.architecture
     _known(asked, tuple(architecture.chains))
-    built, notes = system(architecture)
-    analysis = analyse_system(built, notes)
+    analysis = analyse(architecture)
     found = {key: one for key, one in chains(analysis, architecture).items() if not asked or key in asked}
     through = {key: one.through for key, one in found.items()}
-    seen = simulation.simulate(built, seconds, seeds, through, compared.pauses(analysis))
+    seen = simulation.simulate(analysis.system, seconds, seeds, through, compared.pauses(analysis))
     if form == "json":
         click.echo(json.dumps(compared.plain(seen, analysis, found), ensure_ascii=False, indent=2))
     else:

@@ -159,8 +159,6 @@ class Run:
                 wires.waiting[queue] += 1
                 if wires.waiting[queue] > wires.depth[wire] > 0:
                     wires.drops[queue] += 1
-            elif steps.awaited[wires.target[wire]] == wire:
-                self._proceed(now, wires.target[wire])
         else:
             self._fill(now, wire, slot, sample)
 
@@ -369,11 +367,7 @@ class Run:
         if threads.ready[processor]:
             self.touched.add(processor)
         at = threads.current[thread]
-        if self.calls[at] and self.steps.request[at] != _LOAD:
-            self.steps.to_call[at] = self._calls(at)
-            self._proceed(now, at)
-        else:
-            self._complete(now, at)
+        self._complete(now, at)
 
     def _calls(self, at: int) -> list[int]:
         """Give the requests of one job, in order; of a fraction of a call, as many as are due."""
@@ -384,19 +378,6 @@ class Run:
             due[place] = total % number.denominator
             found += wires * (total // number.denominator)
         return found
-
-    def _proceed(self, now: int, at: int) -> None:
-        """Send the next request and wait for its answer; without one, the job is done."""
-        steps = self.steps
-        steps.awaited[at] = -1
-        if not steps.to_call[at]:
-            self._complete(now, at)
-            return
-        wire = steps.to_call[at].pop(0)
-        steps.awaited[at] = self.answers[wire]
-        self._send(now, wire, steps.started[at] - 1)
-        if self.answers[wire] < 0:
-            self._proceed(now, at)
 
     def _complete(self, now: int, at: int) -> None:
         """End a job: note its response, publish, answer, and let the thread go on."""
@@ -429,6 +410,9 @@ class Run:
         """End a job's work: publish, and answer who waits for it."""
         steps = self.steps
         self._note(now, at, now - fired)
+        if self.calls[at]:
+            for request in self._calls(at):
+                self._send(now, request, number)
         for place, targets, conditional, patience in self.outputs[at]:
             if not conditional or self._publishes(now, at, place, patience):
                 for one in targets:
@@ -492,6 +476,4 @@ class Run:
 
     def _keep_promise(self, now: int, at: int) -> None:
         fired, wire, number = self.steps.promises[at].popleft()
-        for request in self._calls(at):
-            self._send(now, request, number)
         self._finish(now, at, fired, wire, number)

@@ -34,8 +34,10 @@ def series(samplings: Sequence[int], logs: Sequence[Sequence[int]], ends: Sequen
 
     `samplings` are the activations of the first activity's jobs; `logs` tell for each later activity, by its job, which
     job of the one before it its data came from (-1 for none); `ends` are when the last one's jobs ended. `samples`
-    tells that the first activity samples the world; else its activation is the event.
+    tells that the first activity samples the world; else its activation is the event. What is published once is no event: there is nothing to see.
     """
+    if not samplings:
+        return Series((), (), None, None)
     carried = [(end, source) for job, end in enumerate(ends) if (source := _source(job, logs)) >= 0]
     firsts = list(_firsts(carried))
     if samples:

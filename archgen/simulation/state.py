@@ -52,9 +52,6 @@ class Steps:
         """Requests that wait for the next activation of a server that is periodic."""
         self.taken: list[list[int]] = [[] for _ in steps]
         """Those that are answered at the next end."""
-        self.awaited = [-1] * count
-        """The answer that the running job waits for."""
-        self.to_call: list[list[int]] = [[] for _ in steps]
         self.due = [[dice.randrange(number.denominator) for number, _ in step.calls] for step in steps]
         self.promises: list[deque[Job]] = [deque() for _ in steps]
         self.promise_end = [0] * count

@@ -116,18 +116,19 @@ def test_a_full_queue_drops_the_oldest() -> None:
     assert seen.drops == {("reader", "clock", "/clock"): 251 - 101 - 2}
 
 
-def test_a_caller_waits_for_its_server() -> None:
-    #  client 0-2, server 2-5, client ends at 5
+def test_a_caller_calls_at_its_end_and_does_not_wait() -> None:
+    #  client 0-2, server 2-5
     found = jobs(
         system([timed("client", 20, 2), event("server", 3, behaviour="on_demand")], call("client", "server")), 19
     )
-    assert found == {"client": [(0, 0, 5)], "server": [(2, 2, 5)]}
+    assert found == {"client": [(0, 0, 2)], "server": [(2, 2, 5)]}
 
 
-def test_calls_are_made_one_after_the_other() -> None:
-    activities = [timed("client", 20, 2, calls={"ask": Fraction(5, 2)}), event("server", 3, behaviour="on_demand")]
-    found = jobs(system(activities, call("client", "server")), 39)
-    assert sorted(end - fired for fired, _, end in found["client"]) == [2 + 2 * 3, 2 + 3 * 3]
+def test_fractions_of_calls_are_spread_evenly() -> None:
+    activities = [timed("client", 20, 2, calls={"ask": Fraction(5, 2)}), event("server", 1, behaviour="on_demand")]
+    fired = [job[0] for job in jobs(system(activities, call("client", "server")), 79)["server"]]
+    assert sorted(fired.count(at) for at in (2, 22)) == [2, 3]
+    assert len(fired) == 10
 
 
 def test_a_link_takes_its_latency() -> None:

@@ -1,0 +1,91 @@
+"""What a simulation saw beyond a bound of the analysis: nothing, if both are right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from archgen.simulation import Result, simulate
+from archgen.simulation.compared import pauses
+from archgen.timing.analyse import analyse
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains import chains
+from archgen.timing.value import Value
+from tests.timing.random_systems import architecture
+
+_PROMISES = ("in this very activation", "for this very input")
+"""Assumptions of a bound that no run keeps: a call, or a conditional output, just when it is needed."""
+
+
+def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], int]:
+    """Simulate a project; say what exceeded its bound, and how many bounds were held against what was seen."""
+    model = architecture(text)
+    analysis = analyse(model)
+    if not _kept(analysis):
+        return [], 0
+    found = chains(analysis, model)
+    seen = simulate(analysis.system, seconds, seeds, {key: c.through for key, c in found.items()}, pauses(analysis))
+    pairs = [*_activities(seen, analysis), *_chains(seen, found), *_rest(seen, analysis)]
+    held = [(what, seen, bound) for what, seen, value in pairs if (bound := bounded(value)) is not None]
+    wrong = [f"{what}: {float(seen) / 1e6} seen, bound {float(bound) / 1e6}" for what, seen, bound in held if seen > bound]
+    return wrong, len(held)
+
+
+def _kept(analysis: Analysis) -> bool:
+    """Tell whether every promised largest gap can be kept: whether there is a chance to publish often enough."""
+    chances = pauses(analysis)
+    return all(
+        key in a.conditional and (a.id, key) in chances and chances[a.id, key] <= gap * analysis.system.tick
+        for a in analysis.system.activities.values()
+        for key, gap in a.max_gaps.items()
+    )
+
+
+def bounded(value: Value) -> Fraction | None:
+    """Give what a figure bounds from above; None where it rests on what is not known, or on what no run keeps."""
+    if value.side == "at least" or not value.complete:
+        return None
+    return None if any(promise in said for said in value.assumptions for promise in _PROMISES) else value.value
+
+
+def _activities(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fraction, Value]]:
+    for name, one in seen.activities.items():
+        pace, response = analysis.paces[name], analysis.responses[name]
+        if one.worst is not None:
+            yield f"response of {name} ({response.tier})", one.worst, response.worst
+        if one.best is not None and response.best.value is not None:
+            yield f"best response of {name}, negative", -one.best, Value(-response.best.value, response.best.complete)
+        if one.activation_gap is not None:
+            yield f"gap of {name}", one.activation_gap, pace.gap
+        for key, silence in one.silences.items():
+            if key in analysis.system.activities[name].max_gaps and (name, key) in analysis.outputs:
+                yield f"silence of {key}", silence, analysis.outputs[name, key].gap
+
+
+def _chains(seen: Result, found: dict[str, ChainResult]) -> Iterator[tuple[str, Fraction, Value]]:
+    for key, one in seen.chains.items():
+        way = " > ".join(one.through)
+        if one.reaction is not None:
+            yield f"reaction of {way}", one.reaction.largest, found[key].bound
+            best = found[key].best
+            if best.value is not None:
+                yield f"best case of {way}, negative", -one.reaction.least, Value(-best.value, best.complete)
+        if one.age is not None:
+            yield f"age of {way}", one.age.largest, found[key].bound
+        if one.reduced_reaction is not None:
+            yield f"reduced reaction of {way}", one.reduced_reaction, found[key].reduced_reaction
+        if one.reduced_age is not None:
+            yield f"reduced age of {way}", one.reduced_age, found[key].reduced_age
+
+
+def _rest(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fraction, Value]]:
+    for link, one in seen.links.items():
+        if link in analysis.links:
+            yield f"queueing on {link}", one.wait, analysis.links[link].queueing
+    for name, activity in seen.activities.items():
+        pace = analysis.paces[name]
+        if pace.rate.value is not None and pace.jitter.value is not None:
+            # A rate bounds the long run only: what jitter holds back comes on top, and one job at either end.
+            more = Fraction(seen.seeds) * (pace.rate.value * pace.jitter.value / 10**9 + 2)
+            bound = Value(pace.rate.value * seen.seconds * seen.seeds + more, pace.rate.complete, side=pace.rate.side)
+            yield f"jobs of {name}", Fraction(activity.jobs), bound
