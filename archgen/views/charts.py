@@ -257,7 +257,7 @@ def _places(load: HostLoad) -> Iterator[Bar]:
         known = None if share.value is None else _float(share.value * 100)
         title = _place(name, cores)
         tooltip = f"{title}: {figures.share(share)} of {plural(cores, 'core')}"
-        stretches = (Stretch(known, "missed" if full else "best", "", tooltip),)
+        stretches: tuple[Stretch, ...] = (Stretch(known, "missed" if full else "best", "", tooltip),)
         if known is not None and not used.complete:
             stretches += (Stretch(None, "open", "?", tooltip),)
         yield Bar(title, stretches, figures.share(share))
