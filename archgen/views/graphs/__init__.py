@@ -22,7 +22,7 @@ from collections.abc import Iterable, Iterator
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.selector import Selecting, Selection
-from archgen.views.graphs import selected
+from archgen.views.graphs import selected, timing
 from archgen.views.graphs.component import component
 from archgen.views.graphs.folding import fold
 from archgen.views.graphs.group import group
@@ -30,7 +30,6 @@ from archgen.views.graphs.hosts import hosts
 from archgen.views.graphs.implementation import implementation
 from archgen.views.graphs.overview import components, overview
 from archgen.views.graphs.ros import ros
-from archgen.views.graphs.timing import group_timing, timing
 from archgen.views.index import Index, index
 from archgen.views.shapes import Graph
 from archgen.views.timed import Timed
@@ -40,7 +39,6 @@ __all__ = [
     "component",
     "components",
     "group",
-    "group_timing",
     "hosts",
     "implementation",
     "overview",
@@ -80,10 +78,8 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
     else:
         yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
     if view.timed is not None:
-        if selection is None:
-            yield timing(view, view.timed)
-        for name in dict.fromkeys(each.group for each in shown):
-            yield group_timing(view, view.timed, name)
+        groups = dict.fromkeys(each.group for each in shown)
+        yield from timing.pictures(view, view.timed, groups, whole=selection is None)
     selecting = Selecting(architecture)
     for asked in architecture.views.values():
         chosen, _ = selecting.select(asked.show)

@@ -5,7 +5,7 @@ The period stands in every box as text; what has none (unknown, on an event, on 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -34,48 +34,77 @@ class _Run:
     arcs: tuple[Arc, ...]
 
 
-def timing(view: Index, timed: Timed) -> Graph:
+@dataclass(frozen=True, slots=True)
+class _Whole:
+    """All that timing pictures are cut from: activities by frame, and what runs among them, found once."""
+
+    view: Index
+    timed: Timed
+    home: Mapping[str, str]
+    running: Sequence[_Run]
+
+    def inside(self, frame: str) -> dict[str, Activity]:
+        """Give the activities of a frame."""
+        activities = self.timed.analysis.system.activities
+        return {name: activities[name] for name, home in self.home.items() if home == frame}
+
+
+def pictures(view: Index, timed: Timed, groups: Iterable[str], *, whole: bool) -> Iterator[Graph]:
+    """Draw the whole, if asked for, and some groups."""
+    system = timed.analysis.system
+    home = {name: _home(view, activity) for name, activity in system.activities.items()}
+    everything = _Whole(view, timed, home, _runs(system.arcs))
+    if whole:
+        yield _timing(everything)
+    touching: dict[str, list[_Run]] = {}
+    for run in everything.running:
+        for group in dict.fromkeys((home[run.tail], home[run.head])):
+            touching.setdefault(group, []).append(run)
+    for name in groups:
+        yield _group(replace(everything, running=touching.get(name, [])), name)
+
+
+def _timing(whole: _Whole) -> Graph:
     """Draw all activities, framed by group."""
+    view, timed = whole.view, whole.timed
     activities = timed.analysis.system.activities
-    home = {name: _home(view, activity) for name, activity in activities.items()}
-    running = _runs(timed.analysis.system.arcs)
-    arrows = _merged(view, running, home)
     graph = Graph(
         "timing",
         f"{view.architecture.project.title}: how often everything happens",
         "two-step",
-        tuple(replace(_box(timed, each), cluster=home[each.id]) for each in activities.values()),
-        arrows,
-        tuple(_frame(view, each) for each in dict.fromkeys(home.values())),
+        tuple(replace(_box(timed, each), cluster=whole.home[each.id]) for each in activities.values()),
+        _merged(view, whole.running, whole.home),
+        tuple(_frame(view, each) for each in dict.fromkeys(whole.home.values())),
         direction=view.architecture.layout.direction or "left-right",
         notes=_notes(timed, activities),
         alt=_alt(timed, list(activities), "All activities"),
-        asked=sum(len(run.arcs) for run in running),
+        asked=sum(len(run.arcs) for run in whole.running),
     )
     return fold(with_legend(graph))
 
 
-def group_timing(view: Index, timed: Timed, name: str) -> Graph:
+def _group(whole: _Whole, name: str) -> Graph:
     """Draw the activities of one group, with the neighbours that feed it at the left and those that read it at the right."""
-    found = view.architecture.groups[name]
-    activities = timed.analysis.system.activities
-    mine = {each: None for each, activity in activities.items() if _home(view, activity) == name}
-    running = [run for run in _runs(timed.analysis.system.arcs) if run.tail in mine or run.head in mine]
-    folded = sum(len(run.arcs) for run in running) > _MANY
-    around = _neighbours(view, timed, running, mine, folded=folded)
+    view, timed = whole.view, whole.timed
+    found, mine = view.architecture.groups[name], whole.inside(name)
+    count = sum(len(run.arcs) for run in whole.running)
+    folded = count > _MANY
     graph = Graph(
         f"timing/{name}",
         f"{found.title}: how often everything happens",
         "group",
-        (*(replace(_box(timed, activities[each]), cluster=name) for each in mine), *around.values()),
-        _placed(view, timed, running, mine, folded=folded),
-        (boxes.frame(view, name),) if mine else (),
+        (
+            *(replace(_box(timed, each), cluster=name) for each in mine.values()),
+            *_neighbours(whole, mine, folded=folded).values(),
+        ),
+        _placed(whole, mine, folded=folded),
+        (boxes.frame(view, name),),
         direction=found.layout.direction or view.architecture.layout.direction or "left-right",
         notes=_notes(timed, mine) + (("Neighbours are folded: a box for each group.",) if folded else ()),
         alt=_alt(timed, tuple(mine), found.title),
-        asked=sum(len(run.arcs) for run in running),
+        asked=count,
     )
-    return with_legend(graph if mine else replace(graph, boxes=()))
+    return with_legend(graph)
 
 
 def _home(view: Index, activity: Activity) -> str:
@@ -148,49 +177,47 @@ def _merged(view: Index, running: Sequence[_Run], home: Mapping[str, str]) -> tu
     )
 
 
-def _ends(view: Index, timed: Timed, run: _Run, mine: Collection[str], *, folded: bool) -> tuple[str, str]:
+def _ends(whole: _Whole, run: _Run, mine: Collection[str], *, folded: bool) -> tuple[str, str]:
+    """Give the boxes that a run joins: neighbours stand left where they feed, right where they read."""
+
     def outer(name: str, side: str) -> str:
-        return side + (_home(view, timed.analysis.system.activities[name]) if folded else name)
+        return side + (whole.home[name] if folded else name)
 
     tail = run.tail if run.tail in mine else outer(run.tail, "<")
     return tail, run.head if run.head in mine else outer(run.head, ">")
 
 
-def _neighbours(
-    view: Index, timed: Timed, running: Sequence[_Run], mine: Collection[str], *, folded: bool
-) -> dict[str, Box]:
+def _neighbours(whole: _Whole, mine: Collection[str], *, folded: bool) -> dict[str, Box]:
     """Draw neighbours in grey, a box each or a box for each of their groups, at the side that they stand on."""
     found: dict[str, Box] = {}
-    for run in running:
-        for end, inner in zip(_ends(view, timed, run, mine, folded=folded), (run.tail, run.head), strict=True):
-            if inner in mine or end in found:
-                continue
-            activity = timed.analysis.system.activities[inner]
-            home = _home(view, activity)
-            side: Literal["left", "right"] = "left" if end[0] == "<" else "right"
-            if folded:
-                frame = _frame(view, home)
-                found[end] = Box(end, frame.title, style="group", emphasis="neighbour", side=side, ref=frame.ref)
-            else:
-                box = _box(timed, activity)
-                found[end] = replace(box, id=end, emphasis="neighbour", side=side, fill=None)
+    for run in whole.running:
+        for end, inner in zip(_ends(whole, run, mine, folded=folded), (run.tail, run.head), strict=True):
+            if inner not in mine and end not in found:
+                found[end] = _grey(whole, inner, end, folded=folded)
     return found
 
 
-def _placed(
-    view: Index, timed: Timed, running: Sequence[_Run], mine: Collection[str], *, folded: bool
-) -> tuple[Arrow, ...]:
+def _grey(whole: _Whole, name: str, end: str, *, folded: bool) -> Box:
+    side: Literal["left", "right"] = "left" if end[0] == "<" else "right"
+    if folded:
+        frame = _frame(whole.view, whole.home[name])
+        return Box(end, frame.title, style="group", emphasis="neighbour", side=side, ref=frame.ref)
+    box = _box(whole.timed, whole.timed.analysis.system.activities[name])
+    return replace(box, id=end, emphasis="neighbour", side=side, fill=None)
+
+
+def _placed(whole: _Whole, mine: Collection[str], *, folded: bool) -> tuple[Arrow, ...]:
     """Draw an arrow for each pair of boxes; a pace that differs from the producer's is written beside it."""
     bundles: dict[tuple[str, str, str], list[Arc]] = {}
-    for run in running:
-        ends = _ends(view, timed, run, mine, folded=folded)
+    for run in whole.running:
+        ends = _ends(whole, run, mine, folded=folded)
         bundles.setdefault((*ends, run.style), []).extend(run.arcs)
     return tuple(
         Arrow(
             f"{tail}>{head}:{style}",
             tail,
             head,
-            label=_label(timed, arcs) if not folded else str(len(arcs)) if len(arcs) > 1 else "",
+            label=_label(whole.timed, arcs) if not folded else str(len(arcs)) if len(arcs) > 1 else "",
             style=style,  # type: ignore[arg-type]
             count=len(arcs),
             flows=tuple(_sentence(arc) for arc in arcs),
