@@ -22,6 +22,9 @@ from archgen.model.architecture import Architecture
 from archgen.model.selector import Selection
 from archgen.outputs import Ask
 from archgen.pipeline import Checked
+from archgen.timing import chains as timing_chains
+from archgen.timing.analyse import analyse
+from archgen.timing.analysis import Analysis, ChainResult
 from archgen.views import record
 from archgen.views.report import Level
 from archgen.views.shapes import Record
@@ -68,6 +71,14 @@ class Project:
     def progress(self) -> tuple[size_analysis.Progress, ...]:
         """Give how far the whole, each group and each partner are."""
         return size_analysis.progress(self.architecture)
+
+    def timing(self) -> Analysis:
+        """Give how often everything works, responses, loads and traffic. Durations are in ns; all figures are exact."""
+        return analyse(self.architecture)
+
+    def chains(self) -> dict[str, ChainResult]:
+        """Give the latency of each chain, its terms and the verdict on its deadline."""
+        return timing_chains.chains(self.timing(), self.architecture)
 
     def select(self, words: str) -> Selection:
         """Evaluate a selector. Raises `SelectorError` where it cannot be used."""

@@ -14,6 +14,7 @@ VERBS = {
     "diagram": "Draw the diagrams.",
     "pack": "Write one validated YAML file that holds the whole project.",
     "stats": "Show size and progress.",
+    "timing": "Show rates, latency of chains, load; why, what if, what decides.",
     "show": "Show an element: ports, readers, nodes, place in the files.",
     "list": "List elements or connections, as text, CSV or JSON.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",

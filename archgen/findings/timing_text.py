@@ -1,0 +1,170 @@
+"""Timing for people: a summary that can be read in the terminal, chains term by term, ways between two elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.findings.escape import visible, width
+from archgen.timing import wording
+from archgen.timing.analysis import Analysis, ChainResult, Term
+from archgen.timing.chains import Found
+from archgen.timing.rounds import Round
+from archgen.timing.value import Value
+
+_SIGNS = {"met": "met", "missed": "MISSED", "open": "open"}
+Row = Sequence[str]
+
+
+def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[Round]) -> Iterator[str]:
+    """Give the whole picture: chains first, then hosts, links, elements, loops."""
+    yield from _section("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
+    yield from _section("Hosts", _host_rows(analysis))
+    yield from _section("Links", _link_rows(analysis))
+    yield from _section("Elements", _element_rows(analysis))
+    yield from _section("Loops: latency of one round", _loop_rows(loops))
+    yield from _faults(analysis)
+
+
+def _section(title: str, rows: Iterable[Row]) -> Iterator[str]:
+    made = list(rows)
+    if made:
+        yield title
+        yield from table(made)
+        yield ""
+
+
+def _chain_rows(chains: Iterable[ChainResult]) -> Iterator[Row]:
+    for result in chains:
+        deadline = f"deadline {figure(result.deadline)}" if result.deadline else "no deadline"
+        yield result.id, figure(result.bound), deadline, _SIGNS[result.verdict] if result.deadline else "", gaps(result)
+
+
+def _host_rows(analysis: Analysis) -> Iterator[Row]:
+    for name, load in analysis.hosts.items():
+        cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
+        yield name, cores, f"load {figure(load.utilisation, wording.share)}", load.verdict, without(load.utilisation)
+
+
+def _link_rows(analysis: Analysis) -> Iterator[Row]:
+    for name, load in analysis.links.items():
+        traffic = figure(load.traffic, lambda count: f"{wording.size(count)}/s")
+        share = f"{figure(load.share, wording.share)} of it" if load.share.value is not None else "share unknown"
+        yield name, traffic, share, without(load.traffic)
+
+
+def _element_rows(analysis: Analysis) -> Iterator[Row]:
+    for name in analysis.system.activities:
+        pace, response = analysis.paces[name], analysis.responses[name]
+        how = (pace.behaviour or "unknown") + (" (inferred)" if pace.inferred and pace.behaviour else "")
+        rate, gap = figure(pace.rate, wording.rate), figure(pace.gap)
+        yield name, how, rate, f"gap {gap}", f"response {figure(response.worst)} ({response.tier})"
+
+
+def _loop_rows(loops: Iterable[Round]) -> Iterator[Row]:
+    for each in loops:
+        steps = len(each.through) - 1
+        part = f"one round of {each.members} elements that feed one another" if each.members > steps else ""
+        yield " > ".join(each.through), figure(each.latency), part or without(each.latency)
+
+
+def _faults(analysis: Analysis) -> Iterator[str]:
+    for ring in analysis.endless:
+        yield f"endless: every event circulates for ever in {' > '.join(ring)}"
+    for ring in analysis.deadlocked:
+        yield f"deadlock: each waits for the other in {' > '.join(ring)}"
+    if analysis.diverged:
+        yield f"diverged: no bound was found for {wording.listed(analysis.diverged)}"
+
+
+def chain(result: ChainResult, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
+    """Give a chain term by term, with the reason and the place of each."""
+    yield f"{result.id}: {' > '.join(result.through)}"
+    yield from table(_term_rows(result.terms))
+    yield ""
+    rows = [
+        ("largest reaction time = largest data age", figure(result.bound), gaps(result)),
+        ("reduced reaction time (from the first sample on)", figure(result.reduced_reaction)),
+        ("reduced data age (when the last element sends)", figure(result.reduced_age)),
+        ("best case", figure(result.best)),
+    ]
+    if published:
+        rows.append(("with priorities and implicit communication (Duerr): reaction", wording.duration(published[0])))
+        rows.append(("    reduced data age", wording.duration(published[1])))
+    if result.deadline:
+        rows.append(("deadline", figure(result.deadline), _SIGNS[result.verdict]))
+    yield from table(rows)
+    for assumption in result.bound.assumptions:
+        yield f"  assumes: {assumption}"
+
+
+def _term_rows(terms: Iterable[Term]) -> Iterator[Row]:
+    yield "element", "link", "waits", "response", "why"
+    for term in terms:
+        place = f" ({term.at})" if term.at.file else ""
+        link = figure(term.link) if term.link.value != 0 else "-"
+        yield term.activity, link, figure(term.sampling), figure(term.response), f"{term.why}{place}"
+
+
+def ways(source: str, target: str, count: int, worst: Iterable[Found], best: Iterable[Found]) -> Iterator[str]:
+    """Give the ways between two elements."""
+    yield f"{source} to {target}: {count} way{'s' if count != 1 else ''}"
+    for title, found in (("worst", worst), ("best case", best)):
+        for at, way in enumerate(found, 1):
+            yield f"  {title} {at}: {figure(way.bound)}   {' > '.join(way.through)}"
+            if not way.bound.complete:
+                yield f"      no bound: {without(way.bound)}"
+
+
+def gaps(result: ChainResult) -> str:
+    """Say what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
+    if result.bound.complete:
+        return ""
+    said = []
+    for what, values in (
+        ("period or rate", [term.sampling for term in result.terms]),
+        ("execution time", [term.response for term in result.terms]),
+        ("latency", [term.link for term in result.terms]),
+    ):
+        names = tuple(dict.fromkeys(name for value in values for name in value.missing if not value.complete))
+        if names:
+            said.append(f"{what} of {wording.listed(names)} unknown")
+    named = {name for term in result.terms for v in (term.sampling, term.response, term.link) for name in v.missing}
+    elsewhere = tuple(name for name in result.bound.missing if name not in named)
+    if elsewhere:
+        said.append(f"on other ways, figures of {wording.listed(elsewhere)} unknown")
+    said += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
+    return f"{_basis(result)}no bound: {'; '.join(said)}" if said else "no bound"
+
+
+def _basis(result: ChainResult) -> str:
+    if result.bound.value is None:
+        return ""
+    parts = [value for term in result.terms for value in (term.response, term.link)]
+    return "(what is known) " if any(value.value for value in parts) else "(periods only) "
+
+
+def without(value: Value) -> str:
+    """Say which elements' figures a value lacks."""
+    return f"unknown: {wording.listed(value.missing)}" if value.missing and not value.complete else ""
+
+
+def figure(value: Value | None, write: Callable[[Fraction], str] = wording.duration) -> str:
+    """Write a figure: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
+    if value is None:
+        return ""
+    if value.value is None:
+        why = wording.reason(value)
+        return f"unbounded ({why})" if why == "overload" else why
+    mark = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
+    return mark + write(value.value)
+
+
+def table(rows: Iterable[Row]) -> Iterator[str]:
+    """Set rows in columns as wide as what stands in them; the last column of a row needs no width."""
+    made = [[visible(cell) for cell in row] for row in rows]
+    columns = max((len(row) for row in made), default=0)
+    widths = [max((width(row[at]) for row in made if at < len(row) - 1), default=0) for at in range(columns)]
+    for row in made:
+        cells = [cell + " " * (widths[at] - width(cell)) for at, cell in enumerate(row[:-1])]
+        yield ("  " + "  ".join([*cells, row[-1]])).rstrip()

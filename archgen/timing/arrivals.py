@@ -1,0 +1,141 @@
+"""What arrives at an activity's triggers: how far apart at most, how near at least, and what fires it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from archgen.timing.analysis import Analysis
+from archgen.timing.sums import known, nameless, total
+from archgen.timing.system import Activity, Arc
+from archgen.timing.value import UNKNOWN, ZERO, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Arrivals:
+    """The streams into each activity; what was worked out for one is kept."""
+
+    analysis: Analysis
+    _streams: dict[str, dict[str, Value]] = field(default_factory=dict)
+
+    def fires(self, arc: Arc) -> bool:
+        """Tell whether what arrives on an arc triggers its reader."""
+        reader = self.analysis.system.activities[arc.target]
+        if arc.role != "data":
+            return arc.role == "request" and reader.behaviour in {"event", "on_demand"}
+        return reader.behaviour == "event" and arc.input in reader.triggers
+
+    def sole(self, arc: Arc) -> bool:
+        """Tell whether nothing else fires an arc's reader."""
+        firing = [other for other in self.analysis.system.into.get(arc.target, ()) if self.fires(other)]
+        outside = self.analysis.system.external.get(arc.target, ())
+        reader = self.analysis.system.activities[arc.target]
+        return len(firing) == 1 and not any(key in outside for key in reader.triggers)
+
+    def gap(self, name: str) -> Value:
+        """Give the largest gap between two activations."""
+        pace = self.analysis.paces.get(name)
+        return nameless(pace.gap if pace else UNKNOWN, name)
+
+    def sent_gap(self, arc: Arc) -> Value:
+        """Give the largest gap between two messages, where they are sent."""
+        pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
+        return nameless(pace.gap if pace else UNKNOWN, arc.source)
+
+    def waits_for_all(self, activity: Activity) -> bool:
+        """Tell whether several triggers must have come before an activity fires."""
+        return activity.mode == "all" and len(self._stream(activity)) > 1
+
+    def others(self, activity: Activity, arc: Arc) -> Value:
+        """Give the largest gap of the other triggers of an all-of element; ZERO of any other, and where it is called."""
+        if arc.role != "data" or not self.waits_for_all(activity):
+            return ZERO
+        return _largest(gap for key, gap in self._stream(activity).items() if key != arc.input)
+
+    def thinned(self, activity: Activity) -> Value:
+        """Give how long `every`, `throttle` and `jitter` let a trigger wait.
+
+        Every n-th: (n - 1) gaps. A throttle q fires at the first (n-th) trigger that comes q after the last firing, so
+        within q + n gaps of it; what waits came a smallest gap after it at the soonest.
+        """
+        if activity.behaviour != "event" or (activity.every == 1 and not activity.throttle):
+            return self.time(activity.jitter) if activity.behaviour == "event" else ZERO
+        gap = self._firing_gap(activity)
+        if not activity.throttle:
+            return total((_times(gap, activity.every - 1), self.time(activity.jitter)))
+        kept = (_times(gap, activity.every), self.time(activity.throttle), self.time(activity.jitter))
+        return _less(total(kept), self._smallest_gap(activity))
+
+    def time(self, ticks: int) -> Value:
+        """Give a duration of the system in ns."""
+        return Value(ticks * self.analysis.system.tick) if ticks else ZERO
+
+    def _firing_gap(self, activity: Activity) -> Value:
+        """Give the largest gap between two occasions to fire."""
+        gaps = self._stream(activity).values()
+        merged = _largest(gaps) if activity.mode == "all" else _smallest(gaps)
+        return nameless(merged, activity.id)
+
+    def _stream(self, activity: Activity) -> dict[str, Value]:
+        """Give the largest gap of what arrives at each trigger; one that arrives once at the start is left out."""
+        found = self._streams.get(activity.id)
+        if found is None:
+            arcs = [a for a in self.analysis.system.into.get(activity.id, ()) if a.role == "data" and self.fires(a)]
+            outside = self.analysis.system.external.get(activity.id, ())
+            kept = {arc.input for arc in arcs if self.analysis.system.activities[arc.source].behaviour != "once"}
+            keys = dict.fromkeys((*activity.triggers, *(arc.input for arc in arcs)))
+            found = self._streams[activity.id] = {
+                key: self._arriving(activity, key in outside, [arc for arc in arcs if arc.input == key])
+                for key in keys
+                if key in kept or key in outside
+            }
+        return found
+
+    def _arriving(self, activity: Activity, outside: bool, arcs: Iterable[Arc]) -> Value:  # noqa: FBT001 - told by its name
+        gaps = [self._arriving_on(arc) for arc in arcs]
+        return _smallest([*gaps, Value(None, complete=False, missing=(activity.id,))] if outside else gaps)
+
+    def _arriving_on(self, arc: Arc) -> Value:
+        if arc.best is None or arc.worst is None:
+            return Value(None, complete=False, missing=(arc.link or arc.topic,))
+        return total((self.sent_gap(arc), self.time(arc.worst - arc.best)))
+
+    def _smallest_gap(self, activity: Activity) -> Value:
+        """Give the smallest gap between two triggers: known of a single stream only, else 0."""
+        arcs = [arc for arc in self.analysis.system.into.get(activity.id, ()) if self.fires(arc)]
+        if len(arcs) != 1 or arcs[0].best is None or arcs[0].worst is None:
+            return ZERO
+        pace = self.analysis.outputs.get((arcs[0].source, arcs[0].output))
+        if pace is None or pace.distance.value is None or not known(pace.distance, "at least"):
+            return ZERO
+        spread = (arcs[0].worst - arcs[0].best) * self.analysis.system.tick
+        return Value(max(Fraction(0), pace.distance.value - spread))
+
+
+def _largest(values: Iterable[Value]) -> Value:
+    parts = tuple(values)
+    if not parts:
+        return ZERO
+    open_parts = tuple(part for part in parts if not known(part))
+    if open_parts:
+        return total(tuple(replace(part, value=None) for part in open_parts))
+    return max(parts, key=lambda part: part.value or Fraction(0))
+
+
+def _smallest(values: Iterable[Value]) -> Value:
+    parts = tuple(values)
+    shut = [part for part in parts if known(part)]
+    if shut:
+        return min(shut, key=lambda part: part.value or Fraction(0))
+    return total(parts) if parts else UNKNOWN
+
+
+def _times(value: Value, count: int) -> Value:
+    return replace(value, value=value.value * count) if value.value is not None else value
+
+
+def _less(value: Value, off: Value) -> Value:
+    if value.value is None or not value.complete:
+        return value
+    return replace(value, value=value.value - (off.value or 0))

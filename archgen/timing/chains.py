@@ -1,0 +1,147 @@
+"""End to end along chains: the safe bound (reaction time = data age), its terms, and the verdict on the deadline.
+
+F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from archgen.model.architecture import Architecture, Chain, Waypoint
+from archgen.timing import route
+from archgen.timing.analysis import Analysis, ChainResult, Term
+from archgen.timing.network import Aim, Network
+from archgen.timing.paths import Way, Ways, ways
+from archgen.timing.sums import boundless, known, total
+from archgen.timing.system import Arc
+from archgen.timing.value import UNKNOWN, ZERO, Value
+
+NO_WAY = Value(None, complete=False, assumptions=("no way leads through all elements",))
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """One way between two elements: its activities, its arcs, terms, and bound."""
+
+    through: tuple[str, ...]
+    terms: tuple[Term, ...]
+    bound: Value
+
+
+def chain(analysis: Analysis, architecture: Architecture, asked: Chain, network: Network | None = None) -> ChainResult:
+    """Bound one chain. Give the network to share its costs among many chains."""
+    network = network or Network.of(analysis)
+    points = route.points(analysis.system, architecture, asked.through)
+    regions = route.chain_route(network, points)
+    return _result(network, regions, asked)
+
+
+def chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainResult]:
+    """Bound all chains of an architecture, in order of appearance."""
+    network = Network.of(analysis)
+    return {asked.id: chain(analysis, architecture, asked, network) for asked in architecture.chains.values()}
+
+
+def between(
+    network: Network, architecture: Architecture, source: Waypoint, target: Waypoint, aim: Aim = "bound"
+) -> Ways | None:
+    """Find all ways from one element to another: extremes, the next ones and their number can be asked of the answer.
+
+    None where an element has no activity. With the aim `best` the ways are sorted from the quickest best case on.
+    """
+    points = route.points(network.steps.analysis.system, architecture, (source, target))
+    regions = route.free_route(network, points)
+    return _ways(network, regions, aim) if regions else None
+
+
+def listed(network: Network, found: Ways, most: int) -> Iterator[Found]:
+    """Give the first ways, with their terms."""
+    for way in found.best(most):
+        arcs = [network.arcs[at] for at in way.arcs]
+        names = (network.names[way.start], *(arc.target for arc in arcs))
+        aim: Aim = "bound" if found.longest else "best"
+        yield Found(names, terms(network, way), _sum(network, way, aim))
+
+
+def terms(network: Network, way: Way) -> tuple[Term, ...]:
+    """Give the terms of a way's bound: waiting, response, link, each with its reason and place."""
+    steps = network.steps
+    name = network.names[way.start]
+    start = steps.start(name)
+    made = [Term(name, start.value, steps.response(name), ZERO, start.why, start.at)]
+    for arc in (network.arcs[at] for at in way.arcs):
+        waits = steps.sampling(arc)
+        made.append(Term(arc.target, waits.value, steps.response(arc.target), steps.link(arc), waits.why, waits.at))
+    return tuple(made)
+
+
+def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> ChainResult:
+    deadline = Value(asked.deadline.value) if asked.deadline else None
+    found = _ways(network, regions, "bound") if regions else None
+    way = next(found.best(), None) if found else None
+    if found is None or way is None:
+        named = tuple(point.id for point in asked.through)
+        return ChainResult(asked.id, named, (), NO_WAY, NO_WAY, NO_WAY, NO_WAY, deadline, "open")
+    bound = _whole(network, found, way, "bound")
+    return ChainResult(
+        id=asked.id,
+        through=(network.names[way.start], *(network.arcs[at].target for at in way.arcs)),
+        terms=terms(network, way),
+        bound=bound,
+        best=_extreme(network, regions, "best"),
+        reduced_reaction=_extreme(network, regions, "reduced reaction"),
+        reduced_age=_extreme(network, regions, "reduced age"),
+        deadline=deadline,
+        verdict=verdict(bound, deadline),
+    )
+
+
+def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "open"]:
+    """Hold a bound against a deadline. What is known may exceed it before all is known."""
+    if deadline is None or deadline.value is None:
+        return "open"
+    if boundless(bound):
+        return "missed"
+    if bound.value is not None and bound.value > deadline.value:
+        return "missed"
+    return "met" if known(bound) else "open"
+
+
+def _ways(network: Network, regions: Sequence[route.Region], aim: Aim) -> Ways:
+    graph, first = network.graph(aim)
+    return ways(graph, first, regions, longest=aim != "best")
+
+
+def _extreme(network: Network, regions: Sequence[route.Region], aim: Aim) -> Value:
+    found = _ways(network, regions, aim)
+    way = next(found.best(), None)
+    return _whole(network, found, way, aim) if way else UNKNOWN
+
+
+def _sum(network: Network, way: Way, aim: Aim) -> Value:
+    parts = list(network.start(network.names[way.start], aim))
+    for at in way.arcs:
+        parts += network.step(network.arcs[at], aim)
+    return total(parts, "at least" if aim == "best" else "at most")
+
+
+def _whole(network: Network, found: Ways, way: Way, aim: Aim) -> Value:
+    """Give the extreme way's sum; it is a bound for all ways only where the other ways are known too."""
+    value = _sum(network, way, aim)
+    if found.cut:
+        value = replace(value, assumptions=(*value.assumptions, _cut_text([network.arcs[at] for at in found.cut])))
+    if aim == "best" or found.count == 1 or boundless(value):
+        return value
+    others = total([part for at in found.arcs() for part in network.step(network.arcs[at], aim)])
+    if others.complete:
+        return value
+    missing = tuple(dict.fromkeys((*value.missing, *others.missing)))
+    return replace(value, complete=False, missing=missing, side="at least")
+
+
+def _cut_text(arcs: Sequence[Arc]) -> str:
+    pairs = [f"{arc.source} > {arc.target}" for arc in arcs[:3]]
+    more = f" and {len(arcs) - 3} more" if len(arcs) > 3 else ""  # noqa: PLR2004 - as many as are named
+    return f"the loops are large: ways that go back along {', '.join(pairs)}{more} are left out"

@@ -1,0 +1,60 @@
+"""What a word from the command line means in timing: an activity, a node, a component, an output, a host, a chain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.model.architecture import Architecture, Waypoint
+from archgen.suggest import closest, did_you_mean
+from archgen.timing.system import System
+
+
+class UnknownNameError(ValueError):
+    """A word names nothing that timing knows of, or several things; the text says what."""
+
+
+def waypoint(architecture: Architecture, system: System, word: str) -> Waypoint:
+    """Find the element of a chain that a word means: complete ids first, then the ends of components and outputs."""
+    if word in system.activities or word in architecture.nodes:
+        return Waypoint("node", word)
+    if word in architecture.components:
+        return Waypoint("component", word)
+    if word in architecture.outputs:
+        return Waypoint("output", word)
+    components = ending(architecture.components, word)
+    outputs = ending(architecture.outputs, word)
+    found = [*components, *outputs]
+    if len(found) == 1:
+        return Waypoint("component" if components else "output", found[0])
+    if found:
+        msg = f"`{word}` may mean {_either(found)}"
+        raise UnknownNameError(msg)
+    known = [*system.activities, *architecture.nodes, *architecture.components, *architecture.outputs]
+    raise UnknownNameError(nothing(word, known))
+
+
+def activities(architecture: Architecture, system: System, word: str) -> tuple[str, ...]:
+    """Find the activities that a word means: one activity, all of a node, all of a component."""
+    from archgen.timing import route
+
+    if word in system.activities:
+        return (word,)
+    point = waypoint(architecture, system, word)
+    return route.points(system, architecture, (point,))[0].activities
+
+
+def ending(ids: Iterable[str], word: str) -> list[str]:
+    """Give the dotted ids that end in some words."""
+    return [name for name in ids if name == word or name.endswith(f".{word}")]
+
+
+def nothing(word: str, known: Iterable[str]) -> str:
+    """Say that a word names nothing, with a guess at what it meant."""
+    names = {part: name for name in known for part in (name.rpartition(".")[2], name)}
+    guess = did_you_mean(word, names) if closest(word, names) else None
+    return f"nothing is called `{word}`" + (f"; {guess}" if guess else "")
+
+
+def _either(found: list[str], most: int = 6) -> str:
+    shown = ", ".join(f"`{name}`" for name in found[:most])
+    return shown + (f" and {len(found) - most} more" if len(found) > most else "")

@@ -1,0 +1,90 @@
+"""The costs of steps as whole numbers, so that ways through thousands of activities are compared exactly and fast."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import lcm
+from typing import Literal
+
+from archgen.timing.analysis import Analysis
+from archgen.timing.paths import Graph, Hop
+from archgen.timing.steps import Steps
+from archgen.timing.sums import boundless, known
+from archgen.timing.system import Arc
+from archgen.timing.value import ZERO, Value
+
+Aim = Literal["bound", "reduced reaction", "reduced age", "best"]
+_UNKNOWN_BITS = 24
+"""Ties are broken by how much is not known: a way with gaps comes before one of the same length without."""
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """A system's activities as vertices, its arcs with their costs for each aim. Costs are made on first use."""
+
+    steps: Steps
+    names: tuple[str, ...]
+    index: dict[str, int]
+    _costs: dict[Aim, tuple[Graph, list[int]]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, analysis: Analysis) -> Network:
+        """Prepare an analysis for questions about ways."""
+        names = tuple(analysis.system.activities)
+        return cls(Steps.of(analysis), names, {name: at for at, name in enumerate(names)})
+
+    @property
+    def arcs(self) -> tuple[Arc, ...]:
+        """Give the system's arcs; `Hop.arc` is an index into them."""
+        return self.steps.analysis.system.arcs
+
+    def graph(self, aim: Aim) -> tuple[Graph, list[int]]:
+        """Give the graph with the costs of an aim, and what each vertex costs as a start."""
+        if aim not in self._costs:
+            self._costs[aim] = self._made(aim)
+        return self._costs[aim]
+
+    def start(self, name: str, aim: Aim) -> tuple[Value, ...]:
+        """Give what the first element of a way adds."""
+        if aim == "best":
+            return (self.steps.response(name, worst=False),)
+        return (self.steps.start(name).value if aim == "bound" else ZERO, self.steps.response(name))
+
+    def step(self, arc: Arc, aim: Aim) -> tuple[Value, ...]:
+        """Give what a step adds: link, sampling (or holding), response."""
+        if aim == "best":
+            return (self.steps.link(arc, worst=False), self.steps.response(arc.target, worst=False))
+        waits = self.steps.holding(arc) if aim == "reduced age" else self.steps.sampling(arc).value
+        return (self.steps.link(arc), waits, self.steps.response(arc.target))
+
+    def _made(self, aim: Aim) -> tuple[Graph, list[int]]:
+        starts = [self.start(name, aim) for name in self.names]
+        steps = [self.step(arc, aim) for arc in self.arcs]
+        weigh = _scale([*starts, *steps])
+        graph: list[list[Hop]] = [[] for _ in self.names]
+        for at, (arc, parts) in enumerate(zip(self.arcs, steps, strict=True)):
+            graph[self.index[arc.source]].append(Hop(self.index[arc.target], weigh(parts), at))
+        return graph, [weigh(parts) for parts in starts]
+
+
+def _scale(rows: list[tuple[Value, ...]]) -> Callable[[tuple[Value, ...]], int]:
+    """Make the function that turns figures into one whole number.
+
+    What is boundless outweighs any sum of what is not; figures that are not known count only where all else is equal.
+    """
+    distinct = {id(value): value for row in rows for value in row}
+    unit = lcm(*(value.value.denominator for value in distinct.values() if value.value is not None))
+    largest = (
+        sum(abs(part.value) for row in rows for part in row if part.value is not None) if distinct else Fraction(0)
+    )
+    beyond = 1 << (int(largest * unit).bit_length() + _UNKNOWN_BITS + 1)
+    weights: dict[int, int] = {}
+    for key, value in distinct.items():
+        if boundless(value):
+            weights[key] = beyond
+        else:
+            exact = value.value.numerator * (unit // value.value.denominator) if value.value is not None else 0
+            weights[key] = (exact << _UNKNOWN_BITS) + (0 if known(value) else 1)
+    return lambda parts: sum(weights[id(part)] for part in parts)

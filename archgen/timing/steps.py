@@ -1,0 +1,164 @@
+"""What each step of a way adds to a latency: waiting to be read, the response, the link (chains are sums of these).
+
+Largest reaction time = largest data age: M. Guenzel et al., "On the Equivalence of Maximum Reaction Time and Maximum Data
+Age for Cause-Effect Chains", ECRTS 2023. For periodic chains the sum is A. Davare et al., "Period Optimization for Hard
+Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each element.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from archgen.source import Span
+from archgen.timing import wording
+from archgen.timing.analysis import Analysis
+from archgen.timing.arrivals import Arrivals
+from archgen.timing.sums import known, nameless, total
+from archgen.timing.system import Activity, Arc
+from archgen.timing.value import UNKNOWN, ZERO, Value
+
+NEVER = Value(None, complete=True, assumptions=("unbounded",))
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """A delay in ns, why there is one, and where that is written."""
+
+    value: Value
+    why: str
+    at: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """The delays of a system's steps."""
+
+    analysis: Analysis
+    arrivals: Arrivals
+    _links: dict[tuple[str | None, int], Value] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, analysis: Analysis) -> Steps:
+        """Prepare an analysis."""
+        return cls(analysis, Arrivals(analysis))
+
+    def start(self, name: str) -> Delay:
+        """Give S0: the gap of an element that samples the world, 0 where its activation is the stimulus."""
+        activity = self.analysis.system.activities[name]
+        if activity.behaviour == "periodic":
+            gap = self.arrivals.gap(name)
+            return Delay(gap, f"samples the world{_each(gap)}", _place(activity, "period", "rate"))
+        if activity.behaviour in {"event", "on_demand"}:
+            thinned = self.arrivals.thinned(activity)
+            return Delay(thinned, f"its event is the stimulus{_thinning(activity)}", activity.at)
+        return _strange(activity)
+
+    def sampling(self, arc: Arc) -> Delay:
+        """Give S of a step: how long a sample may lie before the reader takes it, and before it is sent at all."""
+        waited = self._read(arc)
+        held = self._condition(arc)
+        return waited if held is ZERO else Delay(total((waited.value, held)), waited.why, waited.at)
+
+    def holding(self, arc: Arc) -> Value:
+        """Give H of a step: how old a sample may have become when it is used (again), since it was sent."""
+        reader = self.analysis.system.activities[arc.target]
+        gap = self.arrivals.sent_gap(arc)
+        if not self.arrivals.fires(arc):
+            return gap
+        if self.arrivals.waits_for_all(reader):
+            options = [value for value in (gap, self.arrivals.others(reader, arc)) if known(value)]
+            return min(options, key=lambda value: value.value or Fraction(0)) if options else gap
+        return ZERO if self.arrivals.sole(arc) else gap
+
+    def response(self, name: str, *, worst: bool = True) -> Value:
+        """Give R, the largest response time, or the smallest."""
+        found = self.analysis.responses.get(name)
+        value = (found.worst if worst else found.best) if found else UNKNOWN
+        return nameless(value, name)
+
+    def link(self, arc: Arc, *, worst: bool = True) -> Value:
+        """Give a link's largest (or smallest) latency, as it is written; its own queueing is not in it."""
+        ticks = arc.worst if worst else arc.best
+        if ticks is None:
+            return Value(None, complete=False, missing=self._unlinked(arc))
+        if arc.link is None and not ticks:
+            return ZERO
+        key = (arc.link if worst else None, ticks)
+        if key not in self._links:
+            self._links[key] = self._linked(arc, ticks, worst=worst)
+        return self._links[key]
+
+    def _linked(self, arc: Arc, ticks: int, *, worst: bool) -> Value:
+        value = self.arrivals.time(ticks)
+        load = self.analysis.links.get(arc.link or "")
+        queueing = load.queueing.value if load and worst else None
+        if not queueing:
+            return value
+        covered = f"queueing on link {arc.link} (up to {wording.duration(queueing)}) is within its latency"
+        return replace(value, assumptions=(covered,))
+
+    def _unlinked(self, arc: Arc) -> tuple[str, ...]:
+        """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
+        if arc.link is not None:
+            return (arc.link,)
+        activities = self.analysis.system.activities
+        homeless = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
+        return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
+
+    def _read(self, arc: Arc) -> Delay:
+        reader = self.analysis.system.activities[arc.target]
+        if self.arrivals.fires(arc):
+            return self._triggered(reader, arc)
+        if reader.behaviour is None or reader.behaviour == "once":
+            return _strange(reader)
+        gap = self.arrivals.gap(reader.id)
+        what = "takes the answer of" if arc.role == "answer" else "reads"
+        return Delay(gap, f"{what} {arc.topic}{_each(gap)}", _place(reader, "period", "rate"))
+
+    def _triggered(self, reader: Activity, arc: Arc) -> Delay:
+        if arc.role == "request":
+            return Delay(ZERO, f"called by {arc.topic}", arc.at)
+        others, thinned = self.arrivals.others(reader, arc), self.arrivals.thinned(reader)
+        waits = others if thinned is ZERO else total((others, thinned))
+        waiting = ", waits for its other triggers" if others is not ZERO else ""
+        why = f"triggered by {arc.topic}{waiting}{_thinning(reader)}"
+        return Delay(waits, why, _place(reader, "trigger"))
+
+    def _condition(self, arc: Arc) -> Value:
+        """Give what an output adds that is not published each time: its promised gap, or the assumption that it is."""
+        source = self.analysis.system.activities[arc.source]
+        if arc.role == "request":
+            if source.calls.get(arc.output, 1) >= 1:
+                return ZERO
+            return Value(Fraction(0), assumptions=(f"{arc.source} calls {arc.topic} in this very activation",))
+        if arc.output not in source.conditional:
+            return ZERO
+        promised = source.max_gaps.get(arc.output)
+        if promised is not None:
+            return self.arrivals.time(promised)
+        return Value(Fraction(0), assumptions=(f"{arc.source} publishes {arc.topic} for this very input",))
+
+
+def _strange(activity: Activity) -> Delay:
+    if activity.behaviour == "once":
+        return Delay(NEVER, "works once, at the start: nothing later reaches it", _place(activity, "behaviour"))
+    missing = Value(None, complete=False, missing=(activity.id,))
+    return Delay(missing, "its behaviour is not known", activity.at)
+
+
+def _each(gap: Value) -> str:
+    return f" every {wording.duration(gap.value)} at the latest" if gap.value is not None and known(gap) else ""
+
+
+def _thinning(activity: Activity) -> str:
+    said = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
+    if activity.throttle:
+        said.append("keeps a smallest gap")
+    if activity.jitter:
+        said.append("starts late by its jitter")
+    return f"; {', '.join(said)}" if said else ""
+
+
+def _place(activity: Activity, *keys: str) -> Span:
+    return next((activity.places[key] for key in keys if key in activity.places), activity.at)

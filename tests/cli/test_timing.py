@@ -1,0 +1,162 @@
+"""`archgen timing`: the summary, one chain, why, ways, what if, sensitivity, measured; as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema_rs
+import pytest
+
+from archgen import resources
+from tests.cli.conftest import Run
+
+PROJECT = """\
+archgen: 1
+project: {id: p, title: P}
+groups:
+  drive:
+    components:
+      scanner:
+        outputs: {scan: sensor_msgs/msg/LaserScan}
+        timing: {period: 50 ms, wcet: 5 ms}
+      planner:
+        inputs: {scan: scanner.scan}
+        outputs: {path: nav_msgs/msg/Path}
+        timing: {wcet: 20 ms}
+      base:
+        inputs: {path: planner.path}
+        timing:
+          period: 20 ms
+          wcet: 2 ms
+nodes:
+  scan: {implements: scanner}
+  plan: {implements: planner}
+  drive: {implements: base}
+chains:
+  avoid: {through: [scan, plan, drive], deadline: 90 ms}
+  ends: {through: [scan, drive]}
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    folder = tmp_path / "p"
+    folder.mkdir()
+    (folder / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
+    return folder
+
+
+def _json(run: Run, *words: object) -> Any:  # noqa: ANN401 - plain data
+    ran = run("timing", "--format", "json", *words)
+    data = json.loads(ran.out)
+    schema = json.loads(resources.path("schemas", "timing.schema.json").read_text(encoding="utf-8"))
+    assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
+    return data
+
+
+def test_a_chain_in_json(run: Run, project: Path) -> None:
+    data = _json(run, project)
+    chain = data["chains"]["avoid"]
+    assert chain["through"] == ["scan", "plan", "drive"]
+    assert chain["bound"]["value"] == 50 + 5 + 0 + 20 + 20 + 2
+    assert (chain["deadline"], chain["verdict"]) == (90, "missed")
+    assert [term["sampling"]["value"] for term in chain["terms"]] == [50, 0, 20]
+    assert data["chains"]["ends"]["bound"] == chain["bound"]
+    assert (data["elements"]["plan"]["behaviour"], data["elements"]["plan"]["rate"]["value"]) == ("event", 20)
+
+
+def test_the_summary_names_the_chain_that_is_late(run: Run, project: Path) -> None:
+    ran = run("timing", project)
+    assert ran.status == 0
+    assert "  avoid  97 ms  deadline 90 ms  MISSED" in ran.out
+    assert "  ends   97 ms  no deadline" in ran.out
+
+
+def test_check_warns_of_the_late_chain(run: Run, project: Path) -> None:
+    ran = run("check", project)
+    assert "warning[late-chain]: the chain `avoid` may take 97 ms, its deadline is 90 ms" in ran.out
+
+
+def test_a_chain_term_by_term(run: Run, project: Path) -> None:
+    ran = run("timing", project, "--chain", "avoid")
+    lines = [" ".join(line.split()) for line in ran.out.splitlines()]
+    assert lines[0] == "avoid: scan > plan > drive"
+    assert "scan - 50 ms 5 ms samples the world every 50 ms at the latest (archgen.yaml:8:26)" in lines
+    assert any(
+        line.startswith("drive - 20 ms 2 ms reads /drive/planner/path every 20 ms at the latest") for line in lines
+    )
+    assert "reduced reaction time (from the first sample on) 47 ms" in lines
+
+
+def test_why_goes_back_to_the_sources(run: Run, project: Path) -> None:
+    ran = run("timing", project, "--why", "plan")
+    assert "plan: event (inferred), rate 20 Hz, largest gap 50 ms" in ran.out
+    assert "  scan: periodic, rate 20 Hz, largest gap 50 ms" in ran.out
+    assert "archgen.yaml:8" in ran.out
+    steps = _json(run, project, "--why", "avoid")["steps"]
+    assert steps[0]["text"].startswith("avoid: 97 ms")
+
+
+def test_ways_between_two_elements(run: Run, project: Path) -> None:
+    data = _json(run, project, "--from", "scanner", "--to", "base", "--worst", "3")
+    assert (data["count"], [way["bound"]["value"] for way in data["worst"]]) == (1, [97])
+    ran = run("timing", project, "--from", "scanner", "--to", "base")
+    assert ran.out.startswith("drive.scanner to drive.base: 1 way\n  worst 1: 97 ms   scan > plan > drive\n")
+
+
+def test_what_if_shows_the_effect_and_touches_nothing(run: Run, project: Path) -> None:
+    ran = run("timing", project, "--set", "plan.timing.wcet=10ms", "--set", "scanner.timing.rate=40Hz")
+    assert "  avoid  97 ms -> 62 ms  (-35 ms)  missed -> met" in ran.out
+    assert (project / "archgen.yaml").read_text(encoding="utf-8") == PROJECT
+    data = _json(run, project, "--set", "plan.timing.wcet=10ms")
+    assert [data[key]["chains"]["avoid"]["bound"]["value"] for key in ("present", "changed")] == [97, 87]
+
+
+def test_sensitivity_ranks_what_decides(run: Run, project: Path) -> None:
+    data = _json(run, project, "--sensitivity", "avoid")
+    assert [(gain["figure"], gain["gain"]) for gain in data["gains"]] == [
+        ("scan.timing.period", 5),
+        ("drive.timing.period", 2),
+        ("plan.timing.wcet", 2),
+        ("scan.timing.wcet", 0.5),
+        ("drive.timing.wcet", 0.2),
+    ]
+    (project / "archgen.yaml").write_text(PROJECT.replace("timing: {wcet: 20 ms}", ""), encoding="utf-8")
+    ran = run("timing", project, "--sensitivity", "avoid")
+    assert "execution time of plan" in ran.out
+
+
+def test_what_is_missing_is_said(run: Run, project: Path) -> None:
+    text = PROJECT.replace(", wcet: 5 ms", "").replace("{wcet: 20 ms}", "{}").replace("          wcet: 2 ms\n", "")
+    (project / "archgen.yaml").write_text(text, encoding="utf-8")
+    out = run("timing", project).out
+    assert "  avoid  >= 50 ms  deadline 90 ms  open" in out or "  avoid  >= 70 ms  deadline 90 ms  open" in out
+    assert "(periods only) no bound: execution time of scan, plan, drive unknown" in out
+
+
+def test_measured_names_outliers(run: Run, project: Path, tmp_path: Path) -> None:
+    file = tmp_path / "run.csv"
+    file.write_text("id,rate,wcet\nscan,20 Hz,9 ms\nplan,,\n", encoding="utf-8")
+    ran = run("timing", project, "--measured", file)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.endswith("2 figures measured, 1 outlier:\n  scan: wcet takes longer than the design says\n")
+    assert [row["verdict"] for row in _json(run, project, "--measured", file)["measured"]] == ["as designed", "outlier"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--from", "scan"), "--from and --to belong together"),
+        (("--chain", "avoidd"), "there is no chain `avoidd`; did you mean `avoid`?"),
+        (("--why", "plam"), "nothing is called `plam`; did you mean `plan`?"),
+        (("--set", "plan.timing.wcet=10"), "`wcet` takes a duration"),
+        (("--chain", "avoid", "--why", "plan"), "ask one at a time"),
+        (("--from", "scan", "--to", "nobody"), "nothing is called `nobody`"),
+    ],
+)
+def test_wrong_usage_is_said(run: Run, project: Path, words: tuple[str, ...], said: str) -> None:
+    ran = run("timing", project, *words)
+    assert (ran.status, ran.out) == (2, "")
+    assert said in ran.err

@@ -1,0 +1,130 @@
+"""Ways without listing them, against listing them; and their speed."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from archgen.timing import states
+from archgen.timing.paths import Hop, Region, ways
+
+Arcs = list[tuple[int, int, int]]
+
+
+def _graph(count: int, arcs: Arcs) -> list[list[Hop]]:
+    graph: list[list[Hop]] = [[] for _ in range(count)]
+    for number, (source, target, cost) in enumerate(arcs):
+        graph[source].append(Hop(target, cost, number))
+    return graph
+
+
+def _between(start: int, end: int) -> list[Region]:
+    return [
+        Region(frozenset([start]), inside=False),
+        Region(None, optional=True),
+        Region(frozenset([end]), inside=False),
+    ]
+
+
+def _listed(graph: list[list[Hop]], here: int, end: int, seen: frozenset[int]) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """List all ways that visit nothing twice."""
+    if here == end:
+        yield 0, ()
+        return
+    for hop in graph[here]:
+        if hop.target not in seen:
+            for cost, arcs in _listed(graph, hop.target, end, seen | {hop.target}):
+                yield cost + hop.cost, (hop.arc, *arcs)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_worst_best_and_number_are_those_of_all_ways_listed(seed: int) -> None:
+    dice = random.Random(seed)  # noqa: S311 - a test's dice
+    count = dice.randint(2, 8)
+    pairs = [(a, b) for a in range(count) for b in range(count) if a != b and dice.random() < 0.4]
+    graph = _graph(count, [(a, b, dice.randrange(50)) for a, b in pairs])
+    listed = sorted(_listed(graph, 0, count - 1, frozenset([0])), key=lambda way: -way[0])
+    worst = ways(graph, [7] * count, _between(0, count - 1), longest=True)
+    assert worst.count == len(listed)
+    assert [way.cost for way in worst.best(10**6)] == [cost + 7 for cost, _ in listed]
+    assert {way.arcs for way in worst.best(10**6)} == {arcs for _, arcs in listed}
+    best = ways(graph, [7] * count, _between(0, count - 1), longest=False)
+    assert [way.cost for way in best.best(3)] == [cost + 7 for cost, _ in listed[::-1]][:3]
+    assert worst.cut == ()
+
+
+def test_a_loop_that_is_too_large_is_cut_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(states, "STATES", 3)
+    graph = _graph(4, [(0, 1, 1), (1, 2, 1), (2, 1, 1), (2, 3, 1)])
+    found = ways(graph, [0] * 4, _between(0, 3), longest=True)
+    assert [(way.cost, way.arcs) for way in found.best(9)] == [(3, (0, 1, 3))]
+    assert found.cut == (2,)
+
+
+def test_where_nothing_leads_there_is_no_way() -> None:
+    found = ways(_graph(3, [(0, 1, 1)]), [0] * 3, _between(0, 2), longest=True)
+    assert (found.count, list(found.best(5))) == (0, [])
+
+
+def test_a_way_through_a_set_may_move_inside_it() -> None:
+    # 0 > {1, 2} > 3 with 1 > 2 inside: the worst way takes both.
+    graph = _graph(4, [(0, 1, 1), (0, 2, 1), (1, 2, 10), (1, 3, 1), (2, 3, 1)])
+    route = [Region(frozenset([0]), inside=False), Region(frozenset([1, 2])), Region(frozenset([3]), inside=False)]
+    assert [way.cost for way in ways(graph, [0] * 4, route, longest=True).best(9)] == [12, 2, 2]
+
+
+def test_a_region_is_left_by_its_output_only() -> None:
+    graph = _graph(3, [(0, 1, 5), (0, 1, 3), (1, 2, 1)])
+    route = [
+        Region(frozenset([0]), inside=False, leave=frozenset([1])),
+        Region(None, optional=True),
+        Region(frozenset([2])),
+    ]
+    assert [way.arcs for way in ways(graph, [0] * 3, route, longest=True).best(9)] == [(1, 2)]
+
+
+def _layers(wide: int, deep: int, each: int) -> list[list[Hop]]:
+    dice = random.Random(5)  # noqa: S311 - a test's dice
+    arcs = [
+        (layer * wide + at, (layer + 1) * wide + other, dice.randrange(10**9))
+        for layer in range(deep - 1)
+        for at in range(wide)
+        for other in dice.sample(range(wide), each)
+    ]
+    return _graph(wide * deep, arcs)
+
+
+def _quickest(work: object) -> float:
+    """Take the quickest of three runs: others share the machine."""
+    found = []
+    for _ in range(3):
+        start = time.perf_counter()
+        work()  # type: ignore[operator]
+        found.append(time.perf_counter() - start)
+    return min(found)
+
+
+def test_the_worst_of_more_than_1e8_ways_are_found_at_once() -> None:
+    graph = _layers(15, 20, 3)
+    ends = [Region(frozenset(range(15)), inside=False), Region(None, optional=True), Region(frozenset(range(285, 300)))]
+    found = ways(graph, [0] * 300, ends, longest=True)
+    assert sum(map(len, graph)) == 855
+    assert found.count > 10**8
+    costs = [way.cost for way in found.best(100)]
+    assert len(costs) == 100
+    assert costs == sorted(costs, reverse=True)
+    assert _quickest(lambda: list(ways(graph, [0] * 300, ends, longest=True).best(100))) < 0.1
+
+
+def test_ten_thousand_elements_take_a_moment() -> None:
+    graph = _layers(100, 100, 3)
+    ends = [
+        Region(frozenset(range(100)), inside=False),
+        Region(None, optional=True),
+        Region(frozenset(range(9900, 10_000))),
+    ]
+    assert ways(graph, [0] * 10_000, ends, longest=True).count > 10**40
+    assert _quickest(lambda: next(ways(graph, [0] * 10_000, ends, longest=True).best())) < 1
