@@ -88,3 +88,8 @@ def _fraction(text: str) -> Fraction | None:
         return Fraction(text) if len(text) <= _NUMBER_LENGTH else None
     except (ValueError, ZeroDivisionError):
         return None
+
+
+def senseless(timing: Timing, element: str) -> Iterator[Diagnostic]:
+    """Say what makes no sense in a timing, wherever its figures come from."""
+    return (finding for _, finding in sense.senseless(timing, element))

@@ -22,7 +22,7 @@ _UNKNOWN = "leave it out where it is not known"
 def sound(timing: Timing, element: str, found: list[Diagnostic]) -> Timing:
     """Report what makes no sense in a timing, and give the rest of it."""
     dropped: dict[str, Any] = {}
-    for key, finding in _senseless(timing, element):
+    for key, finding in senseless(timing, element):
         found.append(finding)
         dropped[key] = None
     return replace(timing, **dropped) if dropped else timing
@@ -55,8 +55,8 @@ def latency(of: Table, element: str, found: list[Diagnostic]) -> tuple[Quantity 
     return None, worst
 
 
-def _senseless(timing: Timing, element: str) -> Iterator[tuple[str, Diagnostic]]:
-    """Give the keys to leave out, and why."""
+def senseless(timing: Timing, element: str) -> Iterator[tuple[str, Diagnostic]]:
+    """Say what makes no sense in a timing: the keys to leave out, and why."""
     places = timing.places
     for key, quantity in (("period", timing.period), ("rate", timing.rate)):
         if quantity is not None and quantity.value == 0:
