@@ -192,6 +192,7 @@ def _sensitivity(asked: Asked, name: str) -> None:
 
 def _measured(asked: Asked, file: Path) -> None:
     from archgen.findings import timing_asked
+    from archgen.project import measured as reading
     from archgen.timing import measured
     from archgen.timing.analyse import analyse
 
@@ -201,10 +202,11 @@ def _measured(asked: Asked, file: Path) -> None:
         except UnicodeDecodeError:
             _wrong(f"{file} is not UTF-8 text")
     asked.checked.sources.add(str(file), text)
-    observed, unread = measured.read(str(file), text)
+    observed, unread = reading.read(str(file), text)
     compared, unknown = measured.compare(analyse(asked.architecture), observed)
     problems = _settled((*unread, *unknown))
-    run.lines(problems, asked.checked, sys.stderr)
+    if problems:
+        run.lines(problems, asked.checked, sys.stderr)
     if asked.as_json:
         _json(timing_asked.measured_json(compared))
     else:

@@ -11,6 +11,7 @@ from archgen.timing.analysis import Analysis, ChainResult, Term
 from archgen.timing.chains import Found
 from archgen.timing.rounds import Round
 from archgen.timing.value import Value
+from archgen.timing.why import behaviour
 
 _SIGNS = {"met": "met", "missed": "MISSED", "open": "open"}
 Row = Sequence[str]
@@ -56,7 +57,7 @@ def _link_rows(analysis: Analysis) -> Iterator[Row]:
 def _element_rows(analysis: Analysis) -> Iterator[Row]:
     for name in analysis.system.activities:
         pace, response = analysis.paces[name], analysis.responses[name]
-        how = (pace.behaviour or "unknown") + (" (inferred)" if pace.inferred and pace.behaviour else "")
+        how = behaviour(analysis.system.activities[name], pace)
         rate, gap = figure(pace.rate, wording.rate), figure(pace.gap)
         yield name, how, rate, f"gap {gap}", f"response {figure(response.worst)} ({response.tier})"
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from archgen.link.declare_timing import senseless
+from archgen.diagnostic import Diagnostic
+from archgen.link.sense import sound
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.quantity import UNITS, parse
@@ -144,6 +145,8 @@ def _judge(architecture: Architecture) -> None:
     """Refuse what no file may say either."""
     for node in architecture.nodes.values():
         for timing in node.timing.values():
-            known = {key: timing.places.get(key, timing.at) for key in KEYS}
-            for wrong in senseless(replace(timing, places=known), node.id):
+            places = {key: timing.places.get(key, timing.at) for key in KEYS}
+            found: list[Diagnostic] = []
+            sound(replace(timing, places=places), node.id, found)
+            for wrong in found:
                 raise OverrideError(f"{node.id}: {wrong.message}" + (f"; {wrong.help}" if wrong.help else ""))

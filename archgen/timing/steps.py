@@ -75,6 +75,8 @@ class Steps:
         """Give R, the largest response time, or the smallest."""
         found = self.analysis.responses.get(name)
         value = (found.worst if worst else found.best) if found else UNKNOWN
+        if worst and found and found.tier == "declared":
+            value = replace(value, assumptions=(f"the response of {name} is as declared",))
         return nameless(value, name)
 
     def link(self, arc: Arc, *, worst: bool = True) -> Value:

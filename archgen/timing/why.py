@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 from archgen.source import NOWHERE, Span
 from archgen.timing import wording
-from archgen.timing.analysis import Analysis, ChainResult, Reason
+from archgen.timing.analysis import Analysis, ChainResult, Pace, Reason
 from archgen.timing.arrivals import Arrivals
 from archgen.timing.sums import known
+from archgen.timing.system import Activity
 from archgen.timing.value import Value
 
 _WRITERS: Mapping[str, Callable[[Fraction], str]] = {
@@ -89,7 +90,7 @@ def of_link(analysis: Analysis, name: str) -> Iterator[Line]:
 
 def _activity(analysis: Analysis, name: str, depth: int, *, rate_only: bool = False) -> Iterator[Line]:
     pace, response = analysis.paces[name], analysis.responses[name]
-    how = f"{pace.behaviour or 'unknown'}{' (inferred)' if pace.inferred else ''}"
+    how = behaviour(analysis.system.activities[name], pace)
     text = f"{name}: {how}, rate {_said(pace.rate, 'rate')}, largest gap {_said(pace.gap)}"
     yield Line(depth, text, _place(analysis, name))
     yield from _reasons(pace.reasons, depth + 1)
@@ -97,6 +98,12 @@ def _activity(analysis: Analysis, name: str, depth: int, *, rate_only: bool = Fa
         takes = f"response between {_said(response.best)} and {_said(response.worst)} ({response.tier})"
         yield Line(depth, f"{name}: {takes}")
         yield from _reasons(response.reasons, depth + 1)
+
+
+def behaviour(activity: Activity, pace: Pace) -> str:
+    """Name a behaviour, and say where nobody wrote it (a written period is as good)."""
+    inferred = activity.behaviour_inferred and activity.period is None and pace.behaviour
+    return f"{pace.behaviour or 'unknown'}{' (inferred)' if inferred else ''}"
 
 
 def _reasons(reasons: Iterable[Reason], depth: int) -> Iterator[Line]:

@@ -8,7 +8,7 @@ from archgen.timing.value import Value
 
 _DURATIONS = ((3600 * 10**9, "h"), (60 * 10**9, "min"), (10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 _LARGEST_MS = 10**4
-_DIGITS = 4
+_DIGITS = 3
 
 
 def duration(ns: Fraction) -> str:
@@ -26,7 +26,8 @@ def rate(hertz: Fraction) -> str:
 
 def share(part: Fraction) -> str:
     """Write a share in per cent."""
-    return f"{number(100 * part)} %"
+    tenths = round(1000 * part)
+    return f"{number(Fraction(tenths, 10)) if tenths else number(100 * part)} %"
 
 
 def size(count: Fraction) -> str:
@@ -38,13 +39,14 @@ def size(count: Fraction) -> str:
 
 
 def number(value: Fraction) -> str:
-    """Write a number with four digits behind the point at most, and none that is not needed."""
+    """Write a number with three digits behind the point at most, none that is not needed; `~` where it was rounded."""
     scaled = round(value * 10**_DIGITS)
     if scaled == 0 and value:
-        return f"{float(value):.2g}"
+        return f"~{float(value):.2g}"
     whole, rest = divmod(abs(scaled), 10**_DIGITS)
     digits = f"{rest:0{_DIGITS}}".rstrip("0")
-    return ("-" if scaled < 0 else "") + f"{whole}" + (f".{digits}" if digits else "")
+    about = "" if scaled == value * 10**_DIGITS else "~"
+    return about + ("-" if scaled < 0 else "") + f"{whole}" + (f".{digits}" if digits else "")
 
 
 def listed(names: tuple[str, ...], most: int = 6) -> str:

@@ -92,7 +92,7 @@ def test_a_chain_term_by_term(run: Run, project: Path) -> None:
 
 def test_why_goes_back_to_the_sources(run: Run, project: Path) -> None:
     ran = run("timing", project, "--why", "plan")
-    assert "plan: event (inferred), rate 20 Hz, largest gap 50 ms" in ran.out
+    assert "plan: event (inferred), rate 20 Hz, largest gap 55 ms" in ran.out
     assert "  scan: periodic, rate 20 Hz, largest gap 50 ms" in ran.out
     assert "archgen.yaml:8" in ran.out
     steps = _json(run, project, "--why", "avoid")["steps"]

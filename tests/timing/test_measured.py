@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+from archgen.project.measured import read
 from archgen.timing.analysis import Pace
-from archgen.timing.measured import compare, read
+from archgen.timing.measured import compare
 from archgen.timing.value import Value
 from tests.timing.made import MS, analysis, arc, ms, periodic
 
