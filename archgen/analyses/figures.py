@@ -32,8 +32,9 @@ def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
               camera: {outputs: {image: sensor_msgs/msg/Image}}
               viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
         nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz, wcet: 80 ms}}
-          viewer: {implements: viewer}
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 80 ms}}
+          viewer: {implements: viewer, host: pc}
+        hosts: {pc: {cores: 4}}
 
     Good:
         groups:
@@ -42,8 +43,9 @@ def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
               camera: {outputs: {image: sensor_msgs/msg/Image}}
               viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
         nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz, wcet: 8 ms}}
-          viewer: {implements: viewer}
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms}}
+          viewer: {implements: viewer, host: pc}
+        hosts: {pc: {cores: 4}}
     """
     yield from _above_period(architecture, "wcet", "the worst case execution time", "long-execution")
 

@@ -125,11 +125,17 @@ LEGAL = "(this is legal: correct it only where a figure or a unit is wrong)"
     ],
 )
 def test_more_than_a_period_is_legal_and_noted(timing: str, finding: str) -> None:
-    assert found(f"    timing: {{{timing}}}\n") == [f"note {finding}"]
+    hosted = f"    timing: {{{timing}}}\n    host: pc\nhosts: {{pc: {{cores: 4}}}}\n"
+    assert found(hosted) == [f"note {finding}"]
 
 
 def test_a_whole_period_is_not_even_noted() -> None:
-    assert found("    timing: {rate: 100 Hz, jitter: 10 ms, wcet: 10 ms, bcet: 0 ms}\n") == []
+    assert (
+        found(
+            "    timing: {rate: 100 Hz, jitter: 10 ms, wcet: 10 ms, bcet: 0 ms}\n    host: pc\nhosts: {pc: {cores: 4}}\n"
+        )
+        == []
+    )
 
 
 def test_what_a_node_writes_for_two_components_is_noted_once() -> None:
@@ -141,7 +147,8 @@ groups:
       camera: {outputs: {image: sensor_msgs/msg/Image}}
       seer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
 nodes:
-  both: {implements: [camera, seer], timing: {period: 5 ms, wcet: 9 ms}}
+  both: {implements: [camera, seer], host: pc, timing: {period: 5 ms, wcet: 9 ms}}
+hosts: {pc: {cores: 8}}
 """
     assert [f"{d.span.line} {d.rule}" for d in check_text(text)] == ["9 long-execution"]
 
