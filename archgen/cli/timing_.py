@@ -124,7 +124,9 @@ def _summary(asked: Asked) -> None:
 
 def _chain(asked: Asked, name: str) -> None:
     from archgen.findings import timing_json, timing_text
+    from archgen.timing import chains as chains_of
     from archgen.timing import duerr
+    from archgen.timing.network import Network
 
     analysis, chains = _computed(asked.architecture)
     result = _known(chains, name)
@@ -132,7 +134,8 @@ def _chain(asked: Asked, name: str) -> None:
     if asked.as_json:
         _json({"version": timing_json.VERSION, "chain": name, **timing_json.chain(result)})
     else:
-        _lines(timing_text.chain(result, published))
+        age = chains_of.data_age(Network.of(analysis), result)
+        _lines(timing_text.chain(result, age, published))
 
 
 def _why(asked: Asked, word: str) -> None:

@@ -78,13 +78,16 @@ def _faults(analysis: Analysis) -> Iterator[str]:
         yield f"diverged: no bound was found for {wording.listed(analysis.diverged)}"
 
 
-def chain(result: ChainResult, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
-    """Give a chain term by term, with the reason and the place of each."""
+def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
+    """Give a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
     yield from table(_term_rows(result.terms))
     yield ""
-    rows = [
-        ("largest reaction time = largest data age", figure(result.bound), gaps(result)),
+    rows: list[Row] = [("largest reaction time = largest data age", figure(result.bound), gaps(result))]
+    if age != result.bound:
+        rows = [("largest reaction time, from the event on", figure(result.bound), gaps(result))]
+        rows.append(("largest data age, until the next event's comes", figure(age), without(age)))
+    rows += [
         ("reduced reaction time (from the first sample on)", figure(result.reduced_reaction)),
         ("reduced data age (when the last element sends)", figure(result.reduced_age)),
         ("best case", figure(result.best)),

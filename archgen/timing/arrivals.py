@@ -41,7 +41,16 @@ class Arrivals:
     def sent_gap(self, arc: Arc) -> Value:
         """Give the largest gap between two messages, where they are sent."""
         pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
-        return nameless(pace.gap if pace else UNKNOWN, arc.source)
+        gap = nameless(pace.gap if pace else UNKNOWN, arc.source)
+        if arc.output in self.analysis.system.activities[arc.source].conditional and known(gap):
+            return _largest((gap, self._done_gap(arc.source)))  # no promise is kept more often than there is a chance
+        return gap
+
+    def _done_gap(self, name: str) -> Value:
+        """Give the largest gap between two ends of an activity: that of its activations, and R - B."""
+        response = self.analysis.responses[name]
+        best = Value(-(response.best.value or Fraction(0)))
+        return total((self.gap(name), nameless(response.worst, name), best))
 
     def waits_for_all(self, activity: Activity) -> bool:
         """Tell whether several triggers must have come before an activity fires."""

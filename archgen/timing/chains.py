@@ -98,6 +98,17 @@ def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> 
     )
 
 
+def data_age(network: Network, result: ChainResult) -> Value:
+    """Give the largest age of what a chain makes of a sample, until the next one replaces it.
+
+    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be a
+    gap away, and that comes on top.
+    """
+    if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
+        return result.bound
+    return total((result.bound, network.steps.arrivals.gap(result.through[0])))
+
+
 def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "open"]:
     """Hold a bound against a deadline. What is known may exceed it before all is known."""
     if deadline is None or deadline.value is None:
