@@ -50,13 +50,12 @@ _JUDGES = (
     *type_mapping.RULES,
     *chains.RULES,
     *figures.RULES,
-    *latency.RULES,
     *policies.RULES,
     *selectors.RULES,
     *progress.RULES,
 )
 
-_TIMED_JUDGES = (*timing.RULES, *load.RULES)
+_TIMED_JUDGES = (*timing.RULES, *load.RULES, *latency.RULES)
 """These also take what follows from the architecture's timing, which is found once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))

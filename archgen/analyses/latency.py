@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.timing import wording
-from archgen.timing.analyse import analyse
 from archgen.timing.chains import chains
 from archgen.timing.sums import boundless, known
 
@@ -14,10 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
-    from archgen.timing.analysis import ChainResult, Term
+    from archgen.timing.analysis import Analysis, ChainResult, Term
 
 
-def late_chain(architecture: Architecture) -> Iterator[Diagnostic]:
+def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """The latency of a chain may exceed its deadline.
 
     Why: The bound adds up, for each element of the chain, the longest that a sample waits to be read, the longest
@@ -58,7 +57,7 @@ def late_chain(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     if not any(chain.deadline for chain in architecture.chains.values()):
         return
-    for name, result in chains(analyse(architecture), architecture).items():
+    for name, result in chains(analysis, architecture).items():
         chain = architecture.chains[name]
         if result.verdict != "missed" or chain.deadline is None:
             continue

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -259,9 +258,13 @@ def _wrong(text: str) -> NoReturn:
 
 
 def _json(document: object) -> None:
-    click.echo(json.dumps(document, ensure_ascii=False, indent=2))
+    from archgen.findings.escape import json_text
+
+    click.echo(json_text(document), nl=False)
 
 
 def _lines(lines: Iterable[str]) -> None:
+    from archgen.findings.escape import visible
+
     for line in lines:
-        click.echo(line)
+        click.echo(visible(line))

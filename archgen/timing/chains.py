@@ -72,7 +72,7 @@ def terms(network: Network, way: Way) -> tuple[Term, ...]:
     start = steps.start(name)
     made = [Term(name, start.value, steps.response(name), ZERO, start.why, start.at)]
     for arc in (network.arcs[at] for at in way.arcs):
-        waits = steps.sampling(arc)
+        waits = steps.delay(arc)
         made.append(Term(arc.target, waits.value, steps.response(arc.target), steps.link(arc), waits.why, waits.at))
     return tuple(made)
 

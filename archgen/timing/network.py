@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from fractions import Fraction
 from math import lcm
 from typing import Literal
 
@@ -56,7 +55,7 @@ class Network:
         """Give what a step adds: link, sampling (or holding), response."""
         if aim == "best":
             return (self.steps.link(arc, worst=False), self.steps.response(arc.target, worst=False))
-        waits = self.steps.holding(arc) if aim == "reduced age" else self.steps.sampling(arc).value
+        waits = self.steps.holding(arc) if aim == "reduced age" else self.steps.sampling(arc)
         return (self.steps.link(arc), waits, self.steps.response(arc.target))
 
     def _made(self, aim: Aim) -> tuple[Graph, list[int]]:
@@ -76,15 +75,14 @@ def _scale(rows: list[tuple[Value, ...]]) -> Callable[[tuple[Value, ...]], int]:
     """
     distinct = {id(value): value for row in rows for value in row}
     unit = lcm(*(value.value.denominator for value in distinct.values() if value.value is not None))
-    largest = (
-        sum(abs(part.value) for row in rows for part in row if part.value is not None) if distinct else Fraction(0)
-    )
-    beyond = 1 << (int(largest * unit).bit_length() + _UNKNOWN_BITS + 1)
-    weights: dict[int, int] = {}
-    for key, value in distinct.items():
-        if boundless(value):
-            weights[key] = beyond
-        else:
-            exact = value.value.numerator * (unit // value.value.denominator) if value.value is not None else 0
-            weights[key] = (exact << _UNKNOWN_BITS) + (0 if known(value) else 1)
-    return lambda parts: sum(weights[id(part)] for part in parts)
+    exact = {
+        key: value.value.numerator * (unit // value.value.denominator) if value.value is not None else 0
+        for key, value in distinct.items()
+    }
+    largest = max((abs(number) for number in exact.values()), default=0) * sum(map(len, rows))
+    beyond = 1 << (largest.bit_length() + _UNKNOWN_BITS + 1)
+    weights = {
+        key: beyond if boundless(value) else (exact[key] << _UNKNOWN_BITS) + (0 if known(value) else 1)
+        for key, value in distinct.items()
+    }
+    return lambda parts: sum([weights[id(part)] for part in parts])

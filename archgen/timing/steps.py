@@ -54,11 +54,24 @@ class Steps:
             return Delay(thinned, f"its event is the stimulus{_thinning(activity)}", activity.at)
         return _strange(activity)
 
-    def sampling(self, arc: Arc) -> Delay:
+    def sampling(self, arc: Arc) -> Value:
         """Give S of a step: how long a sample may lie before the reader takes it, and before it is sent at all."""
-        waited = self._read(arc)
-        held = self._condition(arc)
-        return waited if held is ZERO else Delay(total((waited.value, held)), waited.why, waited.at)
+        waited, held = self._reading(arc), self._condition(arc)
+        return waited if held is ZERO else total((waited, held))
+
+    def delay(self, arc: Arc) -> Delay:
+        """Give S of a step with its reason and its place."""
+        reader, value = self.analysis.system.activities[arc.target], self.sampling(arc)
+        if arc.role == "request":
+            return Delay(value, f"called by {arc.topic}", arc.at)
+        if self.arrivals.fires(arc):
+            waiting = ", waits for its other triggers" if self.arrivals.others(reader, arc) is not ZERO else ""
+            return Delay(value, f"triggered by {arc.topic}{waiting}{_thinning(reader)}", _place(reader, "trigger"))
+        if reader.behaviour is None or reader.behaviour == "once":
+            return _strange(reader)
+        what = "takes the answer of" if arc.role == "answer" else "reads"
+        why = f"{what} {arc.topic}{_each(self.arrivals.gap(reader.id))}"
+        return Delay(value, why, _place(reader, "period", "rate"))
 
     def holding(self, arc: Arc) -> Value:
         """Give H of a step: how old a sample may have become when it is used (again), since it was sent."""
@@ -108,24 +121,16 @@ class Steps:
         homeless = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
         return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
-    def _read(self, arc: Arc) -> Delay:
+    def _reading(self, arc: Arc) -> Value:
         reader = self.analysis.system.activities[arc.target]
         if self.arrivals.fires(arc):
-            return self._triggered(reader, arc)
+            if arc.role == "request":
+                return ZERO
+            others, thinned = self.arrivals.others(reader, arc), self.arrivals.thinned(reader)
+            return others if thinned is ZERO else total((others, thinned))
         if reader.behaviour is None or reader.behaviour == "once":
-            return _strange(reader)
-        gap = self.arrivals.gap(reader.id)
-        what = "takes the answer of" if arc.role == "answer" else "reads"
-        return Delay(gap, f"{what} {arc.topic}{_each(gap)}", _place(reader, "period", "rate"))
-
-    def _triggered(self, reader: Activity, arc: Arc) -> Delay:
-        if arc.role == "request":
-            return Delay(ZERO, f"called by {arc.topic}", arc.at)
-        others, thinned = self.arrivals.others(reader, arc), self.arrivals.thinned(reader)
-        waits = others if thinned is ZERO else total((others, thinned))
-        waiting = ", waits for its other triggers" if others is not ZERO else ""
-        why = f"triggered by {arc.topic}{waiting}{_thinning(reader)}"
-        return Delay(waits, why, _place(reader, "trigger"))
+            return _strange(reader).value
+        return self.arrivals.gap(reader.id)
 
     def _condition(self, arc: Arc) -> Value:
         """Give what an output adds that is not published each time: its promised gap, or the assumption that it is."""
