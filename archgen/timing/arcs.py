@@ -11,6 +11,7 @@ from archgen.model.deployment import Link
 from archgen.model.node import Endpoint, Topic
 from archgen.model.qos import PROFILES
 from archgen.source import NOWHERE, Span
+from archgen.timing import sizes
 from archgen.timing.activities import Names, key, owner
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import Ticks
@@ -29,6 +30,7 @@ def arcs(architecture: Architecture, named: Names, made: Mapping[str, Activity],
         made,
         cache(_Routes(architecture, unit)),
         {(edge.output, edge.input): edge.at for edge in architecture.edges},
+        sizes.carried(architecture),
     )
     return tuple(arc for topic in architecture.topics.values() for arc in joining.of_topic(topic))
 
@@ -42,20 +44,20 @@ class _Joining:
     made: Mapping[str, Activity]
     route: Callable[[str | None, str | None], Route]
     places: Mapping[tuple[str, str], Span]
+    size: Callable[[Endpoint, sizes.Role], int | None]
 
     def of_topic(self, topic: Topic) -> Iterator[Arc]:
-        size = None if topic.size is None else int(topic.size.value)
         for reader in topic.readers:
             for writer in topic.writers:
                 # What all nodes share would join all of them: there only what an input names counts.
                 if topic.shared and writer.port not in reader.sources:
                     continue
-                data = replace(self._data(topic, writer, reader), size=size)
+                data = self._data(topic, writer, reader)
                 if topic.flow == "topic":
-                    yield data
+                    yield replace(data, size=self.size(writer, "data"))
                 else:
-                    yield self._request(data)
-                    yield replace(data, role="answer")
+                    yield replace(self._request(data), size=self.size(writer, "request"))
+                    yield replace(data, role="answer", size=self.size(writer, "answer"))
 
     def _data(self, topic: Topic, writer: Endpoint, reader: Endpoint) -> Arc:
         source, target = (owner(self.architecture, self.named, end) for end in (writer, reader))

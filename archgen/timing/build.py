@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
+from archgen.timing import sizes
 from archgen.timing.activities import activities, key, names, owner
 from archgen.timing.analysis import Reason
 from archgen.timing.arcs import arcs
@@ -45,11 +46,7 @@ def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
             for name, topic in architecture.topics.items()
             if topic.flow == "topic"
         },
-        sizes={
-            name: int(topic.size.value) if topic.size else None
-            for name, topic in architecture.topics.items()
-            if topic.flow == "topic"
-        },
+        sizes=sizes.of_topics(architecture),
     )
     return built, notes
 

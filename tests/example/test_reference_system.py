@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,9 @@ import pytest
 from archgen import pipeline
 from archgen.model.architecture import Architecture
 from archgen.timing import sizes
+from archgen.timing.analyse import analyse
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains import chains
 
 FOLDER = Path(__file__).parents[2] / "examples" / "reference_system"
 READERS = {
@@ -81,3 +85,65 @@ def test_queues_hold_one_sample_but_for_the_ends(architecture: Architecture) -> 
 def test_the_message_has_4096_bytes_and_4_in_front(architecture: Architecture) -> None:
     assert sizes.size("reference_interfaces/msg/Message4kb", architecture.interfaces).bytes == 4096 + 4
     assert sizes.of(architecture)("reference_interfaces/msg/Message4kb", "Sample") == 4096
+
+
+@pytest.fixture(scope="module")
+def analysis(architecture: Architecture) -> Analysis:
+    return analyse(architecture)
+
+
+def test_rates(analysis: Analysis) -> None:
+    by_rate = {
+        Fraction(25, 3): {
+            "point_cloud_map",
+            "point_cloud_map_loader",
+            "ndt_localizer",
+            "lanelet2_global_planner",
+            "lanelet2_map_loader",
+            "parking_planner",
+            "lane_planner",
+        },
+        Fraction(50, 3): {"visualizer"},
+        Fraction(40): {
+            "euclidean_cluster_settings",
+            "euclidean_cluster_detector.intersection",
+            "intersection_output",
+        },
+    }
+    wanted = {name: rate for rate, names in by_rate.items() for name in names}
+    assert len(analysis.paces) == 25
+    assert {name: pace.rate.value for name, pace in analysis.paces.items()} == {
+        name: wanted.get(name, Fraction(10)) for name in analysis.paces
+    }
+
+
+def test_traffic(analysis: Analysis) -> None:
+    assert sum(topic.published.value or 0 for topic in analysis.topics.values()) == 1_167_360
+    assert sum(topic.delivered.value or 0 for topic in analysis.topics.values()) == Fraction(4_157_440, 3)
+
+
+def test_processor_cores_in_use(analysis: Analysis) -> None:
+    tick, second = analysis.system.tick, 10**9
+    used = Fraction(0)
+    for name, activity in analysis.system.activities.items():
+        rate = analysis.paces[name].rate.value
+        assert rate is not None
+        assert activity.wcet is not None
+        used += rate * activity.wcet * tick / second
+    assert used == Fraction(19, 10)
+
+
+@pytest.mark.parametrize("name", ["hot_path_front", "hot_path_rear"])
+def test_the_hot_path(architecture: Architecture, analysis: Analysis, name: str) -> None:
+    ms = Fraction(10**6)
+    found = chains(analysis, architecture)[name]
+    assert (found.best.value, found.bound.value) == (50 * ms, 250 * ms)
+    assert found.bound.complete
+    assert [(term.sampling.value, term.response.value) for term in found.terms] == [
+        (100 * ms, 0 * ms),
+        (0 * ms, 10 * ms),
+        (100 * ms, 10 * ms),
+        (0 * ms, 10 * ms),
+        (0 * ms, 10 * ms),
+        (0 * ms, 10 * ms),
+    ]
