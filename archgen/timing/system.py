@@ -92,3 +92,9 @@ class System:
     out_of: Mapping[str, tuple[Arc, ...]]
     external: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Inputs of each activity that are fed from outside of the architecture."""
+    cores: Mapping[str, int | None] = field(default_factory=dict)
+    """Cores of each host, None where nobody wrote them."""
+    threads: Mapping[str, int | None] = field(default_factory=dict)
+    """Threads of each container."""
+    bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
+    """Bandwidth of each link, in B/s."""

@@ -1,0 +1,123 @@
+"""Arcs: along which data passes between activities, over which link, and how long that takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Link
+from archgen.model.node import Endpoint, Topic
+from archgen.source import NOWHERE, Span
+from archgen.timing.activities import Names, key, owner
+from archgen.timing.system import Activity, Arc
+from archgen.timing.ticks import Ticks
+
+Route = tuple[str | None, int | None, int | None]
+"""A link (None on one host), and its best and worst latency in ticks."""
+_HERE: Route = (None, 0, 0)
+_NO_WAY: Route = (None, None, None)
+
+
+def arcs(architecture: Architecture, named: Names, made: Mapping[str, Activity], unit: Ticks) -> tuple[Arc, ...]:
+    """Join writers with readers, topic by topic; services and actions both ways."""
+    joining = _Joining(
+        architecture,
+        named,
+        made,
+        cache(_Routes(architecture, unit)),
+        {(edge.output, edge.input): edge.at for edge in architecture.edges},
+    )
+    return tuple(arc for topic in architecture.topics.values() for arc in joining.of_topic(topic))
+
+
+@dataclass(frozen=True, slots=True)
+class _Joining:
+    """What is looked up for each pair of a writer and a reader."""
+
+    architecture: Architecture
+    named: Names
+    made: Mapping[str, Activity]
+    route: Callable[[str | None, str | None], Route]
+    places: Mapping[tuple[str, str], Span]
+
+    def of_topic(self, topic: Topic) -> Iterator[Arc]:
+        size = None if topic.size is None else int(topic.size.value)
+        for reader in topic.readers:
+            for writer in topic.writers:
+                # What all nodes share would join all of them: there only what an input names counts.
+                if topic.shared and writer.port not in reader.sources:
+                    continue
+                data = replace(self._data(topic, writer, reader), size=size)
+                if topic.flow == "topic":
+                    yield data
+                else:
+                    yield self._request(data)
+                    yield replace(data, role="answer")
+
+    def _data(self, topic: Topic, writer: Endpoint, reader: Endpoint) -> Arc:
+        source, target = (owner(self.architecture, self.named, end) for end in (writer, reader))
+        link, best, worst = self.route(self.made[source].host, self.made[target].host)
+        port = self.architecture.inputs.get(reader.port or "")
+        qos = reader.qos
+        return Arc(
+            source=source,
+            output=key(writer),
+            target=target,
+            input=key(reader),
+            topic=topic.name,
+            flow=topic.flow,
+            link=link,
+            best=best,
+            worst=worst,
+            depth=None if qos.history == "keep_all" else qos.depth,
+            optional=bool(port and port.optional),
+            at=self._place(writer, reader),
+        )
+
+    def _request(self, answer: Arc) -> Arc:
+        link, best, worst = self.route(self.made[answer.target].host, self.made[answer.source].host)
+        return replace(
+            answer,
+            source=answer.target,
+            output=answer.input,
+            target=answer.source,
+            input=answer.output,
+            role="request",
+            link=link,
+            best=best,
+            worst=worst,
+        )
+
+    def _place(self, writer: Endpoint, reader: Endpoint) -> Span:
+        """Give the reference that joins the two; what only meets on a topic is joined where the reader was written."""
+        found = self.places.get((writer.port or "", reader.port or ""))
+        if found is not None:
+            return found
+        port = self.architecture.inputs.get(reader.port or "")
+        return reader.at if reader.at != NOWHERE or port is None else port.at
+
+
+class _Routes:
+    """Finds the link between two hosts: of several the one with the least worst latency."""
+
+    def __init__(self, architecture: Architecture, unit: Ticks) -> None:
+        self._links = tuple(architecture.links.values())
+        self._unit = unit
+
+    def __call__(self, here: str | None, there: str | None) -> Route:
+        """Give the way between hosts. Where neither end has a host, both are taken to be on one; where one has, nobody knows."""
+        if here == there:
+            return _HERE
+        if here is None or there is None:
+            return _NO_WAY
+        joining = [link for link in self._links if here in link.connects and there in link.connects]
+        if not joining:
+            return _NO_WAY
+        link = min(joining, key=_slowness)
+        return link.id, self._unit.of(link.best), self._unit.of(link.worst)
+
+
+def _slowness(link: Link) -> tuple[bool, object]:
+    return (link.worst is None, link.worst.value if link.worst else 0)

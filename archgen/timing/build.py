@@ -1,0 +1,56 @@
+"""Build a system from an architecture: its activities and the arcs between them, with all durations in one unit."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from archgen.model.architecture import Architecture
+from archgen.timing.activities import activities, names
+from archgen.timing.analysis import Reason
+from archgen.timing.arcs import arcs
+from archgen.timing.system import Activity, Arc, System
+from archgen.timing.ticks import ticks
+
+_BYTE = 8
+
+
+def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
+    """Read the system off an architecture whose low level was derived, with notes on what had to be assumed."""
+    unit = ticks(architecture)
+    named = names(architecture)
+    made = activities(architecture, named, unit)
+    joined = arcs(architecture, named, made, unit)
+    notes = (
+        () if unit.exact else (Reason("the rates have no common measure of reasonable size: periods are rounded up"),)
+    )
+    built = System(
+        tick=unit.tick,
+        activities=made,
+        arcs=joined,
+        into=_grouped((arc.target, arc) for arc in joined),
+        out_of=_grouped((arc.source, arc) for arc in joined),
+        external=dict(_external(architecture, made)),
+        cores={host.id: host.cores for host in architecture.hosts.values()},
+        threads={container.id: container.threads for container in architecture.containers.values()},
+        bandwidths={
+            link.id: link.bandwidth.value / _BYTE if link.bandwidth else None for link in architecture.links.values()
+        },
+    )
+    return built, notes
+
+
+def _grouped(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
+    found: dict[str, list[Arc]] = defaultdict(list)
+    for name, arc in pairs:
+        found[name].append(arc)
+    return {name: tuple(several) for name, several in found.items()}
+
+
+def _external(architecture: Architecture, made: Mapping[str, Activity]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Name the inputs into which something comes that the architecture does not contain, or does not name rightly."""
+    for activity in made.values():
+        ports = (architecture.inputs.get(port) for port in activity.inputs)
+        fed = tuple(p.id for p in ports if p and (p.external or p.physical or (p.from_written and not p.connections)))
+        if fed:
+            yield activity.id, fed
