@@ -61,6 +61,9 @@ class HostLoad:
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
     parts: tuple[tuple[str, Value], ...]
     """What each activity adds."""
+    places: tuple[tuple[str, int, Value], ...] = ()
+    """The cores to which something is pinned, and those that all else shares: name, number of cores, utilisation."""
+    earliest_deadline_bound: Value = UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +98,19 @@ class EdgePace:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceLoad:
+    """A server (by activity id): who calls it, and how long K callers wait at most if each waits for its answer, K C, in ns.
+
+    `synchronous` is what a caller's response becomes where it waits for the answers of one activation: its own R + K C for
+    each of its calls and the links both ways.
+    """
+
+    callers: tuple[str, ...]
+    worst: Value
+    synchronous: Mapping[str, Value]
+
+
+@dataclass(frozen=True, slots=True)
 class Analysis:
     """Everything but the chains, for one system. Keys are activity ids, `activity output-key` pairs, host and link ids."""
 
@@ -111,6 +127,10 @@ class Analysis:
     deadlocked: tuple[tuple[str, ...], ...] = ()
     """Rings of all-of triggers without a first token: they never fire."""
     diverged: tuple[str, ...] = ()
+    derived: Mapping[str, Pace] = field(default_factory=dict)
+    """What the inputs would give, of those event-driven or on-demand activities that state a period themselves."""
+    services: Mapping[str, ServiceLoad] = field(default_factory=dict)
+    notes: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

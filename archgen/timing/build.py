@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
-from archgen.timing.activities import activities, names
+from archgen.timing.activities import activities, key, names, owner
 from archgen.timing.analysis import Reason
 from archgen.timing.arcs import arcs
 from archgen.timing.system import Activity, Arc, System
@@ -31,10 +31,24 @@ def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
         into=_grouped((arc.target, arc) for arc in joined),
         out_of=_grouped((arc.source, arc) for arc in joined),
         external=dict(_external(architecture, made)),
+        optional=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
         threads={container.id: container.threads for container in architecture.containers.values()},
         bandwidths={
             link.id: link.bandwidth.value / _BYTE if link.bandwidth else None for link in architecture.links.values()
+        },
+        served=frozenset(
+            (owner(architecture, named, end), key(end)) for end in architecture.endpoints if end.use == "serves"
+        ),
+        writers={
+            name: tuple((owner(architecture, named, end), key(end)) for end in topic.writers)
+            for name, topic in architecture.topics.items()
+            if topic.flow == "topic"
+        },
+        sizes={
+            name: int(topic.size.value) if topic.size else None
+            for name, topic in architecture.topics.items()
+            if topic.flow == "topic"
         },
     )
     return built, notes

@@ -92,9 +92,17 @@ class System:
     out_of: Mapping[str, tuple[Arc, ...]]
     external: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Inputs of each activity that are fed from outside of the architecture."""
+    optional: frozenset[str] = frozenset()
+    """Input keys that need not be connected: nobody waits for those that are not."""
     cores: Mapping[str, int | None] = field(default_factory=dict)
     """Cores of each host, None where nobody wrote them."""
     threads: Mapping[str, int | None] = field(default_factory=dict)
     """Threads of each container."""
     bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
     """Bandwidth of each link, in B/s."""
+    served: frozenset[tuple[str, str]] = frozenset()
+    """Outputs (activity, key) that are services or actions."""
+    writers: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
+    """Who publishes on each topic: activities and output keys."""
+    sizes: Mapping[str, int | None] = field(default_factory=dict)
+    """Bytes of a message on each topic."""

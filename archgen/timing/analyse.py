@@ -1,0 +1,47 @@
+"""The whole analysis: from an architecture, or from a system of which some figures were changed."""
+
+from __future__ import annotations
+
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, Reason
+from archgen.timing.bounds import all_responses, host_loads
+from archgen.timing.build import system as build
+from archgen.timing.edges import Known, edge_paces, service_loads
+from archgen.timing.paces import paces
+from archgen.timing.placement import resources
+from archgen.timing.propagate import propagate
+from archgen.timing.system import System
+from archgen.timing.traffic import link_loads, topic_loads
+from archgen.timing.triggers import triggers
+
+
+def analyse(architecture: Architecture) -> Analysis:
+    """Find all that follows from an architecture, chains aside."""
+    system, notes = build(architecture)
+    return analyse_system(system, notes)
+
+
+def analyse_system(system: System, notes: tuple[Reason, ...] = ()) -> Analysis:
+    """Find all that follows from a system."""
+    firing = triggers(system)
+    state = propagate(system, firing)
+    places = resources(system)
+    responses = all_responses(state, places)
+    found = paces(state, responses)
+    known = Known(state, found.of, found.outputs, responses)
+    return Analysis(
+        system=system,
+        paces=found.of,
+        outputs=found.outputs,
+        responses=responses,
+        hosts=host_loads(system, places, found.of, responses),
+        links=link_loads(state, found.outputs),
+        topics=topic_loads(system, found.outputs),
+        edges=edge_paces(known),
+        endless=firing.endless,
+        deadlocked=firing.deadlocked,
+        diverged=tuple(name for name in system.activities if name in state.diverged),
+        derived=found.derived,
+        services=service_loads(known),
+        notes=notes,
+    )

@@ -1,0 +1,154 @@
+"""Responses as others see them, and the load of hosts: utilisation against the bounds of Liu and Layland (1973)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from functools import lru_cache
+from typing import Literal
+
+from archgen.timing.analysis import HostLoad, Pace, Reason, Response
+from archgen.timing.arithmetic import times, total, unknown
+from archgen.timing.placement import Resource
+from archgen.timing.propagate import State
+from archgen.timing.response import Found
+from archgen.timing.system import Activity, System
+from archgen.timing.ticks import SECOND
+from archgen.timing.value import Value
+
+_DIGITS = 10**9
+_LN_2 = Fraction(693_147_180, _DIGITS)
+"""The bound for any number of elements, rounded down."""
+_MANY = 64
+Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
+_WORDS = {
+    "declared": "declared as the worst case",
+    "dedicated": "its own queue, on a core of its own",
+    "host": "the longest time for which all work on {where} can keep it busy, in whatever order",
+    "priorities": "everything of its priority or a higher one on {where}, over all activations of the busy period",
+    "executor": "all work of its executor on {where}, in whatever order",
+    "cores": "its own work, and a share of all other work on the {cores} cores of {where}",
+    "unknown": "no execution time is written",
+}
+
+
+def all_responses(state: State, resources: Iterable[Resource]) -> dict[str, Response]:
+    """Give the best and worst response of every activity."""
+    where = {name: resource for resource in resources for name in resource.members}
+    return {name: _response(state, name, state.responses[name], where.get(name)) for name in state.system.activities}
+
+
+def _response(state: State, name: str, found: Found, resource: Resource | None) -> Response:
+    activity, tick = state.system.activities[name], state.system.tick
+    best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
+    words = _WORDS[found.tier].format(where=resource.id if resource else "", cores=resource.cores if resource else 1)
+    place = activity.places.get("response" if found.tier == "declared" else "wcet", activity.at)
+    return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(words, place),))
+
+
+def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource | None) -> Value:
+    said = list(found.cause.notes)
+    if found.tier == "declared":
+        said.append("assumed")
+    elif resource is None:
+        said += ["assuming a dedicated core"] if activity.wcet is not None and activity.host is None else []
+    else:
+        said += resource.assumptions
+    assumptions = tuple(dict.fromkeys(said))
+    if found.value is not None:
+        return Value(found.value * tick, assumptions=assumptions)
+    if not found.cause.missing:
+        return Value(None, assumptions=assumptions)
+    least = None if activity.wcet is None else activity.wcet * tick
+    return Value(least, complete=False, missing=found.cause.missing, assumptions=assumptions, side="at least")
+
+
+def host_loads(
+    system: System, resources: Iterable[Resource], paces: Mapping[str, Pace], found: Mapping[str, Response]
+) -> dict[str, HostLoad]:
+    """Give the utilisation of every host, place by place."""
+    by_host: dict[str, list[Resource]] = {host: [] for host in system.cores}
+    for resource in resources:
+        by_host.setdefault(resource.host, []).append(resource)
+    return {host: _host(system, host, several, paces, found) for host, several in by_host.items()}
+
+
+def share(system: System, name: str, pace: Pace) -> Value:
+    """Give the share of a core that an activity takes."""
+    activity = system.activities[name]
+    if activity.behaviour == "once" or pace.rate.value == 0 or activity.wcet == 0:
+        return Value(Fraction(0))
+    if activity.wcet is None:
+        return unknown(name)
+    return times(pace.rate, activity.wcet * system.tick / SECOND)
+
+
+def _host(
+    system: System, host: str, places: list[Resource], paces: Mapping[str, Pace], found: Mapping[str, Response]
+) -> HostLoad:
+    parts = {name: share(system, name, paces[name]) for place in places for name in place.members}
+    loads = tuple((place.id, place.cores, total(parts[name] for name in place.members)) for place in places)
+    cores = system.cores.get(host) or 1
+    working = sum(1 for part in parts.values() if part.value != 0)
+    return HostLoad(
+        utilisation=total(parts.values()),
+        cores=cores,
+        rate_monotonic_bound=Value(rate_monotonic_bound(working))
+        if cores == 1
+        else Value(None, assumptions=("one core only",)),
+        verdict=_verdict(loads, working, tuple(parts), paces, found),
+        parts=tuple(parts.items()),
+        places=loads,
+        earliest_deadline_bound=Value(Fraction(cores)),
+    )
+
+
+def _verdict(
+    loads: tuple[tuple[str, int, Value], ...],
+    working: int,
+    members: tuple[str, ...],
+    paces: Mapping[str, Pace],
+    found: Mapping[str, Response],
+) -> Verdict:
+    if any(_too_much(load, cores) for _, cores, load in loads):
+        return "overload"
+    if any(not load.complete or load.value is None for _, _, load in loads):
+        return "unknown"
+    if len(loads) == 1 and loads[0][1] == 1 and is_below_bound(loads[0][2].value or Fraction(0), working):
+        return "schedulable"
+    return "schedulable" if all(_in_time(paces[name], found[name]) for name in members) else "undecided"
+
+
+def _too_much(load: Value, cores: int) -> bool:
+    unbounded = load.value is None and load.complete
+    return unbounded or (load.value is not None and load.value >= cores)
+
+
+def _in_time(pace: Pace, response: Response) -> bool:
+    """Say whether an activity is done before it is activated again."""
+    if pace.rate.value == 0:
+        return True
+    if response.worst.value is None or not response.worst.complete or not pace.rate.value:
+        return False
+    return response.worst.value <= SECOND / pace.rate.value
+
+
+@lru_cache(_MANY)
+def rate_monotonic_bound(number: int) -> Fraction:
+    """Give n (2^(1/n) - 1), rounded down to nine decimals (ln 2 beyond 64 elements)."""
+    if number > _MANY:
+        return _LN_2
+    if number < 1:
+        return Fraction(1)
+    low, high = _DIGITS, 2 * _DIGITS
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if middle**number <= 2 * _DIGITS**number else (low, middle)
+    return Fraction(number * (low - _DIGITS), _DIGITS) if number > 1 else Fraction(1)
+
+
+def is_below_bound(utilisation: Fraction, number: int) -> bool:
+    """Compare with the exact bound: U <= n (2^(1/n) - 1) where (1 + U/n)^n <= 2."""
+    if number > _MANY:
+        return utilisation <= _LN_2
+    return number == 0 or (1 + utilisation / number) ** number <= 2  # noqa: PLR2004

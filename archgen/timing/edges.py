@@ -1,0 +1,119 @@
+"""How producers and consumers fit together: samples lost and read again, beats, queues; and services with many callers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
+from archgen.timing.arithmetic import because, times, total, unknown
+from archgen.timing.propagate import State, arriving
+from archgen.timing.response import Cause
+from archgen.timing.streams import eta
+from archgen.timing.system import Activity, Arc, System
+from archgen.timing.ticks import SECOND
+from archgen.timing.value import ZERO, Value
+
+_ONE = Value(Fraction(1))
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What the edges are judged by."""
+
+    state: State
+    paces: Mapping[str, Pace]
+    outputs: Mapping[tuple[str, str], Pace]
+    responses: Mapping[str, Response]
+
+
+def edge_paces(known: Known) -> tuple[EdgePace, ...]:
+    """Compare what is sent with what is read, along every arc that carries data."""
+    return tuple(_edge(known, arc) for arc in known.state.system.arcs if arc.role == "data")
+
+
+def fires(system: System, arc: Arc) -> bool:
+    """Say whether each message on an arc fires its reader."""
+    target = system.activities[arc.target]
+    alone = target.mode == "any" or target.triggers == (arc.input,)
+    return target.behaviour == "event" and arc.input in target.triggers and alone
+
+
+def _edge(known: Known, arc: Arc) -> EdgePace:
+    if known.state.system.activities[arc.source].behaviour == "once":
+        return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
+    if fires(known.state.system, arc):
+        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
+    sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
+    if sent.value is None or read.value is None or not (sent.complete and read.complete):
+        why = _either(sent, read)
+        return EdgePace(arc, why, why, why, _queue(known, arc))
+    loss = max(1 - read.value / sent.value, Fraction(0)) if sent.value else Fraction(0)
+    again = max(read.value / sent.value, Fraction(1)) if sent.value else Fraction(1)
+    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
+
+
+def _either(sent: Value, read: Value) -> Value:
+    return total(
+        replace(one, value=None, side="exact") for one in (sent, read) if one.value is None or not one.complete
+    )
+
+
+def _like(value: Fraction, sent: Value, read: Value) -> Value:
+    """Mark a figure that rests on a bound."""
+    assumptions = tuple(dict.fromkeys((*sent.assumptions, *read.assumptions)))
+    return Value(value, assumptions=assumptions)
+
+
+def _beat(sent: Value, read: Value) -> Value:
+    """Give the time (ns) from one beat to the next, 0 where the rates fit: 1 / |fast - n slow|, n slow being nearest to fast."""
+    if not sent.value or not read.value or sent.side != "exact" or read.side != "exact":
+        return ZERO
+    fast, slow = max(sent.value, read.value), min(sent.value, read.value)
+    apart = abs(fast - round(fast / slow) * slow)
+    return Value(SECOND / apart) if apart else ZERO
+
+
+def _queue(known: Known, arc: Arc) -> Value:
+    """Give how many messages can wait: what comes until the reader has been through once more, eta+(its gap + R)."""
+    state = known.state
+    events = arriving(state, arc, state.events[arc.source])
+    if isinstance(events, Cause):
+        return because(events)
+    response = known.responses[arc.target].worst
+    waiting = response if fires(state.system, arc) else total((known.paces[arc.target].gap, response))
+    if waiting.value is None or not waiting.complete:
+        return replace(waiting, value=None, side="exact")
+    window = waiting.value / state.system.tick
+    return Value(Fraction(eta(events, max(-(-window.numerator // window.denominator), 1))))
+
+
+def service_loads(known: Known) -> dict[str, ServiceLoad]:
+    """Give for each server how long its callers wait, each for one call."""
+    system = known.state.system
+    calls: dict[str, list[Arc]] = {}
+    for arc in system.arcs:
+        if arc.role == "request":
+            calls.setdefault(arc.target, []).append(arc)
+    return {server: _service(known, system.activities[server], arcs) for server, arcs in calls.items()}
+
+
+def _service(known: Known, server: Activity, arcs: Iterable[Arc]) -> ServiceLoad:
+    system = known.state.system
+    callers = tuple(dict.fromkeys(arc.source for arc in arcs))
+    once = unknown(server.id) if server.wcet is None else Value(server.wcet * system.tick)
+    if server.response is not None:
+        once = Value(server.response * system.tick, assumptions=("assumed",))
+    worst = times(once, len(callers))
+    synchronous = {arc.source: _waiting(known, worst, arc) for arc in arcs}
+    return ServiceLoad(callers, worst, synchronous)
+
+
+def _waiting(known: Known, worst: Value, arc: Arc) -> Value:
+    """Give a caller's response where it waits for the answers that one activation asks for."""
+    system = known.state.system
+    calls = system.activities[arc.source].calls.get(arc.output, Fraction(1))
+    number = -(-calls.numerator // calls.denominator)
+    way = unknown(arc.link or arc.source) if arc.worst is None else Value(2 * arc.worst * system.tick)
+    return total((known.responses[arc.source].worst, times(worst, number), times(way, number)))

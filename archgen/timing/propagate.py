@@ -1,0 +1,220 @@
+"""Event models from sources to sinks, and with them the response times, to a fixed point.
+
+Responses make outputs later by R - B, which makes the event models of those who read them burstier, which makes responses
+longer. Only what depends on itself that way is iterated, from below, so that the first repetition is the least fixed point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from archgen.timing.placement import Resource, resources
+from archgen.timing.response import DIVERGED, Cause, Found, alone, responses, united
+from archgen.timing.rings import components
+from archgen.timing.streams import Stream, Streams, all_of, called, every, late, throttled, together, written
+from archgen.timing.system import Activity, Arc, System
+from archgen.timing.triggers import Triggers, states_itself
+from archgen.timing.windows import Budget
+
+_SWEEPS = 300
+_ONCE = Fraction(1)
+
+
+@dataclass(slots=True)
+class State:
+    """What is known so far of each activity: its event model, and its worst response."""
+
+    system: System
+    triggers: Triggers
+    events: dict[str, Streams | Cause] = field(default_factory=dict)
+    responses: dict[str, Found] = field(default_factory=dict)
+    diverged: set[str] = field(default_factory=set)
+
+
+def propagate(system: System, triggers: Triggers) -> State:
+    """Find the event model and the worst response of every activity."""
+    return _Propagation(State(system, triggers), resources(system)).run()
+
+
+class _Propagation:
+    """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
+
+    def __init__(self, state: State, shared: Iterable[Resource]) -> None:
+        self.state = state
+        self.budget = Budget()
+        self.resources: dict[str, Resource] = {}
+        self.runs_on: dict[str, list[str]] = {}
+        self.interferes: dict[str, list[str]] = {}
+        for number, resource in enumerate(shared):
+            key = f"{number} {resource.id}"
+            self.resources[key] = resource
+            for unit in resource.units:
+                for name in unit:
+                    self.runs_on.setdefault(name, []).append(key)
+            for unit in (*resource.units, *resource.foreign):
+                for name in unit:
+                    self.interferes.setdefault(name, []).append(key)
+
+    def run(self) -> State:
+        after = self._after()
+        for steps in components([*self.state.triggers.order, *self.resources], after.__getitem__):
+            if len(steps) == 1 and steps[0] not in after[steps[0]]:
+                self._step(steps[0])
+            else:
+                self._iterate(steps)
+        return self.state
+
+    def _after(self) -> dict[str, list[str]]:
+        system, triggers = self.state.system, self.state.triggers
+        after: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
+        for step, resource in self.resources.items():
+            after[step] += (step,) if resource.cores > 1 else ()  # what is carried in depends on responses
+        for name in system.activities:
+            after[name] += self.interferes.get(name, ())
+        for name, activity in system.activities.items():
+            if not states_itself(activity) and name not in triggers.unknown:
+                for arc in self._arcs(name):
+                    after[arc.source].append(name)
+                    for step in self.runs_on.get(arc.source, ()):
+                        after[step].append(name)
+        return after
+
+    def _arcs(self, name: str) -> Iterator[Arc]:
+        triggers = self.state.triggers
+        for key, arcs in triggers.inputs[name].items():
+            if (name, key) not in triggers.open:
+                yield from arcs
+        yield from triggers.requests[name]
+
+    def _iterate(self, steps: tuple[str, ...]) -> None:
+        """Repeat until nothing changes. Started from the execution times alone, all that is found stays below the truth."""
+        state, system = self.state, self.state.system
+        names = [step for step in steps if step in system.activities]
+        for name in names:
+            state.responses[name] = Found(system.activities[name].wcet, "unknown", Cause((name,)))
+        for name in names:
+            state.events.setdefault(name, ())
+        for resource in steps[len(names) :]:
+            for name in self.resources[resource].members:
+                state.responses.setdefault(name, Found(system.activities[name].wcet, "unknown", Cause((name,))))
+        for _ in range(_SWEEPS):
+            changes = [self._step(step) for step in steps]
+            if not any(changes):
+                return
+        for step in steps:
+            for name in self.resources[step].members if step in self.resources else (step,):
+                state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED)
+                state.diverged.add(name)
+            if step in system.activities and not states_itself(system.activities[step]):
+                state.events[step] = DIVERGED
+
+    def _step(self, step: str) -> bool:
+        """Find one step's figures anew, and tell whether they changed."""
+        state = self.state
+        if step in self.resources:
+            found = responses(state.system, self.resources[step], state.events, state.responses, self.budget)
+            changed = any(state.responses.get(name) != response for name, response in found.items())
+            state.responses.update(found)
+            return changed
+        events = activation(state, step)
+        changed = state.events.get(step) != events
+        state.events[step] = events
+        if step not in self.runs_on:
+            state.responses[step] = alone(state.system, step, state.events, self.budget)
+        return changed
+
+
+def activation(state: State, name: str) -> Streams | Cause:
+    """Give the event model of an activity's activations, from what fires it."""
+    activity = state.system.activities[name]
+    own = written(activity)
+    if own is not None:
+        return own
+    if name in state.triggers.never:
+        return ()
+    if name in state.triggers.unknown:
+        return Cause((name,), ("a ring of triggers",))
+    if activity.behaviour == "event":
+        return _event(state, activity)
+    if activity.behaviour == "on_demand" and state.triggers.requests[name]:
+        return _any(requests(state, name))
+    return Cause((name,))
+
+
+def _event(state: State, activity: Activity) -> Streams | Cause:
+    inputs = state.triggers.inputs[activity.id]
+    asked = tuple(requests(state, activity.id))
+    if not inputs and not asked:
+        return Cause((activity.id,))
+    data = _fired(state, activity, inputs) if inputs else ()
+    if isinstance(data, Cause):
+        return data
+    fired = late(throttled(every(data, activity.every), activity.throttle), activity.jitter) if data else ()
+    return _any((fired, *asked))
+
+
+def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> Streams | Cause:
+    if activity.mode == "any":
+        return _any(arrival(state, activity, key, arcs) for key, arcs in inputs.items())
+    needed = [key for key, arcs in inputs.items() if not is_kept(state.system, arcs)]
+    found = [
+        Cause((activity.id,))
+        if (activity.id, key) in state.triggers.open
+        else arrival(state, activity, key, inputs[key])
+        for key in needed
+    ]
+    known = [streams for streams in found if not isinstance(streams, Cause)]
+    if any(not streams for streams in known) or not needed:
+        return ()
+    if not known:
+        return united(cause for cause in found if isinstance(cause, Cause))
+    return all_of(known, complete=len(known) == len(found))
+
+
+def is_kept(system: System, arcs: Iterable[Arc]) -> bool:
+    """Say whether something sent once stands on an input: it is always there."""
+    return any(system.activities[arc.source].behaviour == "once" for arc in arcs)
+
+
+def arrival(state: State, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> Streams | Cause:
+    """Give the event model of what arrives at one input."""
+    if not arcs or key in state.system.external.get(activity.id, ()):
+        return Cause((key,))
+    return _any(arriving(state, arc, state.events[arc.source]) for arc in arcs)
+
+
+def requests(state: State, name: str) -> Iterator[Streams | Cause]:
+    """Give the event models of the calls that arrive: they come at any time while their caller runs."""
+    for arc in state.triggers.requests[name]:
+        events = state.events[arc.source]
+        caller = state.system.activities[arc.source]
+        if not isinstance(events, Cause):
+            yield arriving(state, arc, called(events, caller.calls.get(arc.output, _ONCE)), from_start=True)
+        else:
+            yield events
+
+
+def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool = False) -> Streams | Cause:
+    """Give what is left of an event model behind its source's response and a link."""
+    if isinstance(events, Cause) or not events:
+        return events
+    source, response = state.system.activities[arc.source], state.responses[arc.source]
+    if response.value is None:
+        return response.cause
+    if arc.worst is None:
+        return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
+    best = 0 if from_start else source.bcet or 0
+    return late(events, max(response.value - best, 0) + arc.worst - (arc.best or 0))
+
+
+def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:
+    causes: list[Cause] = []
+    found: list[Stream] = []
+    for one in inputs:
+        if isinstance(one, Cause):
+            causes.append(one)
+        else:
+            found += one
+    return united(causes) if causes else together(found)

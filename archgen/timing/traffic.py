@@ -1,0 +1,112 @@
+"""What topics and links carry: bytes a second, and how much can wait in front of a link."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from heapq import merge
+
+from archgen.timing.analysis import LinkLoad, Pace, TopicLoad
+from archgen.timing.arithmetic import UNBOUNDED, times, total, unknown
+from archgen.timing.propagate import State, arriving
+from archgen.timing.response import Cause
+from archgen.timing.streams import Streams, arrivals, eta
+from archgen.timing.system import Arc, System
+from archgen.timing.ticks import SECOND
+from archgen.timing.value import ZERO, Value
+
+_MOST = 50_000
+"""Arrivals in one busy period of a link that are looked at; beyond, nothing is said of its queue."""
+Outputs = Mapping[tuple[str, str], Pace]
+
+
+def topic_loads(system: System, outputs: Outputs) -> dict[str, TopicLoad]:
+    """Give what is published on each topic, and what all its readers receive."""
+    reading: dict[str, list[Arc]] = defaultdict(list)
+    for arc in system.arcs:
+        if arc.role == "data":
+            reading[arc.topic].append(arc)
+    return {name: _topic(system, name, writers, reading[name], outputs) for name, writers in system.writers.items()}
+
+
+def _topic(
+    system: System, name: str, writers: Iterable[tuple[str, str]], readers: Iterable[Arc], outputs: Outputs
+) -> TopicLoad:
+    size = system.sizes.get(name)
+    return TopicLoad(
+        unknown(name) if size is None else Value(Fraction(size)),
+        _bytes(name, size, (outputs[writer].rate for writer in writers)),
+        _bytes(name, size, (outputs[arc.source, arc.output].rate for arc in readers)),
+    )
+
+
+def _bytes(name: str, size: int | None, rates: Iterable[Value]) -> Value:
+    rate = total(rates)
+    if rate.value == 0 and rate.complete:
+        return ZERO
+    return unknown(name) if size is None else times(rate, size)
+
+
+def link_loads(state: State, outputs: Outputs) -> dict[str, LinkLoad]:
+    """Give the traffic of each link. Each reader on another host has its own copy sent."""
+    crossing: dict[str, list[Arc]] = {link: [] for link in state.system.bandwidths}
+    for arc in state.system.arcs:
+        if arc.link is not None and arc.role == "data":
+            crossing[arc.link].append(arc)
+    return {link: _link(state, link, arcs, outputs) for link, arcs in crossing.items()}
+
+
+def _link(state: State, link: str, arcs: Sequence[Arc], outputs: Outputs) -> LinkLoad:
+    by_topic: dict[str, list[Arc]] = defaultdict(list)
+    for arc in arcs:
+        by_topic[arc.topic].append(arc)
+    parts = {
+        topic: _bytes(topic, several[0].size, (outputs[arc.source, arc.output].rate for arc in several))
+        for topic, several in by_topic.items()
+    }
+    traffic = total(parts.values())
+    bandwidth = state.system.bandwidths[link]
+    share = times(traffic, 1 / bandwidth) if bandwidth else unknown(link)
+    burst = _burst(state, arcs, bandwidth)
+    queueing = times(burst, SECOND / bandwidth) if bandwidth else unknown(link)
+    return LinkLoad(traffic, share, burst, queueing, tuple(parts.items()))
+
+
+def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Value:
+    """Give the most bytes that can wait in front of a link, over its longest busy period."""
+    missing: dict[str, None] = {}
+    known: list[tuple[int, Streams]] = []
+    for arc in arcs:
+        events = arriving(state, replace(arc, link=None, best=0, worst=0), state.events[arc.source])
+        if isinstance(events, Cause):
+            missing |= dict.fromkeys(events.missing or (arc.source,))
+        elif arc.size is None:
+            missing[arc.topic] = None
+        else:
+            known.append((arc.size, events))
+    if missing or bandwidth is None:
+        first = Fraction(sum(size * eta(events, 1) for size, events in known))
+        return Value(first, complete=False, missing=tuple(missing), side="at least")
+    return _backlog(known, bandwidth * state.system.tick / SECOND)
+
+
+def _backlog(known: Sequence[tuple[int, Streams]], speed: Fraction) -> Value:
+    """Follow a busy period in which all comes as early as it can; `speed` is in bytes a tick."""
+    if sum((stream.rate * size for size, events in known for stream in events), Fraction(0)) >= speed:
+        return UNBOUNDED
+    coming = merge(*(_sized(size, events) for size, events in known if size and events))
+    sent, most = 0, Fraction(0)
+    for number, (at, size) in enumerate(coming):
+        if at and sent <= speed * at:
+            break
+        if number > _MOST:
+            return Value(None, assumptions=("diverged",))
+        sent += size
+        most = max(most, sent - speed * at)
+    return Value(most)
+
+
+def _sized(size: int, events: Streams) -> Iterator[tuple[int, int]]:
+    return ((at, size) for at in arrivals(events))

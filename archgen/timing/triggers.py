@@ -1,0 +1,195 @@
+"""Who fires whom: the arcs that trigger, and the rings among them.
+
+An event that enters a ring of any-of triggers circulates for ever; activities that wait for all of several inputs, one
+of which they feed themselves, wait for ever.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from archgen.timing.rings import components
+from archgen.timing.system import Activity, Arc, System
+
+
+@dataclass(frozen=True, slots=True)
+class Triggers:
+    """What fires each activity. `inputs`: the arcs into each trigger input (none: fed from outside, or by nobody).
+
+    `unknown` are activities in rings whose rate cannot be said; `order` has each activity behind those that fire it.
+    """
+
+    inputs: Mapping[str, Mapping[str, tuple[Arc, ...]]]
+    requests: Mapping[str, tuple[Arc, ...]]
+    order: tuple[str, ...]
+    unknown: frozenset[str]
+    open: frozenset[tuple[str, str]]
+    """Inputs (activity, key) of all-of triggers that lie in a ring: other inputs decide how often they fire."""
+    never: frozenset[str]
+    """What never fires."""
+    endless: tuple[tuple[str, ...], ...]
+    deadlocked: tuple[tuple[str, ...], ...]
+
+
+def triggers(system: System) -> Triggers:
+    """Find what fires what, and the rings."""
+    inputs = {a.id: _inputs(system, a) for a in system.activities.values()}
+    requests = {a.id: _requests(system, a) for a in system.activities.values()}
+    found = _Finding(system, inputs, requests)
+    after = found.after()
+    rings = {member: ring for ring in components(system.activities, after.__getitem__) for member in ring}
+    gated = {name: keys for name in system.activities if (keys := found.gates(name, rings[name]))}
+    open_ = frozenset((name, key) for name, keys in gated.items() for key in keys)
+    cut = found.after(open_)
+    order = components(system.activities, cut.__getitem__)
+    unknown = {member for ring in order if found.is_ring(ring, cut) for member in ring}
+    firing = found.firing()
+    return Triggers(
+        inputs,
+        requests,
+        tuple(member for ring in order for member in ring),
+        frozenset(unknown),
+        open_,
+        frozenset(system.activities) - firing,
+        tuple(found.endless(frozenset(gated), firing)),
+        tuple(found.deadlocked(firing)),
+    )
+
+
+def states_itself(activity: Activity) -> bool:
+    """Say whether an activity's rate is its own, so that nothing that arrives changes it."""
+    return activity.behaviour in {"periodic", "once", None} or activity.period is not None
+
+
+def _inputs(system: System, activity: Activity) -> dict[str, tuple[Arc, ...]]:
+    if activity.behaviour != "event":
+        return {}
+    found: dict[str, list[Arc]] = {key: [] for key in activity.triggers}
+    for arc in system.into.get(activity.id, ()):
+        if arc.role == "data" and arc.input in found:
+            found[arc.input].append(arc)
+    waits_for_all = activity.mode == "all"
+    outside = system.external.get(activity.id, ())
+    return {
+        key: tuple(arcs)
+        for key, arcs in found.items()
+        if arcs or not waits_for_all or key in outside or key not in system.optional
+    }
+
+
+def _requests(system: System, activity: Activity) -> tuple[Arc, ...]:
+    if activity.behaviour not in {"event", "on_demand"}:
+        return ()
+    return tuple(arc for arc in system.into.get(activity.id, ()) if arc.role == "request")
+
+
+@dataclass(frozen=True, slots=True)
+class _Finding:
+    system: System
+    inputs: Mapping[str, Mapping[str, tuple[Arc, ...]]]
+    requests: Mapping[str, tuple[Arc, ...]]
+
+    def after(self, left_out: frozenset[tuple[str, str]] = frozenset()) -> dict[str, list[str]]:
+        """Give whom each activity fires."""
+        found: dict[str, list[str]] = {name: [] for name in self.system.activities}
+        for arc in self._arcs():
+            if (arc.target, arc.input) not in left_out:
+                found[arc.source].append(arc.target)
+        return found
+
+    def _arcs(self) -> Iterator[Arc]:
+        for name, activity in self.system.activities.items():
+            if not states_itself(activity):
+                for arcs in self.inputs[name].values():
+                    yield from arcs
+                yield from self.requests[name]
+
+    def is_ring(self, members: tuple[str, ...], after: Mapping[str, list[str]]) -> bool:
+        return len(members) > 1 or members[0] in after[members[0]]
+
+    def gates(self, name: str, ring: tuple[str, ...]) -> tuple[str, ...]:
+        """Name the inputs by which a ring enters an activity that waits for something from outside of the ring as well."""
+        activity = self.system.activities[name]
+        if activity.mode != "all" or states_itself(activity):
+            return ()
+        members = set(ring)
+        within = tuple(k for k, arcs in self.inputs[name].items() if any(arc.source in members for arc in arcs))
+        return within if len(within) < len(self._needed(name)) else ()
+
+    def _needed(self, name: str) -> tuple[str, ...]:
+        """Name the inputs that all-of waits for: what is sent once and kept is always there."""
+        return tuple(key for key, arcs in self.inputs[name].items() if not any(self._once(arc) for arc in arcs))
+
+    def _once(self, arc: Arc) -> bool:
+        return self.system.activities[arc.source].behaviour == "once"
+
+    def firing(self) -> frozenset[str]:
+        """Find all that can ever fire; what is not known is taken to."""
+        readers: dict[str, list[str]] = defaultdict(list)
+        for arc in self._arcs():
+            readers[arc.source].append(arc.target)
+        found = set[str]()
+        waiting = list(self.system.activities)
+        while waiting:
+            name = waiting.pop()
+            if name not in found and self._fires(name, found):
+                found.add(name)
+                waiting += readers[name]
+        return frozenset(found)
+
+    def _fires(self, name: str, firing: set[str]) -> bool:
+        activity = self.system.activities[name]
+        if states_itself(activity) or any(arc.source in firing for arc in self.requests[name]):
+            return True
+        if activity.behaviour == "on_demand":
+            return not self.requests[name]
+        fed = [self._fed(name, key, arcs, firing) for key, arcs in self.inputs[name].items()]
+        return not fed or (all(fed) if activity.mode == "all" else any(fed))
+
+    def _fed(self, name: str, key: str, arcs: tuple[Arc, ...], firing: set[str]) -> bool:
+        if key in self.system.external.get(name, ()):
+            return True
+        if not arcs:
+            return self.system.activities[name].mode == "any"
+        return any(arc.source in firing for arc in arcs)
+
+    def endless(self, gated: frozenset[str], firing: frozenset[str]) -> Iterator[tuple[str, ...]]:
+        """Find the rings in which each event makes at least one more. What is conditional may end; what never fires does not begin."""
+        after: dict[str, list[str]] = {name: [] for name in self.system.activities}
+        for arc in self._arcs():
+            if arc.target not in gated and self._sure(arc) and self._starts(arc.target, firing):
+                after[arc.source].append(arc.target)
+        for ring in components(self.system.activities, after.__getitem__):
+            if self.is_ring(ring, after):
+                yield ring
+
+    def _starts(self, name: str, firing: frozenset[str]) -> bool:
+        return name in firing or self.system.activities[name].mode == "any"
+
+    def _sure(self, arc: Arc) -> bool:
+        source, target = self.system.activities[arc.source], self.system.activities[arc.target]
+        if arc.role == "request":
+            return source.calls.get(arc.output, 1) >= 1
+        return target.every == 1 and arc.output not in source.conditional
+
+    def deadlocked(self, firing: frozenset[str]) -> Iterator[tuple[str, ...]]:
+        """Find the rings that never fire, and what waits for an input that nothing feeds."""
+        after: dict[str, list[str]] = {name: [] for name in self.system.activities}
+        for arc in self._arcs():
+            if arc.source not in firing and arc.target not in firing:
+                after[arc.source].append(arc.target)
+        for ring in components(self.system.activities, after.__getitem__):
+            if ring[0] in firing:
+                continue
+            waits = any(self.system.activities[name].mode == "all" for name in ring)
+            if (waits and self.is_ring(ring, after)) or any(self.unfed(name) for name in ring):
+                yield ring
+
+    def unfed(self, name: str) -> tuple[str, ...]:
+        """Name the inputs that all-of waits for and nothing feeds."""
+        if self.system.activities[name].mode != "all":
+            return ()
+        outside = self.system.external.get(name, ())
+        return tuple(key for key, arcs in self.inputs[name].items() if not arcs and key not in outside)
