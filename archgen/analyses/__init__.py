@@ -9,6 +9,7 @@ from archgen.analyses import (
     connectivity,
     distribution,
     figures,
+    load,
     mapping,
     messages,
     names,
@@ -20,10 +21,12 @@ from archgen.analyses import (
     roles,
     sections,
     selectors,
+    timing,
     topics,
     type_mapping,
 )
 from archgen.diagnostic import Rule
+from archgen.timing.analyse import analyse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +54,10 @@ _JUDGES = (
     *progress.RULES,
 )
 
-RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in _JUDGES)
+_TIMED_JUDGES = (*timing.RULES, *load.RULES)
+"""These also take what follows from the architecture's timing, which is found once for all of them."""
+
+RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))
 """All rules that judge an architecture, in the order in which they run."""
 
 
@@ -59,3 +65,14 @@ def check(architecture: Architecture) -> Iterator[Diagnostic]:
     """Run all rules. The findings are neither sorted nor settled."""
     for judge, _ in _JUDGES:
         yield from judge(architecture)
+    if _is_timed(architecture):
+        found = analyse(architecture)
+        for judge_timing, _ in _TIMED_JUDGES:
+            yield from judge_timing(architecture, found)
+
+
+def _is_timed(architecture: Architecture) -> bool:
+    """Say whether anybody has written anything about time yet."""
+    return any(node.timing for node in architecture.nodes.values()) or any(
+        component.timing for component in architecture.components.values()
+    )

@@ -9,6 +9,7 @@ from functools import cache
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
 from archgen.model.node import Endpoint, Topic
+from archgen.model.qos import PROFILES
 from archgen.source import NOWHERE, Span
 from archgen.timing.activities import Names, key, owner
 from archgen.timing.system import Activity, Arc
@@ -73,7 +74,9 @@ class _Joining:
             worst=worst,
             depth=None if qos.history == "keep_all" else qos.depth,
             optional=bool(port and port.optional),
+            depth_written=qos.written and qos.depth != PROFILES[qos.profile].depth,
             at=self._place(writer, reader),
+            queue_at=qos.at,
         )
 
     def _request(self, answer: Arc) -> Arc:

@@ -33,38 +33,40 @@ class Paces:
 
 
 def paces(state: State, responses: Mapping[str, Response]) -> Paces:
-    """Find the pace of every activity and output, sources first."""
+    """Find the pace of every activity and output, sources first; last what the inputs of those give that state their own."""
     found = Paces(state, responses)
+    later: list[Activity] = []
     for name in state.triggers.order:
         activity = state.system.activities[name]
-        beat, asked, reasons = _beat(found, activity)
-        derived = _pace(found, activity, beat, asked, tuple(reasons))
-        found.of[name] = derived
         if activity.period is not None and activity.behaviour != "periodic":
-            found.derived[name] = derived
-            found.of[name] = _stated(found, activity, derived)
-            beat = found.of[name].rate, found.of[name].gap
+            later.append(activity)
+            pace, asked = _stated(found, activity), None
+            beat = pace.rate, pace.gap
+        else:
+            beat, asked, reasons = _beat(found, activity)
+            pace = _pace(found, activity, beat, asked, tuple(reasons))
+        found.of[name] = pace
         for key in activity.outputs:
             found.outputs[name, key] = _output(found, activity, key, beat, asked)
+    for activity in later:
+        beat, asked, reasons = _beat(found, activity)
+        found.derived[activity.id] = _pace(found, activity, beat, asked, tuple(reasons))
     return found
 
 
 def _pace(found: Paces, activity: Activity, beat: Beat, asked: Value | None, reasons: tuple[Reason, ...]) -> Pace:
     rate, gap = beat
     everything = rate if asked is None else asked if activity.behaviour == "on_demand" else total((rate, asked))
-    events = found.state.events[activity.id]
-    jitter, distance = _shape(found, events)
-    stated = activity.period is not None
-    return Pace(activity.behaviour, everything, gap, jitter, distance, not stated, reasons)
-
-
-def _stated(found: Paces, activity: Activity, derived: Pace) -> Pace:
-    period = (activity.period or 0) * found.state.system.tick
     jitter, distance = _shape(found, found.state.events[activity.id])
-    place = activity.places.get("period", activity.places.get("rate", activity.at))
-    reason = Reason(f"every {duration(period)}, as written (its inputs would give {told(derived.rate, 'Hz')})", place)
-    gap = Value(period + activity.jitter * found.state.system.tick)
-    return Pace(activity.behaviour, Value(SECOND / period), gap, jitter, distance, inferred=False, reasons=(reason,))
+    return Pace(activity.behaviour, everything, gap, jitter, distance, activity.period is None, reasons)
+
+
+def _stated(found: Paces, activity: Activity) -> Pace:
+    """Give the pace that an element states although its inputs fire it."""
+    beat = _periodic(found, activity)
+    jitter, distance = _shape(found, found.state.events[activity.id])
+    reasons = (_periodic_reason(found, activity),)
+    return Pace(activity.behaviour, *beat, jitter, distance, inferred=False, reasons=reasons)
 
 
 def _shape(found: Paces, events: Streams | Cause) -> tuple[Value, Value]:
@@ -250,7 +252,7 @@ def _throttled(found: Paces, activity: Activity, beat: Beat) -> Beat:
     if not rate.value:
         return rate, wider
     events = found.state.events[activity.id]
-    if not isinstance(events, Cause) and len(events) == 1 and events[0].number == 1:
+    if activity.period is None and not isinstance(events, Cause) and len(events) == 1 and events[0].number == 1:
         one = events[0]
         period = one.period * tick
         if SECOND / period <= SECOND / least:

@@ -78,7 +78,11 @@ class Arc:
     depth: int | None = None
     size: int | None = None
     optional: bool = False
+    depth_written: bool = False
+    """The reader asks for another depth than its profile has."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+    queue_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    """Where the reader's quality of service was written."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,342 @@
+"""Do rates fit: what elements state and what their inputs give, what is sent and what is read, what fires whom?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+from archgen.source import NOWHERE
+from archgen.timing.ticks import SECOND, period
+from archgen.timing.words import number, rate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
+    from archgen.source import Span
+    from archgen.timing.analysis import Analysis, EdgePace
+    from archgen.timing.system import Activity
+    from archgen.timing.value import Value
+
+
+def period_conflict(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """What an element states of its rate is not what its inputs, or the nodes that implement it, give.
+
+    Why: An event-driven element runs when its inputs arrive. Where it states another rate, one of the two is wrong, and so is
+    every figure that follows from it. The stated one is used, so that the rest can be judged meanwhile.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              detector: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          detector: {implements: detector, timing: {behaviour: event, rate: 10 Hz}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              detector: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          detector: {implements: detector, timing: {behaviour: event, every: 3}}
+    """
+    for name, derived in found.derived.items():
+        stated = found.paces[name].rate.value
+        if stated is None or not _differs(stated, derived.rate):
+            continue
+        activity = found.system.activities[name]
+        reason = derived.reasons[-1] if derived.reasons else None
+        yield Diagnostic(
+            "period-conflict",
+            f"`{name}` states {rate(stated)}, but what fires it gives {_bounded(derived.rate)}",
+            _stated_at(activity),
+            labels=(Label(reason.at, "it is fired here"),) if reason and reason.at != NOWHERE else (),
+            help="leave the rate out, or correct it; `behaviour: periodic` if a timer decides",
+            element=name,
+        )
+    for component in architecture.components.values():
+        yield from _claim(architecture, found, component)
+
+
+def _differs(stated: Fraction, derived: Value) -> bool:
+    """Say whether a rate is impossible: not the exact one, or on the wrong side of a bound."""
+    if derived.value is None:
+        return False
+    if derived.side == "at most":
+        return stated > derived.value
+    if derived.side == "at least":
+        return stated < derived.value
+    return stated != derived.value
+
+
+def _bounded(value: Value) -> str:
+    text = rate(value.value) if value.value is not None else "nothing known"
+    return text if value.side == "exact" else f"{value.side} {text}"
+
+
+def _stated_at(activity: Activity) -> Span:
+    return activity.places.get("rate", activity.places.get("period", activity.at))
+
+
+def _claim(architecture: Architecture, found: Analysis, component: Component) -> Iterator[Diagnostic]:
+    """Compare what a component of several nodes states of the whole with what its nodes publish."""
+    claimed = period(component.timing) if component.timing else None
+    nodes = [node.id for node in architecture.implementers(component.id)]
+    if claimed is None or component.timing is None or len(nodes) < 2:  # noqa: PLR2004
+        return
+    stated = SECOND / claimed
+    published = {key: pace.rate for (_, key), pace in found.outputs.items() if key in _ports(component)}
+    if not published or not all(_differs(stated, one) for one in published.values()):
+        return
+    port, given = next(iter(published.items()))
+    yield Diagnostic(
+        "period-conflict",
+        f"`{component.id}` states {rate(stated)}, but its nodes publish `{port}` at {_bounded(given)}",
+        component.timing.places.get("rate", component.timing.places.get("period", component.timing.at)),
+        help="correct the component's rate, or the timing of its nodes",
+        element=component.id,
+    )
+
+
+def _ports(component: Component) -> frozenset[str]:
+    return frozenset(output.id for output in component.outputs.values())
+
+
+def lost_samples(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """An element waits for all of several inputs, and one of them comes more often than it can be used.
+
+    Why: An element that fires when all of its inputs have something new runs as often as the slowest of them. What the
+    others send more often is thrown away, and where the rates have no common measure, the pairs that are put together are
+    of another age each time. An element that samples its inputs by a timer does so on purpose, and is not meant here.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              left: {outputs: {image: sensor_msgs/msg/Image}}
+              right: {outputs: {image: sensor_msgs/msg/Image}}
+              stereo: {inputs: {left: left.image, right: right.image}}
+        nodes:
+          left: {implements: left, timing: {rate: 30 Hz}}
+          right: {implements: right, timing: {rate: 25 Hz}}
+          stereo: {implements: stereo, timing: {trigger: all}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              left: {outputs: {image: sensor_msgs/msg/Image}}
+              right: {outputs: {image: sensor_msgs/msg/Image}}
+              stereo: {inputs: {left: left.image, right: right.image}}
+        nodes:
+          left: {implements: left, timing: {rate: 30 Hz}}
+          right: {implements: right, timing: {rate: 30 Hz}}
+          stereo: {implements: stereo, timing: {trigger: all}}
+    """
+    for edge in found.edges:
+        target = found.system.activities[edge.arc.target]
+        waits = target.mode == "all" and edge.arc.input in target.triggers and target.every == 1 and not target.throttle
+        if not waits or not edge.loss.value or target.period is not None:
+            continue
+        sent = found.outputs[edge.arc.source, edge.arc.output].rate.value
+        read = found.paces[target.id].rate.value
+        if sent is None or not read:
+            continue  # what never runs is reported as such
+        yield Diagnostic(
+            "lost-samples",
+            f"`{target.id}` uses {number(100 * (1 - edge.loss.value))} % of what `{edge.arc.source}` sends: "
+            f"it comes at {rate(sent)}, all inputs together at {rate(read)}",
+            edge.arc.at if edge.arc.at != NOWHERE else target.at,
+            help="let one input fire it and sample the other (`trigger: [input]`), or give the sources one rate",
+            element=target.id,
+        )
+
+
+def short_queue(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """A periodic element keeps a queue that overflows before it is read.
+
+    Why: Whoever asks for a queue of several messages means to read all of them. Until a periodic reader has been through once
+    more, its largest gap and its response time pass; what comes in that time must fit in, or the oldest is lost without a
+    sign. A queue of one (only the newest counts), and a depth that nobody wrote, are not meant here.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
+              filter: {inputs: {motion: imu.motion}}
+        nodes:
+          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
+          filter:
+            implements: filter
+            subscribes: {motion: {qos: {depth: 5}}}
+            timing: {rate: 20 Hz, wcet: 2 ms}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
+              filter: {inputs: {motion: imu.motion}}
+        nodes:
+          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
+          filter:
+            implements: filter
+            subscribes: {motion: {qos: {depth: 11}}}
+            timing: {rate: 20 Hz, wcet: 2 ms}
+    """
+    for edge in found.edges:
+        depth, needed = edge.arc.depth, edge.queue.value
+        if not edge.arc.depth_written or depth is None or depth < 2 or needed is None or needed <= depth:  # noqa: PLR2004
+            continue
+        target = found.system.activities[edge.arc.target]
+        if target.behaviour == "periodic":
+            yield _overflow(edge, target, depth, needed)
+
+
+def _overflow(edge: EdgePace, target: Activity, depth: int, needed: Fraction) -> Diagnostic:
+    return Diagnostic(
+        "short-queue",
+        f"`{target.id}` keeps {depth} messages of `{edge.arc.topic}`, but {needed} can come before it has read them",
+        edge.arc.queue_at if edge.arc.queue_at != NOWHERE else edge.arc.at,
+        help=f"`depth: {needed}` keeps all of them, `depth: 1` says that only the newest counts",
+        element=target.id,
+    )
+
+
+def endless_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """Elements fire one another in a ring: an event that enters it circulates for ever.
+
+    Why: Each element of the ring runs whenever the one before it has published, and publishes in turn. The first event never
+    comes to rest; each further one is added, until a processor or a queue is full. One of the elements must run by a timer,
+    or only sample what comes back (`trigger`). Where nobody has written yet what fires an element, it is a warning.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {behaviour: event}}
+          motor: {implements: motor, timing: {behaviour: event}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {behaviour: event, trigger: [wish]}}
+          motor: {implements: motor, timing: {behaviour: event}}
+    """
+    for ring in found.endless:
+        members = [found.system.activities[name] for name in ring]
+        guessed = [activity for activity in members if activity.behaviour_inferred]
+        first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
+        sure = not guessed
+        yield Diagnostic(
+            "endless-trigger",
+            f"{_listed(ring)} fire {'one another' if len(ring) > 1 else 'itself'} without an end"
+            if len(ring) > 1
+            else f"`{ring[0]}` fires itself without an end",
+            first.places.get("trigger", first.at),
+            severity=None if sure else Severity.WARNING,
+            labels=tuple(
+                Label(other.at, "in the ring") for other in members if other is not first and other.at != NOWHERE
+            ),
+            help="let one of them run by a timer (`period`), or only sample what comes back: name its other inputs in `trigger`",
+            element=first.id,
+        )
+
+
+def deadlocked_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """Elements wait for all of several inputs, one of which never comes: they never run.
+
+    Why: An element with `trigger: all` runs when each of its inputs has something new. Where one of them only comes after it
+    has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {trigger: all}}
+          motor: {implements: motor, timing: {behaviour: event}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {trigger: {all: [wish]}}}
+          motor: {implements: motor, timing: {behaviour: event}}
+    """
+    arrives = _arrives(found)
+    for ring in found.deadlocked:
+        members = [found.system.activities[name] for name in ring]
+        first = next(activity for activity in members if activity.mode == "all")
+        empty = [key for key in first.triggers if key not in arrives[first.id]]
+        why = f"nothing feeds {_listed(empty)}" if empty else f"{_listed(ring)} wait for one another"
+        yield Diagnostic(
+            "deadlocked-trigger",
+            f"`{first.id}` never runs: it waits for all of its triggers, and {why}",
+            first.places.get("trigger", first.at),
+            labels=tuple(
+                Label(other.at, "waits, too") for other in members if other is not first and other.at != NOWHERE
+            ),
+            help="name in `trigger: {all: [...]}` only the inputs that it has to wait for",
+            element=first.id,
+        )
+
+
+def _arrives(found: Analysis) -> dict[str, set[str]]:
+    arrives = defaultdict[str, set[str]](set)
+    for arc in found.system.arcs:
+        arrives[arc.target].add(arc.input)
+    for name, keys in found.system.external.items():
+        arrives[name].update(keys)
+    return arrives
+
+
+def _listed(names: tuple[str, ...] | list[str]) -> str:
+    shown = [f"`{name}`" for name in names]
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+
+
+RULES = (
+    (period_conflict, Severity.WARNING),
+    (lost_samples, Severity.WARNING),
+    (short_queue, Severity.WARNING),
+    (endless_trigger, Severity.ERROR),
+    (deadlocked_trigger, Severity.ERROR),
+)
