@@ -31,8 +31,8 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = ()) -> Analysis:
     known = Known(state, found.of, found.outputs, responses)
     return Analysis(
         system=system,
-        paces=found.of,
-        outputs=found.outputs,
+        paces={name: found.of[name] for name in system.activities},
+        outputs={(a.id, key): found.outputs[a.id, key] for a in system.activities.values() for key in a.outputs},
         responses=responses,
         hosts=host_loads(system, places, found.of, responses),
         links=link_loads(state, found.outputs),
@@ -40,7 +40,11 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = ()) -> Analysis:
         edges=edge_paces(known),
         endless=firing.endless,
         deadlocked=firing.deadlocked,
-        diverged=tuple(name for name in system.activities if name in state.diverged),
+        diverged=tuple(
+            name
+            for name in system.activities
+            if name in state.diverged or "diverged" in responses[name].worst.assumptions
+        ),
         derived=found.derived,
         services=service_loads(known),
         notes=notes,

@@ -10,6 +10,7 @@ from archgen.timing.response import Cause, united
 from archgen.timing.value import Value
 
 UNBOUNDED = Value(None, assumptions=("unbounded",))
+_NOTHING = Fraction(0)
 NEVER = Value(Fraction(0), assumptions=("never fires",))
 
 
@@ -28,6 +29,8 @@ def total(values: Iterable[Value]) -> Value:
     found = tuple(values)
     if len(found) == 1:
         return found[0]
+    if all(one.side == "exact" and one.value is not None and not one.assumptions for one in found):
+        return Value(sum([one.value for one in found if one.value], _NOTHING))
     reasons = _reasons(found)
     if any(one.value is None and one.complete for one in found):
         return replace(reasons, value=None, complete=True, side="exact")
@@ -58,7 +61,9 @@ def largest(values: Iterable[Value]) -> Value:
 
 def times(value: Value, factor: Fraction | int) -> Value:
     """Multiply, keeping what it rests on."""
-    return value if value.value is None or factor == 1 else replace(value, value=value.value * factor)
+    if value.value is None or factor == 1:
+        return value
+    return Value(value.value * factor, value.complete, value.missing, value.assumptions, value.side)
 
 
 def _size(value: Value) -> Fraction:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
@@ -26,6 +26,8 @@ class Known:
     paces: Mapping[str, Pace]
     outputs: Mapping[tuple[str, str], Pace]
     responses: Mapping[str, Response]
+    windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
+    """Found once for each reader."""
 
 
 def edge_paces(known: Known) -> tuple[EdgePace, ...]:
@@ -49,6 +51,8 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
         return EdgePace(arc, why, why, why, _queue(known, arc))
+    if sent.value == read.value and not sent.assumptions and not read.assumptions:
+        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
     loss = max(1 - read.value / sent.value, Fraction(0)) if sent.value else Fraction(0)
     again = max(read.value / sent.value, Fraction(1)) if sent.value else Fraction(1)
     return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
@@ -81,12 +85,21 @@ def _queue(known: Known, arc: Arc) -> Value:
     events = arriving(state, arc, state.events[arc.source])
     if isinstance(events, Cause):
         return because(events)
-    response = known.responses[arc.target].worst
-    waiting = response if fires(state.system, arc) else total((known.paces[arc.target].gap, response))
+    key = arc.target, fires(state.system, arc)
+    if key not in known.windows:
+        known.windows[key] = _window(known, *key)
+    window = known.windows[key]
+    return window if isinstance(window, Value) else Value(Fraction(eta(events, window)))
+
+
+def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: FBT001
+    """Give how long (in ticks) messages can gather before a reader."""
+    response = known.responses[reader].worst
+    waiting = response if is_fired else total((known.paces[reader].gap, response))
     if waiting.value is None or not waiting.complete:
         return replace(waiting, value=None, side="exact")
-    window = waiting.value / state.system.tick
-    return Value(Fraction(eta(events, max(-(-window.numerator // window.denominator), 1))))
+    window = waiting.value / known.state.system.tick
+    return max(-(-window.numerator // window.denominator), 1)
 
 
 def service_loads(known: Known) -> dict[str, ServiceLoad]:

@@ -168,7 +168,7 @@ def _event(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
     beat, reasons = _all(found, activity, inputs) if activity.mode == "all" else _any(found, activity, inputs)
     if activity.every > 1:
         beat = times(beat[0], Fraction(1, activity.every)), times(beat[1], activity.every)
-        reasons.append(Reason(f"only each {activity.every}th fires it", activity.places.get("every", activity.at)))
+        reasons.append(Reason(f"one in {activity.every} fires it", activity.places.get("every", activity.at)))
     if activity.throttle:
         beat = _throttled(found, activity, beat)
         gap = duration(activity.throttle * found.state.system.tick)

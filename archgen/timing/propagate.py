@@ -56,11 +56,11 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign):
                 for name in unit:
                     self.interferes.setdefault(name, []).append(key)
+        self.after = self._after()
 
     def run(self) -> State:
-        after = self._after()
-        for steps in components([*self.state.triggers.order, *self.resources], after.__getitem__):
-            if len(steps) == 1 and steps[0] not in after[steps[0]]:
+        for steps in components([*self.state.triggers.order, *self.resources], self.after.__getitem__):
+            if len(steps) == 1 and steps[0] not in self.after[steps[0]]:
                 self._step(steps[0])
             else:
                 self._iterate(steps)
@@ -90,24 +90,37 @@ class _Propagation:
 
     def _iterate(self, steps: tuple[str, ...]) -> None:
         """Repeat until nothing changes. Started from the execution times alone, all that is found stays below the truth."""
-        state, system = self.state, self.state.system
-        names = [step for step in steps if step in system.activities]
-        for name in names:
-            state.responses[name] = Found(system.activities[name].wcet, "unknown", Cause((name,)))
-        for name in names:
-            state.events.setdefault(name, ())
-        for resource in steps[len(names) :]:
-            for name in self.resources[resource].members:
-                state.responses.setdefault(name, Found(system.activities[name].wcet, "unknown", Cause((name,))))
+        self._start(steps)
+        waiting = set(steps)
         for _ in range(_SWEEPS):
-            changes = [self._step(step) for step in steps]
-            if not any(changes):
+            for step in steps:
+                if step in waiting:
+                    waiting.discard(step)
+                    if self._step(step):
+                        waiting.update(self.after[step])
+            waiting.intersection_update(steps)
+            if not waiting:
                 return
+        self._give_up(steps)
+
+    def _start(self, steps: tuple[str, ...]) -> None:
+        for name in self._names(steps):
+            activity = self.state.system.activities[name]
+            self.state.responses.setdefault(name, Found(activity.wcet, "unknown", Cause((name,))))
+            self.state.events.setdefault(name, ())
+
+    def _names(self, steps: tuple[str, ...]) -> Iterator[str]:
         for step in steps:
-            for name in self.resources[step].members if step in self.resources else (step,):
-                state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED)
-                state.diverged.add(name)
-            if step in system.activities and not states_itself(system.activities[step]):
+            yield from self.resources[step].members if step in self.resources else (step,)
+
+    def _give_up(self, steps: tuple[str, ...]) -> None:
+        """Past the cap nothing is said at all: the last round is no bound."""
+        state = self.state
+        for name in self._names(steps):
+            state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED)
+            state.diverged.add(name)
+        for step in steps:
+            if step in state.system.activities and not states_itself(state.system.activities[step]):
                 state.events[step] = DIVERGED
 
     def _step(self, step: str) -> bool:
@@ -119,11 +132,12 @@ class _Propagation:
             state.responses.update(found)
             return changed
         events = activation(state, step)
-        changed = state.events.get(step) != events
+        if state.events.get(step) == events and step in state.responses:
+            return False
         state.events[step] = events
         if step not in self.runs_on:
             state.responses[step] = alone(state.system, step, state.events, self.budget)
-        return changed
+        return True
 
 
 def activation(state: State, name: str) -> Streams | Cause:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 
 from archgen.timing.value import Value
 
 _UNITS = ((3600 * 10**9, "h"), (10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 
 
+@lru_cache(4096)
 def duration(value: Fraction | int) -> str:
     """Give a duration in ns, in the largest unit below it."""
     if not value:
@@ -17,6 +19,7 @@ def duration(value: Fraction | int) -> str:
     return f"{number(Fraction(value) / size)} {unit}"
 
 
+@lru_cache(4096)
 def rate(value: Fraction) -> str:
     """Give a rate."""
     return f"{number(value)} Hz"

@@ -54,9 +54,7 @@ def worst(found: Analysis) -> dict[str, object]:
         ({"c": ("20", "5"), "b": ("40", "10"), "a": ("80", "40")}, {"c": 5, "b": 15, "a": ("overload",)}),
     ],
 )
-def test_fixed_priorities(
-    derived: Derived, sets: dict[str, tuple[str, str]], expected: dict[str, object]
-) -> None:
+def test_fixed_priorities(derived: Derived, sets: dict[str, tuple[str, str]], expected: dict[str, object]) -> None:
     found = analyse(derived(tasks({name: periodic(*row) for name, row in sets.items()})))
     assert worst(found) == expected
     assert {response.tier for response in found.responses.values()} == {"priorities"}
