@@ -273,12 +273,12 @@ def _output(found: Paces, activity: Activity, key: str, beat: Beat, asked: Value
     rate, gap = (asked or unknown(activity.id), unknown(activity.id)) if (activity.id, key) in serves else beat
     if key in activity.conditional:
         return _conditional(found, activity, key, pace, rate)
-    response = found.responses[activity.id]
-    if gap.value is not None:
-        spread = _spread(response)
-        gap = total((gap, spread)) if spread.value != 0 else gap
-    jitter = total((pace.jitter, _spread(response)))
-    return replace(pace, rate=rate, gap=gap, jitter=jitter, distance=_closer(pace, response), reasons=())
+    spread = _spread(found.responses[activity.id])
+    if spread.value == 0:
+        return Pace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
+    gap = gap if gap.value is None else total((gap, spread))
+    jitter = total((pace.jitter, spread))
+    return Pace(pace.behaviour, rate, gap, jitter, _closer(pace, spread), pace.inferred)
 
 
 def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, rate: Value) -> Pace:
@@ -299,8 +299,7 @@ def _spread(response: Response) -> Value:
     return Value(max(worst.value - best, Fraction(0)))
 
 
-def _closer(pace: Pace, response: Response) -> Value:
+def _closer(pace: Pace, spread: Value) -> Value:
     if pace.distance.value is None:
         return UNKNOWN if not pace.distance.complete else pace.distance
-    spread = _spread(response)
     return ZERO if spread.value is None else Value(max(pace.distance.value - spread.value, Fraction(0)))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from archgen.timing.placement import Resource, resources
-from archgen.timing.response import DIVERGED, Cause, Found, alone, responses, united
+from archgen.timing.response import DIVERGED, Cause, Effort, Found, alone, responses, united
 from archgen.timing.rings import components
 from archgen.timing.streams import Stream, Streams, all_of, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
@@ -56,6 +56,7 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign):
                 for name in unit:
                     self.interferes.setdefault(name, []).append(key)
+        self.seen: dict[str, dict[str, Streams | Cause]] = {}
         self.after = self._after()
 
     def run(self) -> State:
@@ -127,7 +128,13 @@ class _Propagation:
         """Find one step's figures anew, and tell whether they changed."""
         state = self.state
         if step in self.resources:
-            found = responses(state.system, self.resources[step], state.events, state.responses, self.budget)
+            found = responses(
+                state.system,
+                self.resources[step],
+                state.events,
+                state.responses,
+                Effort(self.budget, self._stale(step)),
+            )
             changed = any(state.responses.get(name) != response for name, response in found.items())
             state.responses.update(found)
             return changed
@@ -138,6 +145,14 @@ class _Propagation:
         if step not in self.runs_on:
             state.responses[step] = alone(state.system, step, state.events, self.budget)
         return True
+
+    def _stale(self, step: str) -> frozenset[str] | None:
+        """Name what has another event model than when a resource was looked at last; None the first time."""
+        resource, events = self.resources[step], self.state.events
+        now = {name: events[name] for unit in (*resource.units, *resource.foreign) for name in unit}
+        before = self.seen.get(step)
+        self.seen[step] = now
+        return None if before is None else frozenset(name for name in now if now[name] is not before[name])
 
 
 def activation(state: State, name: str) -> Streams | Cause:

@@ -36,6 +36,13 @@ class Found(NamedTuple):
     cause: Cause = Cause()
 
 
+class Effort(NamedTuple):
+    """How much may still be computed, and for whom: `stale` are those whose event models have changed, None at first."""
+
+    budget: Budget
+    stale: frozenset[str] | None = None
+
+
 Events = Mapping[str, Streams | Cause]
 OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
 MOST_NAMED = 12
@@ -96,6 +103,10 @@ class _Thread:
     container: str | None
 
 
+_Threads = tuple[Sequence[_Thread], Sequence[_Thread]]
+"""Those of a resource, and the foreign ones."""
+
+
 def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> _Thread:
     found = [_work(system, name, events, known) for name in unit]
     causes = [one for one in found if isinstance(one, Cause)]
@@ -114,14 +125,29 @@ def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Foun
 
 
 def responses(
-    system: System, resource: Resource, events: Events, known: Mapping[str, Found], budget: Budget
+    system: System,
+    resource: Resource,
+    events: Events,
+    known: Mapping[str, Found],
+    effort: Effort,
 ) -> dict[str, Found]:
-    """Find the responses of all that a resource runs; `known` are those found so far (they matter on several cores)."""
+    """Find the responses of what a resource runs; `known` are those found so far (they matter on several cores).
+
+    What has a higher priority than all that is stale is left out.
+    """
+    budget, stale = effort
     threads = [_thread(system, unit, events, known) for unit in resource.units]
     foreign = [_thread(system, unit, events, known) for unit in resource.foreign]
+    if stale is not None and resource.cores == 1:
+        touched = max(
+            (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1
+        )
+        wanted = [thread for thread in threads if thread.low is None or thread.low <= touched]
+    else:
+        wanted = threads
     solve = _one_core if resource.cores == 1 else _several
     found: dict[str, Found] = {}
-    for thread, response in solve(system, resource, threads, foreign, budget):
+    for thread, response in solve(system, resource, (threads, foreign), wanted, budget):
         for name in thread.unit:
             declared = system.activities[name].response
             found[name] = response if declared is None else Found(declared, "declared")
@@ -130,13 +156,17 @@ def responses(
     return found
 
 
+def _high(thread: _Thread) -> int:
+    return -1 if thread.high is None else thread.high
+
+
 def _one_core(
-    _: System, __: Resource, threads: Sequence[_Thread], foreign: Sequence[_Thread], budget: Budget
+    _: System, __: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
 ) -> Iterable[tuple[_Thread, Found]]:
-    everything = (*threads, *foreign)
+    everything = (*threads[0], *threads[1])
     ranked = _Ranked(everything)
-    whole = _any_order(everything, budget) if any(thread.low is None for thread in threads) else None
-    for thread in threads:
+    whole = _any_order(everything, budget) if any(thread.low is None for thread in wanted) else None
+    for thread in wanted:
         if whole is not None and thread.low is None:
             only = len(everything) == 1 and len(thread.unit) > 1
             yield thread, whole._replace(tier="executor") if only else whole
@@ -193,12 +223,12 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
 
 
 def _several(
-    system: System, resource: Resource, threads: Sequence[_Thread], foreign: Sequence[_Thread], budget: Budget
+    system: System, resource: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
 ) -> Iterable[tuple[_Thread, Found]]:
-    everything = (*threads, *foreign)
+    everything = (*threads[0], *threads[1])
     total = sum((thread.share for thread in everything), Fraction(0))
     causes = [thread.cause for thread in everything if thread.cause]
-    for thread in threads:
+    for thread in wanted:
         if total >= resource.cores or thread.share >= 1:
             yield thread, Found(None, "cores", OVERLOAD)
         elif causes:

@@ -39,11 +39,12 @@ def triggers(system: System) -> Triggers:
     requests = {a.id: _requests(system, a) for a in system.activities.values()}
     found = _Finding(system, inputs, requests)
     after = found.after()
-    rings = {member: ring for ring in components(system.activities, after.__getitem__) for member in ring}
-    gated = {name: keys for name in system.activities if (keys := found.gates(name, rings[name]))}
+    rings = components(system.activities, after.__getitem__)
+    whole = {member: ring for ring in rings for member in ring}
+    gated = {name: keys for name in system.activities if (keys := found.gates(name, whole[name]))}
     open_ = frozenset((name, key) for name, keys in gated.items() for key in keys)
-    cut = found.after(open_)
-    order = components(system.activities, cut.__getitem__)
+    cut = found.after(open_) if open_ else after
+    order = components(system.activities, cut.__getitem__) if open_ else rings
     unknown = {member for ring in order if found.is_ring(ring, cut) for member in ring}
     firing = found.firing()
     return Triggers(
@@ -53,8 +54,8 @@ def triggers(system: System) -> Triggers:
         frozenset(unknown),
         open_,
         frozenset(system.activities) - firing,
-        tuple(found.endless(frozenset(gated), firing)),
-        tuple(found.deadlocked(firing)),
+        tuple(found.endless(frozenset(gated), firing)) if unknown else (),
+        tuple(found.deadlocked(firing)) if len(firing) < len(system.activities) else (),
     )
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from archgen.timing.streams import Streams, arrivals, eta
 
-_STEPS = 20_000_000
+_STEPS = 6_000_000
 
 
 class DivergedError(Exception):
