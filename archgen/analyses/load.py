@@ -57,7 +57,8 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
     for name, pace in found.paces.items():
         activity = found.system.activities[name]
         alone = share(found.system, name, pace).value
-        if alone is not None and alone >= 1 and activity.host not in full:
+        # Where a period is written, `long-execution` says so.
+        if activity.period is None and alone is not None and alone >= 1 and activity.host not in full:
             yield Diagnostic(
                 "overloaded-host",
                 f"`{name}` takes {number(100 * alone)} % of a core: it is fired again before it is done",
