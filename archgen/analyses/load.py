@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
+from archgen.timing.bounds import share
 from archgen.timing.words import duration, number
 
 if TYPE_CHECKING:
@@ -52,12 +53,15 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
         for place, cores, used in load.places:
             if used.value is not None and used.value >= cores:
                 yield _overload(architecture, found, host, load, (place, cores, used.value))
-    for name, response in found.responses.items():
+    full = {host for host, load in found.hosts.items() if load.verdict == "overload"}
+    for name, pace in found.paces.items():
         activity = found.system.activities[name]
-        if activity.host is None and response.worst.value is None and "overload" in response.worst.assumptions:
+        alone = share(found.system, name, pace).value
+        # Where a period is written, `long-execution` says so.
+        if activity.period is None and alone is not None and alone >= 1 and activity.host not in full:
             yield Diagnostic(
                 "overloaded-host",
-                f"`{name}` needs a core of its own for more time than there is: it is fired again before it is done",
+                f"`{name}` takes {number(100 * alone)} % of a core: it is fired again before it is done",
                 activity.places.get("wcet", activity.at),
                 help="fire it less often (`every`, `throttle`), or make it quicker",
                 element=name,

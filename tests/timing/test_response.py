@@ -10,7 +10,6 @@ import pytest
 from archgen.model.architecture import Architecture
 from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis
-from archgen.timing.value import Value
 
 MS = 10**6
 Derived = Callable[[str], Architecture]
@@ -128,9 +127,7 @@ def test_an_executor_runs_one_after_the_other(derived: Derived) -> None:
 def test_what_is_not_known_is_named(derived: Derived) -> None:
     rows = {"a": periodic("10", "2", ""), "b": "behaviour: periodic, period: 20 ms"}
     response = analyse(derived(tasks(rows))).responses["a"].worst
-    assert response == Value(
-        Fraction(2 * MS), complete=False, missing=("b",), assumptions=response.assumptions, side="at least"
-    )
+    assert (response.value, response.complete, response.missing, response.side) == (2 * MS, False, ("b",), "at least")
 
 
 def test_a_declared_response_is_used_as_it_is(derived: Derived) -> None:
@@ -168,7 +165,7 @@ links: {lan: {connects: [p, q], latency: 0 ms}}
 
 
 def test_what_grows_for_ever_has_diverged(derived: Derived) -> None:
-    """The link's latency varies by more with each round: responses feed one another without an end."""
+    """Each host fires the other: a response of more makes a jitter of more, and that a response of more still."""
     text = """
 groups:
   g:
@@ -186,7 +183,8 @@ hosts: {p: {cores: 1}, q: {cores: 1}}
 links: {lan: {connects: [p, q], latency: 0 ms}}
 """
     found = analyse(derived(text))
-    assert found.diverged == ("a", "b", "c", "d") or all(r.worst.value for r in found.responses.values())
+    assert found.diverged == ("a", "b", "c", "d")
+    assert worst(found) == dict.fromkeys("abcd", ("diverged",))
 
 
 def test_many_tasks_are_quick_and_exact(derived: Derived) -> None:
