@@ -46,7 +46,7 @@ _WORK = "wcet: 10 ms, bcet: 10 ms"
 
 
 def _text() -> str:
-    inputs = {name: (source,) for name, source in {**_TRANSFORMS, **_SINKS}.items()}
+    inputs: dict[str, tuple[str, ...]] = {name: (source,) for name, source in {**_TRANSFORMS, **_SINKS}.items()}
     inputs |= _FUSIONS | {"behavior_planner": _PLANNER}
     names = [*_SENSORS, *inputs]
     lines = [
@@ -72,7 +72,7 @@ def _text() -> str:
 def test_the_reference_system(derived: Callable[[str], Architecture]) -> None:
     found = analyse(derived(_text()))
     assert len(found.paces) == 25
-    special = {name: Fraction(25, 3) for name in _SLOW}
+    special: dict[str, Fraction | int] = {name: Fraction(25, 3) for name in _SLOW}
     special |= {"visualizer": Fraction(50, 3), "cluster_settings": 40, "intersection": 40, "intersection_output": 40}
     assert {name: pace.rate.value for name, pace in found.paces.items()} == {
         name: special.get(name, 10) for name in found.paces
