@@ -162,7 +162,11 @@ def _chains_text(result: Result, chains: Mapping[str, ChainResult], oldest: Mapp
             assumed |= dict.fromkeys(bound.assumptions if mark else ())
             ends = (_cell(bound) + mark, _cell(deadline) if deadline else "-")
             lines.append(_row(f"{key} {what}", *map(_figure, figures), *ends))
-    return [*lines, *(["", "  * holds only as far as this does:"] if assumed else []), *(f"    {said}" for said in assumed)]
+    return [
+        *lines,
+        *(["", "  * holds only as far as this does:"] if assumed else []),
+        *(f"    {said}" for said in assumed),
+    ]
 
 
 def _activities_text(result: Result, analysis: Analysis) -> list[str]:

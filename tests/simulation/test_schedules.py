@@ -34,7 +34,11 @@ def test_a_pinned_core_is_kept() -> None:
 
 
 def test_where_no_core_is_left_the_rest_runs_between_what_is_pinned() -> None:
-    activities = [timed("p0", 20, 4, host="h", core=0), timed("p1", 20, 2, host="h", core=1), timed("x", 20, 3, host="h")]
+    activities = [
+        timed("p0", 20, 4, host="h", core=0),
+        timed("p1", 20, 2, host="h", core=1),
+        timed("x", 20, 3, host="h"),
+    ]
     found = jobs(system([*activities[:2], timed("x", 20, 3, host="h")], cores={"h": 2}), 19)
     together = {name: one[0][1:] for name, one in found.items()}
     assert together in (
@@ -105,7 +109,7 @@ def test_every_third_and_throttle() -> None:
 
 def test_a_full_queue_drops_the_oldest() -> None:
     # The reader takes 10 for each of what comes every 4; it keeps two.
-    from archgen.simulation import simulate  # noqa: PLC0415 - this test alone
+    from archgen.simulation import simulate
 
     one = system([timed("clock", 4, 0), event("reader", 10, "clock")], [arc("clock", "reader", depth=2)])
     seen = simulate(one, 1, 1)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 import simpy
+
 from tests.simulation.systems import arc, event, jobs, system, timed
 
 Jobs = dict[str, list[tuple[float, float, float]]]

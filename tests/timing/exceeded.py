@@ -27,7 +27,9 @@ def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], in
     seen = simulate(analysis.system, seconds, seeds, {key: c.through for key, c in found.items()}, pauses(analysis))
     pairs = [*_activities(seen, analysis), *_chains(seen, found, ages(analysis, found)), *_rest(seen, analysis)]
     held = [(what, seen, bound) for what, seen, value in pairs if (bound := bounded(value)) is not None]
-    wrong = [f"{what}: {float(seen) / 1e6} seen, bound {float(bound) / 1e6}" for what, seen, bound in held if seen > bound]
+    wrong = [
+        f"{what}: {float(seen) / 1e6} seen, bound {float(bound) / 1e6}" for what, seen, bound in held if seen > bound
+    ]
     return wrong, len(held)
 
 
@@ -62,7 +64,9 @@ def _activities(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fractio
                 yield f"silence of {key}", silence, analysis.outputs[name, key].gap
 
 
-def _chains(seen: Result, found: dict[str, ChainResult], oldest: dict[str, Value]) -> Iterator[tuple[str, Fraction, Value]]:
+def _chains(
+    seen: Result, found: dict[str, ChainResult], oldest: dict[str, Value]
+) -> Iterator[tuple[str, Fraction, Value]]:
     for key, one in seen.chains.items():
         way = " > ".join(one.through)
         if one.reaction is not None:
