@@ -7,6 +7,8 @@ from fractions import Fraction
 
 from archgen.simulation.simulate import ChainSeen, Distribution, Result
 from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains import data_age
+from archgen.timing.network import Network
 from archgen.timing.value import Value
 
 _MS = 10**6
@@ -27,15 +29,24 @@ def pauses(analysis: Analysis) -> dict[tuple[str, str], Fraction]:
     return found
 
 
+def ages(analysis: Analysis, chains: Mapping[str, ChainResult]) -> dict[str, Value]:
+    """Bound the data age of each chain: where an event is the stimulus, it is larger than the reaction time."""
+    network = Network.of(analysis)
+    return {key: data_age(network, found) for key, found in chains.items()}
+
+
 def plain(result: Result, analysis: Analysis, chains: Mapping[str, ChainResult]) -> Plain:
     """Give everything as JSON data: durations in ms, rates in Hz, shares without unit (schemas/simulation.schema.json)."""
+    oldest = ages(analysis, chains)
     return {
         "version": 1,
         "seconds": result.seconds,
         "seeds": result.seeds,
         "events": result.events,
         "note": "Seen, not bounded: each largest figure is a lower bound on the worst case.",
-        "chains": {key: _chain(seen, chains.get(key)) for key, seen in result.chains.items()},
+        "chains": {
+            key: {**_chain(seen, chains[key]), "age_bound": _bound(oldest[key])} for key, seen in result.chains.items()
+        },
         "elements": {key: _activity(result, analysis, key) for key in result.activities},
         "hosts": {
             key: {
@@ -61,18 +72,18 @@ def plain(result: Result, analysis: Analysis, chains: Mapping[str, ChainResult])
     }
 
 
-def _chain(seen: ChainSeen, found: ChainResult | None) -> Plain:
+def _chain(seen: ChainSeen, found: ChainResult) -> Plain:
     return {
         "through": list(seen.through),
         "reaction": _spread(seen.reaction),
         "age": _spread(seen.age),
-        "bound": _bound(found.bound) if found else None,
+        "bound": _bound(found.bound),
         "reduced_reaction": {
             "largest": _ms(seen.reduced_reaction),
-            "bound": _bound(found.reduced_reaction) if found else None,
+            "bound": _bound(found.reduced_reaction),
         },
         "reduced_age": {"largest": _ms(seen.reduced_age), "bound": _bound(found.reduced_age) if found else None},
-        "deadline": _bound(found.deadline) if found and found.deadline else None,
+        "deadline": _bound(found.deadline) if found.deadline else None,
     }
 
 
@@ -122,7 +133,7 @@ def text(title: str, result: Result, analysis: Analysis, chains: Mapping[str, Ch
         f"Seen in {result.seconds} s from each of {result.seeds} seeds ({result.events} events).",
         "The largest figures seen are lower bounds on the worst case; what stands beside them are bounds from above.",
     ]
-    lines += _chains_text(result, chains)
+    lines += _chains_text(result, chains, ages(analysis, chains))
     lines += _activities_text(result, analysis)
     lines += _hosts_text(result, analysis)
     if result.drops:
@@ -137,21 +148,25 @@ def _row(name: str, *cells: str) -> str:
     return f"  {name[:36]:36}" + "".join(f"{cell:>12}" for cell in cells)
 
 
-def _chains_text(result: Result, chains: Mapping[str, ChainResult]) -> list[str]:
+def _chains_text(result: Result, chains: Mapping[str, ChainResult], oldest: Mapping[str, Value]) -> list[str]:
     if not result.chains:
         return []
     lines = ["", _row("Chains (ms)", "least", "median", "95 %", "largest", "bound", "deadline")]
+    assumed: dict[str, None] = {}
     for key, seen in result.chains.items():
-        found = chains.get(key)
-        deadline = found.deadline if found else None
-        ends = (_cell(found.bound) if found else "-", _cell(deadline) if deadline else "-")
-        for what, spread in (("reaction", seen.reaction), ("age", seen.age)):
-            if spread is None:
-                lines.append(_row(f"{key} {what}", "-", "-", "-", "-", *ends))
-            else:
-                figures = (spread.least, spread.median, spread.most_of_it, spread.largest)
-                lines.append(_row(f"{key} {what}", *map(_figure, figures), *ends))
-    return lines
+        deadline = chains[key].deadline
+        parts = (("reaction", seen.reaction, chains[key].bound), ("age", seen.age, oldest[key]))
+        for what, spread, bound in parts:
+            figures = (spread.least, spread.median, spread.most_of_it, spread.largest) if spread else (None,) * 4
+            mark = "*" if bound.assumptions and _known(bound) is not None else ""
+            assumed |= dict.fromkeys(bound.assumptions if mark else ())
+            ends = (_cell(bound) + mark, _cell(deadline) if deadline else "-")
+            lines.append(_row(f"{key} {what}", *map(_figure, figures), *ends))
+    return [
+        *lines,
+        *(["", "  * holds only as far as this does:"] if assumed else []),
+        *(f"    {said}" for said in assumed),
+    ]
 
 
 def _activities_text(result: Result, analysis: Analysis) -> list[str]:

@@ -99,7 +99,7 @@ class _Flat:
             self.unknown[f"latency from {arc.source} to {arc.target}"] = None
         link, transmission = -1, 0
         bandwidth = self.system.bandwidths.get(arc.link or "")
-        if arc.link is not None and arc.size is not None and bandwidth:
+        if arc.role == "data" and arc.link is not None and arc.size is not None and bandwidth:
             link = self.links.setdefault(arc.link, len(self.links))
             transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
         queue = -1

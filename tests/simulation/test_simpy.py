@@ -23,8 +23,8 @@ class _Machine:
         self.jobs: Jobs = {}
 
     def job(self, core: Any, name: str, fired: float, priority: int, cost: int) -> Process:  # noqa: ANN401 - SimPy has no types
-        started: float | None = None
         left: float = cost
+        started = None
         while left or started is None:
             begun = None
             with core.request(priority=priority) as asked:

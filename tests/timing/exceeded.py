@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.simulation import Result, simulate
-from archgen.simulation.compared import pauses
+from archgen.simulation.compared import ages, pauses
 from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chains
@@ -25,7 +25,7 @@ def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], in
         return [], 0
     found = chains(analysis, model)
     seen = simulate(analysis.system, seconds, seeds, {key: c.through for key, c in found.items()}, pauses(analysis))
-    pairs = [*_activities(seen, analysis), *_chains(seen, found), *_rest(seen, analysis)]
+    pairs = [*_activities(seen, analysis), *_chains(seen, found, ages(analysis, found)), *_rest(seen, analysis)]
     held = [(what, seen, bound) for what, seen, value in pairs if (bound := bounded(value)) is not None]
     wrong = [
         f"{what}: {float(seen) / 1e6} seen, bound {float(bound) / 1e6}" for what, seen, bound in held if seen > bound
@@ -64,7 +64,9 @@ def _activities(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fractio
                 yield f"silence of {key}", silence, analysis.outputs[name, key].gap
 
 
-def _chains(seen: Result, found: dict[str, ChainResult]) -> Iterator[tuple[str, Fraction, Value]]:
+def _chains(
+    seen: Result, found: dict[str, ChainResult], oldest: dict[str, Value]
+) -> Iterator[tuple[str, Fraction, Value]]:
     for key, one in seen.chains.items():
         way = " > ".join(one.through)
         if one.reaction is not None:
@@ -73,7 +75,7 @@ def _chains(seen: Result, found: dict[str, ChainResult]) -> Iterator[tuple[str, 
             if best.value is not None:
                 yield f"best case of {way}, negative", -one.reaction.least, Value(-best.value, best.complete)
         if one.age is not None:
-            yield f"age of {way}", one.age.largest, found[key].bound
+            yield f"age of {way}", one.age.largest, oldest[key]
         if one.reduced_reaction is not None:
             yield f"reduced reaction of {way}", one.reduced_reaction, found[key].reduced_reaction
         if one.reduced_age is not None:
