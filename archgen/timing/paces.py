@@ -9,7 +9,7 @@ from fractions import Fraction
 from archgen.source import Span
 from archgen.timing.analysis import Pace, Reason, Response
 from archgen.timing.arithmetic import NEVER, UNBOUNDED, because, largest, smallest, times, total, unknown
-from archgen.timing.propagate import State, arrival, is_kept
+from archgen.timing.propagate import State, arrival, is_kept, renewed
 from archgen.timing.response import Cause
 from archgen.timing.streams import Streams, single
 from archgen.timing.system import Activity, Arc
@@ -214,7 +214,9 @@ def _all(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
         if (activity.id, key) in found.state.triggers.open:
             beats[key] = unknown(activity.id), unknown(activity.id)
     if not beats:
-        return (ZERO, UNBOUNDED), reasons
+        fed = renewed(found.state.system, inputs)
+        beat, more = _any(found, activity, fed) if fed else ((ZERO, UNBOUNDED), [])
+        return beat, reasons + more
     return (_slowest(found, activity, beats, inputs), largest(gap for _, gap in beats.values())), reasons
 
 

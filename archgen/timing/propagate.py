@@ -188,6 +188,9 @@ def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...
     if activity.mode == "any":
         return _any(arrival(state, activity, key, arcs) for key, arcs in inputs.items())
     needed = [key for key, arcs in inputs.items() if not is_kept(state.system, arcs)]
+    if not needed:
+        fed = renewed(state.system, inputs)
+        return _any(arrival(state, activity, key, arcs) for key, arcs in fed.items()) if fed else ()
     found = [
         Cause((activity.id,))
         if (activity.id, key) in state.triggers.open
@@ -195,7 +198,7 @@ def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...
         for key in needed
     ]
     known = [streams for streams in found if not isinstance(streams, Cause)]
-    if any(not streams for streams in known) or not needed:
+    if any(not streams for streams in known):
         return ()
     if not known:
         return united(cause for cause in found if isinstance(cause, Cause))
@@ -205,6 +208,15 @@ def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...
 def is_kept(system: System, arcs: Iterable[Arc]) -> bool:
     """Say whether something sent once stands on an input: it is always there."""
     return any(system.activities[arc.source].behaviour == "once" for arc in arcs)
+
+
+def renewed(system: System, inputs: Mapping[str, tuple[Arc, ...]]) -> dict[str, tuple[Arc, ...]]:
+    """Give the inputs that something else feeds beside what is sent once: where everything is always there, they fire."""
+    return {
+        key: arcs
+        for key, arcs in inputs.items()
+        if any(system.activities[arc.source].behaviour != "once" for arc in arcs)
+    }
 
 
 def arrival(state: State, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> Streams | Cause:
