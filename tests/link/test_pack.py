@@ -258,5 +258,6 @@ def test_whatever_is_written_packs_to_a_fixed_point(tmp_path_factory: pytest.Tem
     assert again.architecture.components == checked.architecture.components
     assert again.architecture.nodes == checked.architecture.nodes
     assert again.architecture.types == checked.architecture.types
-    errors = [d for d in again.findings if d.severity == "error"]
-    assert {d.rule for d in errors} <= {d.rule for d in checked.findings if d.severity == "error"}
+    # A reading error keeps what it may explain quiet; packed, the wrong value is gone, and then it is told.
+    if not checked.broken:
+        assert [d for d in again.findings if d.severity == "error"] == []
