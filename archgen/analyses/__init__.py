@@ -67,7 +67,7 @@ def check(architecture: Architecture) -> Iterator[Diagnostic]:
     for judge, _ in _JUDGES:
         yield from judge(architecture)
     if _is_timed(architecture):
-        found = analyse(architecture)
+        found = analyse(architecture, judging=True)
         for judge_timing, _ in _TIMED_JUDGES:
             yield from judge_timing(architecture, found)
 

@@ -15,13 +15,16 @@ from archgen.timing.traffic import link_loads, topic_loads
 from archgen.timing.triggers import triggers
 
 
-def analyse(architecture: Architecture) -> Analysis:
-    """Find all that follows from an architecture, chains aside."""
+def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
+    """Find all that follows from an architecture, chains aside.
+
+    For `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
+    """
     system, notes = build(architecture)
-    return analyse_system(system, notes)
+    return analyse_system(system, notes, judging=judging)
 
 
-def analyse_system(system: System, notes: tuple[Reason, ...] = ()) -> Analysis:
+def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: bool = False) -> Analysis:
     """Find all that follows from a system."""
     firing = triggers(system)
     state = propagate(system, firing)
@@ -36,8 +39,8 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = ()) -> Analysis:
         responses=responses,
         hosts=host_loads(system, places, found.of, responses),
         links=link_loads(state, found.outputs),
-        topics=topic_loads(system, found.outputs),
-        edges=edge_paces(known),
+        topics={} if judging else topic_loads(system, found.outputs),
+        edges=edge_paces(known, judging=judging),
         endless=firing.endless,
         deadlocked=firing.deadlocked,
         diverged=tuple(

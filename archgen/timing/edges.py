@@ -30,9 +30,19 @@ class Known:
     """Found once for each reader."""
 
 
-def edge_paces(known: Known) -> tuple[EdgePace, ...]:
-    """Compare what is sent with what is read, along every arc that carries data."""
-    return tuple(_edge(known, arc) for arc in known.state.system.arcs if arc.role == "data")
+def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
+    """Compare what is sent with what is read, along every arc that carries data, or those that a rule may judge."""
+    system = known.state.system
+    arcs = (arc for arc in system.arcs if arc.role == "data" and (not judging or _judged(system, arc)))
+    return tuple(_edge(known, arc) for arc in arcs)
+
+
+def _judged(system: System, arc: Arc) -> bool:
+    """Say whether the rules on lost samples and short queues look at an arc at all."""
+    target = system.activities[arc.target]
+    return (target.mode == "all" and arc.input in target.triggers) or (
+        arc.depth_written and target.behaviour == "periodic"
+    )
 
 
 def fires(system: System, arc: Arc) -> bool:
