@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
@@ -62,8 +62,10 @@ def period_conflict(architecture: Architecture, found: Analysis) -> Iterator[Dia
             help="leave the rate out, or correct it; `behaviour: periodic` if a timer decides",
             element=name,
         )
+    shared = Counter(component for node in architecture.nodes.values() for component in node.implements)
     for component in architecture.components.values():
-        yield from _claim(architecture, found, component)
+        if component.timing and shared[component.id] > 1:
+            yield from _claim(found, component)
 
 
 def _differs(stated: Fraction, derived: Value) -> bool:
@@ -86,11 +88,10 @@ def _stated_at(activity: Activity) -> Span:
     return activity.places.get("rate", activity.places.get("period", activity.at))
 
 
-def _claim(architecture: Architecture, found: Analysis, component: Component) -> Iterator[Diagnostic]:
+def _claim(found: Analysis, component: Component) -> Iterator[Diagnostic]:
     """Compare what a component of several nodes states of the whole with what its nodes publish."""
     claimed = period(component.timing) if component.timing else None
-    nodes = [node.id for node in architecture.implementers(component.id)]
-    if claimed is None or component.timing is None or len(nodes) < 2:  # noqa: PLR2004
+    if claimed is None or component.timing is None:
         return
     stated = SECOND / claimed
     published = {key: pace.rate for (_, key), pace in found.outputs.items() if key in _ports(component)}
