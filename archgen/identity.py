@@ -1,0 +1,129 @@
+"""Which finding is which: by its rule, its element and what it says, never by where it stands.
+
+Lines move, files are renamed and reordered, figures change with every measurement. A finding is the same one as long as its
+rule, its element and the words of its message are; where several are alike, they are told apart by their number.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections import Counter, defaultdict, deque
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+
+    from archgen.diagnostic import Diagnostic
+    from archgen.source import Span
+
+_FIGURE = re.compile(r"(?<![\w.-])\d[\d.,]*(?!\w)")
+
+
+class Identity(NamedTuple):
+    """What makes a finding the same one wherever it stands. `message` has no figures outside of backticks."""
+
+    rule: str
+    element: str
+    message: str
+
+    def fingerprint(self, number: int) -> str:
+        """Give the hash of the finding with this identity that is the `number`th (from 1) of those alike."""
+        text = "\0".join((*self, str(number)))
+        return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+class Known(NamedTuple):
+    """A finding that was known before, as a baseline lists it: `times` alike, written at `at`."""
+
+    rule: str
+    element: str
+    message: str
+    times: int
+    at: Span
+
+    @property
+    def identity(self) -> Identity:
+        """Give what it is matched by."""
+        return Identity(self.rule, self.element, _without_figures(self.message))
+
+
+def identity(diagnostic: Diagnostic, renamed: Mapping[str, str] | None = None) -> Identity:
+    """Give a finding's identity; `renamed` leads from the ids that elements had to those that they have."""
+    element, message = diagnostic.element or "", diagnostic.message
+    if renamed:
+        message = _renamed_in(message, element, renamed)
+        element = _renamed(element, renamed)
+    return Identity(diagnostic.rule, element, _without_figures(message))
+
+
+def numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Diagnostic, Identity, int]]:
+    """Give each finding with its identity and its number (from 1) among those alike."""
+    seen = Counter[Identity]()
+    for diagnostic in diagnostics:
+        found = identity(diagnostic)
+        seen[found] += 1
+        yield diagnostic, found, seen[found]
+
+
+def unmatched(
+    now: Sequence[Sequence[Hashable]], before: Sequence[Sequence[Hashable]]
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Match each of `now` with one of `before`; give the positions of those that are left over on both sides.
+
+    Each has its keys, the strictest first: what agrees in the first key is matched before anything else is.
+    """
+    left, free = list(range(len(now))), list(range(len(before)))
+    for level in range(len(now[0]) if now else 0):
+        offers = defaultdict[object, deque[int]](deque)
+        for place in free:
+            offers[before[place][level]].append(place)
+        taken, rest = set[int](), list[int]()
+        for place in left:
+            offer = offers[now[place][level]]
+            if offer:
+                taken.add(offer.popleft())
+            else:
+                rest.append(place)
+        left, free = rest, [place for place in free if place not in taken]
+    return tuple(left), tuple(free)
+
+
+def _without_figures(message: str) -> str:
+    """Take out what changes without the fault being another one (figures that are no names, blanks), and what no file
+    can hold.
+    """
+    parts = message.encode("utf-8", "replace").decode("utf-8").split("`")
+    parts[::2] = [_FIGURE.sub("0", part) for part in parts[::2]]
+    return " ".join("`".join(parts).split())
+
+
+def _renamed(name: str, renamed: Mapping[str, str]) -> str:
+    """Give an id as it is now: renamed itself, or below what was."""
+    rest = ""
+    while name not in renamed:
+        name, dot, last = name.rpartition(".")
+        rest = f"{dot}{last}{rest}"
+        if not dot:
+            return rest
+    return renamed[name] + rest
+
+
+def _renamed_in(message: str, element: str, renamed: Mapping[str, str]) -> str:
+    """Give a message with the ids in its backticks as they are now; short ones are looked up below the element."""
+    parts = message.split("`")
+    for place in range(1, len(parts), 2):
+        word = parts[place]
+        below = (f"{owner}.{word}" for owner in _around(element))
+        found = next((renamed[name] for name in below if name in renamed), None)
+        parts[place] = (
+            _renamed(word, renamed) if found is None else found.split(".", found.count(".") - word.count("."))[-1]
+        )
+    return "`".join(parts)
+
+
+def _around(element: str) -> Iterator[str]:
+    """Give the element and what it stands in, from the inside out."""
+    while element:
+        yield element
+        element = element.rpartition(".")[0]
