@@ -75,8 +75,10 @@ def _print(  # noqa: PLR0913 - what the formats need
         sys.stdout.write(document)
         for said in sarif.limits(document, len(shown)):
             run.warn(said)
-    elif shown or not quiet:
+    elif shown:
         run.lines(shown, checked, sys.stdout)
+    elif not quiet:
+        click.echo("no new findings" if found and found.known else "no findings")
 
 
 def _sarif(shown: list[Diagnostic], checked: Checked, found: Reported | None) -> str:

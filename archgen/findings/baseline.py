@@ -9,7 +9,7 @@ from archgen.emit import yaml
 from archgen.identity import identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from archgen.diagnostic import Diagnostic, Rule
     from archgen.identity import Known
@@ -51,13 +51,17 @@ def divide(
 def write(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -> str:
     """Write the baseline that knows these findings, sorted, without what no baseline may know."""
     counts = Counter((d.rule, d.element or "", d.message) for d in findings if not rules[d.rule].fixed)
-    entries = [_entry(*what, count) for what, count in sorted(counts.items())]
-    return _HEADER + yaml.write({"archgen_baseline": 1, "findings": entries})
+    if not counts:
+        return f"{_HEADER}archgen_baseline: 1\nfindings: []\n"
+    lines = (line for what, count in sorted(counts.items()) for line in _entry(*what, count))
+    return "\n".join((f"{_HEADER}archgen_baseline: 1\nfindings:", *lines, ""))
 
 
-def _entry(rule: str, element: str, message: str, count: int) -> dict[str, object]:
-    """Give one entry; what says nothing is left out, so that a diff shows what matters."""
-    entry: dict[str, object] = {"rule": rule}
-    entry |= {"element": element} if element else {}
-    entry["message"] = message
-    return entry | ({"count": count} if count > 1 else {})
+def _entry(rule: str, element: str, message: str, count: int) -> Iterator[str]:
+    """Give the lines of one entry; what says nothing is left out, so that a diff shows what matters."""
+    yield f"  - rule: {yaml.scalar(rule)}"
+    if element:
+        yield f"    element: {yaml.scalar(element)}"
+    yield f"    message: {yaml.scalar(message)}"
+    if count > 1:
+        yield f"    count: {count}"
