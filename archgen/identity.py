@@ -1,7 +1,8 @@
-"""Which finding is which: by its rule, its element and what it says, never by where it stands.
+"""Which finding is which: by its rule, its element and the names in its message, never by where it stands.
 
-Lines move, files are renamed and reordered, figures change with every measurement. A finding is the same one as long as its
-rule, its element and the words of its message are; where several are alike, they are told apart by their number.
+Lines move, files are renamed and reordered, figures change with every measurement, titles and messages are reworded. A finding
+is the same one as long as its rule, its element and what its message names in backticks are (the whole message, without
+figures, where it names nothing); where several are alike, they are told apart by their number.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ _FIGURE = re.compile(r"(?<![\w.-])\d[\d.,]*(?!\w)")
 
 
 class Identity(NamedTuple):
-    """What makes a finding the same one wherever it stands. `message` has no figures outside of backticks."""
+    """What makes a finding the same one wherever it stands. `about` is what is left of its message."""
 
     rule: str
     element: str
-    message: str
+    about: str
 
     def fingerprint(self, number: int) -> str:
         """Give the hash of the finding with this identity that is the `number`th (from 1) of those alike."""
@@ -45,7 +46,7 @@ class Known(NamedTuple):
     @property
     def identity(self) -> Identity:
         """Give what it is matched by."""
-        return Identity(self.rule, self.element, _without_figures(self.message))
+        return _identity(self.rule, self.element, self.message)
 
 
 def identity(diagnostic: Diagnostic, renamed: Mapping[str, str] | None = None) -> Identity:
@@ -54,7 +55,7 @@ def identity(diagnostic: Diagnostic, renamed: Mapping[str, str] | None = None) -
     if renamed:
         message = _renamed_in(message, element, renamed)
         element = _renamed(element, renamed)
-    return Identity(diagnostic.rule, element, _without_figures(message))
+    return _identity(diagnostic.rule, element, message)
 
 
 def numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Diagnostic, Identity, int]]:
@@ -89,13 +90,20 @@ def unmatched(
     return tuple(left), tuple(free)
 
 
-def _without_figures(message: str) -> str:
-    """Take out what changes without the fault being another one (figures that are no names, blanks), and what no file
-    can hold.
-    """
-    parts = message.encode("utf-8", "replace").decode("utf-8").split("`")
-    parts[::2] = [_FIGURE.sub("0", part) for part in parts[::2]]
-    return " ".join("`".join(parts).split())
+def _identity(rule: str, element: str, message: str) -> Identity:
+    return Identity(rule, _storable(element), _about(_storable(message)))
+
+
+def _storable(text: str) -> str:
+    """Give text as a file gives it back: lone surrogates cannot stand in one."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _about(message: str) -> str:
+    """Give what a message names, else its words without what changes and leaves the fault the same: figures, blanks."""
+    names = message.split("`")[1::2]
+    text = "`".join(names) if any(names) else _FIGURE.sub("0", message)
+    return " ".join(text.split())
 
 
 def _renamed(name: str, renamed: Mapping[str, str]) -> str:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from archgen import git, pipeline, project
 from archgen.diagnostic import Diagnostic, Severity, settle
 from archgen.emit import tree
 from archgen.findings import baseline
 from archgen.findings.rules import by_name
-from archgen.identity import Known
+from archgen.identity import Known, identity, unmatched
 from archgen.pipeline import ALL_RULES, Checked
 from archgen.project import baseline as reading
 
@@ -23,11 +24,19 @@ RULES = by_name(ALL_RULES)
 
 @dataclass(frozen=True, slots=True)
 class Reported:
-    """What a check reports. `known` are findings kept quiet, `cured` what the baseline lists and is no more."""
+    """What a check reports.
+
+    Kept quiet are `known` ones (a baseline lists them) and `earlier` ones (they were there before a change). `cured` is
+    what the baseline lists, `healed` what was there before, and is no more.
+    """
 
     findings: tuple[Diagnostic, ...]
     known: tuple[Diagnostic, ...] = ()
     cured: tuple[Known, ...] = ()
+    earlier: tuple[Diagnostic, ...] = ()
+    healed: tuple[Diagnostic, ...] = ()
+    compared: bool = False
+    """Whether there was anything to compare with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +54,53 @@ def unread(findings: Iterable[Diagnostic]) -> bool:
     return any(RULES[finding.rule].fixed and finding.severity is Severity.ERROR for finding in findings)
 
 
-def beyond(checked: Checked, file: Path) -> Reported:
-    """Report what a baseline does not know, and what is wrong with the baseline."""
-    known, problems = _read(checked, file)
+def report(checked: Checked, file: Path | None = None, before: Checked | None = None) -> Reported:
+    """Report what a baseline does not know (and what is wrong with it), and what was not there before."""
+    known, problems = _read(checked, file) if file else ((), ())
     new, old, cured = baseline.divide(checked.findings, known, RULES)
+    caused, healed = since(checked, before) if before else (checked.findings, ())
+    found = set(caused)
     wrong = settle(problems, RULES, checked.loaded.rules)
-    gone = () if unread(checked.findings) else cured
-    return Reported(tuple(sorted((*new, *wrong), key=lambda finding: finding.key)), old, gone)
+    sound = not unread(checked.findings)
+    return Reported(
+        findings=tuple(sorted((*(d for d in new if d in found), *wrong), key=lambda finding: finding.key)),
+        known=old,
+        cured=cured if sound else (),
+        earlier=tuple(finding for finding in new if finding not in found),
+        healed=healed if sound else (),
+        compared=file is not None or before is not None,
+    )
+
+
+def since(
+    checked: Checked, before: Checked, renamed: Mapping[str, str] | None = None
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Give the findings that were not there before, and those that are no more.
+
+    Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
+    """
+    now = [_keys(finding, checked, None) for finding in checked.findings]
+    then = [_keys(finding, before, renamed) for finding in before.findings]
+    new, gone = unmatched(now, then)
+    return tuple(checked.findings[place] for place in new), tuple(before.findings[place] for place in gone)
+
+
+def _keys(finding: Diagnostic, of: Checked, renamed: Mapping[str, str] | None) -> tuple[Hashable, Hashable]:
+    same = identity(finding, renamed)
+    line = of.sources.line(finding.span.file, finding.span.line) or ""
+    return (same, finding.span.file, line.strip()), same
+
+
+def earlier(path: Path | None, revision: str) -> Checked:
+    """Judge the project as it was at a revision; `main...` is where HEAD left main.
+
+    Raises what `pipeline.check_at` raises.
+    """
+    if not revision.endswith("..."):
+        return pipeline.check_at(path, revision)
+    tracked = project.tracked(path)
+    fork = git.fork(tracked.objects.repository, revision.removesuffix("...") or "HEAD", "HEAD")
+    return pipeline.check_tracked(tracked, fork.commit)
 
 
 def update(checked: Checked, file: Path) -> Updated:
@@ -59,10 +108,10 @@ def update(checked: Checked, file: Path) -> Updated:
     known: tuple[Known, ...] = ()
     if os.path.lexists(file):
         known, problems = _read(checked, file)
-        text = checked.sources.text(_shown(checked, file)) or ""
-        if not reading.is_own(text):
-            said = f"{file} is no baseline, and stays as it is" if text else f"{file}: {problems[0].message}"
-            raise tree.OutputError(said if problems else f"{file} is empty", "give another file with `--baseline`")
+        if not reading.is_own(checked.sources.text(_shown(checked, file)) or ""):
+            why = problems[0].message if problems else "the file is empty"
+            msg = f"{file} stays as it is: {why}"
+            raise tree.OutputError(msg, "give another file with `--baseline`")
     new, old, cured = baseline.divide(checked.findings, known, RULES)
     tree.write_file(file, baseline.write(checked.findings, RULES).encode())
     added = sum(not RULES[finding.rule].fixed for finding in new)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from archgen.reported import Reported
 
 FORMATS = ["text", "json", "github", "sarif", "junit"]
+_CURED = 20
+"""Cured findings that are named; the others are counted."""
 
 
 @click.command("check")
@@ -29,8 +31,20 @@ FORMATS = ["text", "json", "github", "sarif", "junit"]
     "--baseline", metavar="FILE", type=click.Path(path_type=Path), help="Keep the findings that FILE knows quiet."
 )
 @click.option("--update-baseline", is_flag=True, help="Write a baseline that knows all findings of now.")
+@click.option(
+    "--changed-since",
+    metavar="REV",
+    help="Show only findings that were not there at a git revision; `main...` is where the branch left main.",
+)
 def command(  # noqa: PLR0913 - one for each option
-    *, project: Path | None, form: str, strict: bool, quiet: bool, baseline: Path | None, update_baseline: bool
+    *,
+    project: Path | None,
+    form: str,
+    strict: bool,
+    quiet: bool,
+    baseline: Path | None,
+    update_baseline: bool,
+    changed_since: str | None,
 ) -> None:
     """Find mistakes in the architecture of PROJECT.
 
@@ -39,27 +53,52 @@ def command(  # noqa: PLR0913 - one for each option
     2 for wrong usage. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
     if update_baseline:
-        if form != "text":
-            msg = "--update-baseline says what it wrote, in no other format"
+        if form != "text" or changed_since is not None:
+            msg = (
+                "--update-baseline takes in all findings of now and says what it wrote: no --format, no --changed-since"
+            )
             raise click.UsageError(msg)
         _update(run.check(project), baseline)
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
         raise click.UsageError(msg)
     checked = run.check(project)
+    before = None if changed_since is None else _before(project, changed_since)
     from archgen import reported
 
-    found = reported.beyond(checked, baseline) if baseline else reported.Reported(checked.findings)
+    found = reported.report(checked, baseline, before)
     least = "warning" if strict else "error"
     shown = [d for d in found.findings if not quiet or d.severity in {least, "error"}]
-    _print(form, shown, checked, found if baseline else None, strict=strict, quiet=quiet)
-    if baseline and not quiet:
-        _say(found, baseline)
+    _print(form, shown, checked, found, strict=strict, quiet=quiet)
+    if not quiet:
+        _say_known(found, baseline)
+        _say_earlier(found, changed_since)
     sys.exit(run.status(found.findings, strict=strict) or int(strict and bool(found.cured)))
 
 
+def _before(project: Path | None, revision: str) -> Checked | None:
+    """Judge the project at the revision; where what it held there cannot be told, say so: then everything counts."""
+    from archgen import reported
+    from archgen.git import GitError
+    from archgen.project import NotAtRevisionError
+
+    try:
+        before = reported.earlier(project, revision)
+    except NotAtRevisionError as error:
+        run.warn(f"{error}: all findings are shown")
+        return None
+    except GitError as error:
+        raise click.UsageError(visible(str(error))) from None
+    if reported.unread(before.findings):
+        first = next(finding for finding in before.findings if finding.severity is Severity.ERROR)
+        why = f"{first.span}: {first.message}" if first.span.file else first.message
+        run.warn(f"at `{revision}` the project could not be read whole ({why}): all findings are shown")
+        return None
+    return before
+
+
 def _print(  # noqa: PLR0913 - what the formats need
-    form: str, shown: list[Diagnostic], checked: Checked, found: Reported | None, *, strict: bool, quiet: bool
+    form: str, shown: list[Diagnostic], checked: Checked, found: Reported, *, strict: bool, quiet: bool
 ) -> None:
     from archgen.findings import github, json, junit, sarif
 
@@ -78,34 +117,43 @@ def _print(  # noqa: PLR0913 - what the formats need
     elif shown:
         run.lines(shown, checked, sys.stdout)
     elif not quiet:
-        click.echo("no new findings" if found and found.known else "no findings")
+        click.echo("no new findings" if found.known or found.earlier else "no findings")
 
 
-def _sarif(shown: list[Diagnostic], checked: Checked, found: Reported | None) -> str:
+def _sarif(shown: list[Diagnostic], checked: Checked, found: Reported) -> str:
     from archgen import __version__, reported
     from archgen.findings import sarif
 
-    baseline = {"known": len(found.known), "cured": sum(entry.times for entry in found.cured)} if found else None
     file = checked.files[0] if checked.files else "archgen.yaml"
-    scan = sarif.Scan(checked.architecture.project.id, file, _folder(checked.root), __version__, baseline)
+    scan = sarif.Scan(
+        checked.architecture.project.id, file, _folder(checked.root), __version__, compared=found.compared
+    )
     return sarif.render(shown, reported.RULES, scan)
 
 
-def _say(found: Reported, baseline: Path) -> None:
+def _say_known(found: Reported, baseline: Path | None) -> None:
     """Say on the error stream what a baseline did: standard output holds findings only."""
     if found.known:
-        click.echo(f"{run.counted(found.known)} not shown: {baseline} knows of {_it(len(found.known))}", err=True)
-    count = sum(entry.times for entry in found.cured)
-    if count:
-        what = "1 finding of the baseline is" if count == 1 else f"{count} findings of the baseline are"
-        click.echo(f"{what} cured: run `archgen check --update-baseline --baseline {baseline}`", err=True)
-        for entry in found.cured:
-            times = f" ({entry.times} times)" if entry.times > 1 else ""
-            click.echo(visible(f"  {entry.rule}: {entry.message}{times}"), err=True)
+        click.echo(visible(f"not shown: {run.counted(found.known)} that {baseline} knows"), err=True)
+    gone = [finding for entry in found.cured for finding in [(entry.rule, entry.message)] * entry.times]
+    _cured(gone, "the baseline", f": run `archgen check --update-baseline --baseline {baseline}`")
 
 
-def _it(count: int) -> str:
-    return "it" if count == 1 else "them"
+def _say_earlier(found: Reported, revision: str | None) -> None:
+    """Say what a comparison with a revision left out, and what the change cured."""
+    if found.earlier:
+        click.echo(visible(f"not shown: {run.counted(found.earlier)} that {revision} had already"), err=True)
+    _cured([(finding.rule, finding.message) for finding in found.healed], str(revision), "")
+
+
+def _cured(gone: list[tuple[str, str]], where: str, what_to_do: str) -> None:
+    if gone:
+        what = "1 finding" if len(gone) == 1 else f"{len(gone)} findings"
+        click.echo(visible(f"{what} of {where} {'is' if len(gone) == 1 else 'are'} cured{what_to_do}"), err=True)
+        for rule, message in gone[:_CURED]:
+            click.echo(visible(f"  {rule}: {message}"), err=True)
+        if len(gone) > _CURED:
+            click.echo(f"  and {len(gone) - _CURED} more", err=True)
 
 
 def _update(checked: Checked, baseline: Path | None) -> NoReturn:

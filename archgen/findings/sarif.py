@@ -33,16 +33,15 @@ _SHOWN, _TAKEN, _BYTES = 5_000, 25_000, 10_000_000
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """What was looked at: the project's id, its folder from the repository's root, the file that findings without a place
-    point at, and archgen's version. `baseline` says how many findings a baseline knows (`known`; they are left out) and
-    how many of its are `cured`; None where there is none.
+    """What was looked at: the project's id, the file that findings without a place point at, the project's folder from the
+    repository's root, and archgen's version. `compared` says that findings known from before were left out.
     """
 
     project: str
     file: str
     folder: str
     version: str
-    baseline: Mapping[str, int] | None = None
+    compared: bool = False
 
 
 def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: Scan) -> str:
@@ -63,8 +62,6 @@ def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: S
             for diagnostic, identity, number in numbered(found)
         ],
     }
-    if scan.baseline is not None:
-        run["properties"] = {"archgenBaseline": dict(scan.baseline)}
     return json_text({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
@@ -110,7 +107,7 @@ def _result(diagnostic: Diagnostic, scan: Scan) -> dict[str, Any]:
         location["logicalLocations"] = [{"fullyQualifiedName": visible(diagnostic.element), "kind": "element"}]
     result: dict[str, Any] = {"level": str(diagnostic.severity), "message": {"text": _message(diagnostic, labels)}}
     result["locations"] = [location] if location else []
-    if scan.baseline is not None:
+    if scan.compared:
         result["baselineState"] = "new"
     if labels:
         result["relatedLocations"] = [

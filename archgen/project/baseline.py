@@ -10,6 +10,7 @@ from archgen.diagnostic import Diagnostic, Rule
 from archgen.identity import Known
 from archgen.suggest import did_you_mean
 from archgen.syntax import files, yaml
+from archgen.syntax.folder import Folder
 from archgen.syntax.tree import Entry, Listing, Scalar, Table, Value
 
 MARK = "archgen_baseline"
@@ -29,7 +30,7 @@ def read(file: Path, shown: str, rules: Mapping[str, Rule]) -> tuple[str, tuple[
 
     With a mistake in an entry that entry is not used; with one in the file nothing of it is.
     """
-    text = files.read(file.parent.resolve(), file.name)
+    text = files.read(Folder(file.parent.resolve()), file.name)
     if text.problem:
         place = text.problem.span._replace(file=shown)
         return text.text, (), (Diagnostic(text.problem.rule, text.problem.message, place, help=text.problem.help),)

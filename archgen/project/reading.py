@@ -133,6 +133,8 @@ def _read_all(reading: Reading) -> None:
             continue
         reading.seen.add(file)
         document, found = _read(reading, file)
+        if baseline.is_own(reading.sources.text(file) or ""):
+            continue  # broken or not, it is judged where it is used
         if document is None and found[0].rule != "too-large" and not _looks_like_slice(reading, file, known):
             ignored.append((file, None))
         elif document is None:
@@ -140,7 +142,7 @@ def _read_all(reading: Reading) -> None:
         elif not known.isdisjoint(document.root.entries):
             if _NO_SLICE.isdisjoint(document.root.entries):
                 _keep(reading, file, document, found)
-        elif document.root.entries and baseline.MARK not in document.root.entries:
+        elif document.root.entries:
             ignored.append((file, next(filter(None, (closest(key, known) for key in document.root.entries)), None)))
     if ignored and MARKER not in reading.broken:
         reading.diagnostics.append(_ignored(ignored))
