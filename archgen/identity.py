@@ -10,10 +10,10 @@ from __future__ import annotations
 import hashlib
 import re
 from collections import Counter, defaultdict, deque
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Hashable, Iterable, Iterator, Sequence
 
     from archgen.diagnostic import Diagnostic
     from archgen.source import Span
@@ -49,12 +49,21 @@ class Known(NamedTuple):
         return _identity(self.rule, self.element, self.message)
 
 
-def identity(diagnostic: Diagnostic, renamed: Mapping[str, str] | None = None) -> Identity:
-    """Give a finding's identity; `renamed` leads from the ids that elements had to those that they have."""
+class Renames(Protocol):
+    """Knows the ids that elements have now, by those that they had."""
+
+    def words(self, text: str) -> str:
+        """Put the ids of now into a text."""
+
+    def ticked(self, text: str) -> str:
+        """Put the ids of now into what stands between backticks."""
+
+
+def identity(diagnostic: Diagnostic, renames: Renames | None = None) -> Identity:
+    """Give a finding's identity, with the ids that elements have now where `renames` knows them."""
     element, message = diagnostic.element or "", diagnostic.message
-    if renamed:
-        message = _renamed_in(message, element, renamed)
-        element = _renamed(element, renamed)
+    if renames is not None:
+        element, message = renames.words(element), renames.ticked(message)
     return _identity(diagnostic.rule, element, message)
 
 
@@ -104,34 +113,3 @@ def _about(message: str) -> str:
     names = message.split("`")[1::2]
     text = "`".join(names) if any(names) else _FIGURE.sub("0", message)
     return " ".join(text.split())
-
-
-def _renamed(name: str, renamed: Mapping[str, str]) -> str:
-    """Give an id as it is now: renamed itself, or below what was."""
-    rest = ""
-    while name not in renamed:
-        name, dot, last = name.rpartition(".")
-        rest = f"{dot}{last}{rest}"
-        if not dot:
-            return rest
-    return renamed[name] + rest
-
-
-def _renamed_in(message: str, element: str, renamed: Mapping[str, str]) -> str:
-    """Give a message with the ids in its backticks as they are now; short ones are looked up below the element."""
-    parts = message.split("`")
-    for place in range(1, len(parts), 2):
-        word = parts[place]
-        below = (f"{owner}.{word}" for owner in _around(element))
-        found = next((renamed[name] for name in below if name in renamed), None)
-        parts[place] = (
-            _renamed(word, renamed) if found is None else found.split(".", found.count(".") - word.count("."))[-1]
-        )
-    return "`".join(parts)
-
-
-def _around(element: str) -> Iterator[str]:
-    """Give the element and what it stands in, from the inside out."""
-    while element:
-        yield element
-        element = element.rpartition(".")[0]

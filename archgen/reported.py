@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from archgen.diagnostic import Diagnostic, Severity, settle
 from archgen.emit import tree
 from archgen.findings import baseline
 from archgen.findings.rules import by_name
-from archgen.identity import Known, identity, unmatched
+from archgen.identity import Known, Renames, identity, unmatched
 from archgen.pipeline import ALL_RULES, Checked
 from archgen.project import baseline as reading
 
@@ -73,20 +73,20 @@ def report(checked: Checked, file: Path | None = None, before: Checked | None = 
 
 
 def since(
-    checked: Checked, before: Checked, renamed: Mapping[str, str] | None = None
+    checked: Checked, before: Checked, renames: Renames | None = None
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
     """Give the findings that were not there before, and those that are no more.
 
     Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
     """
     now = [_keys(finding, checked, None) for finding in checked.findings]
-    then = [_keys(finding, before, renamed) for finding in before.findings]
+    then = [_keys(finding, before, renames) for finding in before.findings]
     new, gone = unmatched(now, then)
     return tuple(checked.findings[place] for place in new), tuple(before.findings[place] for place in gone)
 
 
-def _keys(finding: Diagnostic, of: Checked, renamed: Mapping[str, str] | None) -> tuple[Hashable, Hashable]:
-    same = identity(finding, renamed)
+def _keys(finding: Diagnostic, of: Checked, renames: Renames | None) -> tuple[Hashable, Hashable]:
+    same = identity(finding, renames)
     line = of.sources.line(finding.span.file, finding.span.line) or ""
     return (same, finding.span.file, line.strip()), same
 

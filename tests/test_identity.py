@@ -52,16 +52,22 @@ def test_findings_that_are_alike_are_numbered() -> None:
     assert all(len(text) == 32 for text in prints)
 
 
-def test_a_rename_is_followed_into_ids_below_and_into_messages() -> None:
-    finding = Diagnostic(
-        "unread-output",
-        "nobody reads `depth` of `eyes.camera`, see `eyes.camera.depth`",
-        _FINDING.span,
-        element="eyes.camera",
-    )
-    renamed = {"eyes": "sensing", "eyes.camera.depth": "sensing.camera.range"}
-    same = identity(finding, renamed)
-    assert (same.element, same.about) == ("sensing.camera", "range`sensing.camera`sensing.camera.range")
+class _Renames:
+    """`eyes` is called `sensing` now."""
+
+    def words(self, text: str) -> str:
+        """Put the new name in."""
+        return text.replace("eyes", "sensing")
+
+    def ticked(self, text: str) -> str:
+        """Put the new name in between backticks."""
+        return text.replace("`eyes", "`sensing")
+
+
+def test_renames_are_followed() -> None:
+    old = replace(_FINDING, message="`eyes.camera` eyes", element="eyes.camera")
+    new = replace(_FINDING, message="`sensing.camera` eyes", element="sensing.camera")
+    assert identity(old, _Renames()) == identity(new) != identity(old)
 
 
 def test_what_agrees_more_is_matched_first() -> None:

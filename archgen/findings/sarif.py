@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from archgen.diagnostic import Diagnostic, Label, Rule
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_HOME = "https://github.com/archgen/archgen"
 _ROOT = "%SRCROOT%"
 _FINGERPRINT = "archgenIdentity/v1"
 _BRACKET, _ESCAPED = re.compile(r"([\[\]\\])"), r"\\\1"
@@ -48,7 +49,7 @@ def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: S
     """Give settled findings as a SARIF document."""
     found = tuple(diagnostics)
     used = {name: place for place, name in enumerate(sorted({diagnostic.rule for diagnostic in found}))}
-    driver = {"name": "archgen", "version": scan.version, "semanticVersion": scan.version}
+    driver = {"name": "archgen", "informationUri": _HOME, "version": scan.version, "semanticVersion": scan.version}
     run: dict[str, Any] = {
         "tool": {"driver": driver | {"rules": [_rule(rules[name]) for name in used]}},
         "automationDetails": {"id": f"archgen/{scan.project}/"},
@@ -85,6 +86,7 @@ def _rule(rule: Rule) -> dict[str, Any]:
         "name": "".join(word.capitalize() for word in rule.name.split("-")),
         "shortDescription": {"text": page.summary},
         "fullDescription": {"text": " ".join(page.why.split()) or page.summary},
+        "helpUri": f"{_HOME}/blob/main/docs/rules/{rule.name}.md",
         "help": {"text": explain.terminal(rule), "markdown": explain.markdown(rule)},
         "defaultConfiguration": {"level": _level(rule.severity)},
         "properties": {"tags": ["architecture"], "precision": "very-high", "problem.severity": _problem(rule.severity)},

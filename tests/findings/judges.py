@@ -19,12 +19,10 @@ _MULTITOOL = _JUDGES / "node_modules" / "@microsoft" / "sarif-multitool-linux"
 _ADVICE = {
     "SARIF2002",  # messages by id: ours hold names
     "SARIF2003",  # from which repository: archgen asks no remote
-    "SARIF2005",  # a web page of the tool
     "SARIF2006",  # whether the schema's address answers
     "SARIF2009",  # rules called CS2001
     "SARIF2010",  # snippets: the servers have the files
     "SARIF2011",  # the same
-    "SARIF2012",  # a web page for each rule: its whole page is in `help`
 }
 """What the Multitool advises, and we do not follow."""
 

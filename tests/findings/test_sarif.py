@@ -61,7 +61,7 @@ def test_a_result_says_what_where_and_how_to_know_it_again() -> None:
                 "message": {"text": "declared [here]"},
             }
         ],
-        "partialFingerprints": {"archgenIdentity/v1": "85d54b13ecd12daa50f5aeac1609ae84"},
+        "partialFingerprints": {"archgenIdentity/v1": "37275d5288246d7f79200dc7aab8bb87"},
     }
 
 
@@ -76,6 +76,7 @@ def test_the_run_says_who_looked_at_what() -> None:
 def test_rules_carry_their_whole_pages() -> None:
     (rule,) = _run([_FINDING, _FINDING])["tool"]["driver"]["rules"]
     assert (rule["id"], rule["defaultConfiguration"]) == ("unread-output", {"level": "warning"})
+    assert rule["helpUri"].endswith("/docs/rules/unread-output.md")
     assert rule["help"] == {
         "text": explain.terminal(RULES["unread-output"]),
         "markdown": explain.markdown(RULES["unread-output"]),
