@@ -105,7 +105,7 @@ def since(components: int) -> None:
         person = ("-c", "user.name=bench", "-c", "user.email=bench@example.org", "-c", "commit.gpgsign=false")
         for words in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "as it was"]):
             subprocess.run(["git", *person, *words], cwd=folder, check=True)
-        changed = sorted(folder.rglob("*.yaml"))[-1]
+        changed = max(folder.rglob("*.yaml"))
         changed.write_text(f"# changed\n{changed.read_text(encoding='utf-8')}", encoding="utf-8")
         check = seconds(archgen("check", folder))
         row(f"check, {components} components", check, check, "(of itself)")
