@@ -76,27 +76,23 @@ def numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Diagnostic, Id
         yield diagnostic, found, seen[found]
 
 
-def unmatched(
-    now: Sequence[Sequence[Hashable]], before: Sequence[Sequence[Hashable]]
-) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Match each of `now` with one of `before`; give the positions of those that are left over on both sides.
+def partners(now: Sequence[Sequence[Hashable]], before: Sequence[Sequence[Hashable]]) -> tuple[int | None, ...]:
+    """Match each of `now` with one of `before`; give the position of each one's partner, None for what has none.
 
     Each has its keys, the strictest first: what agrees in the first key is matched before anything else is.
     """
-    left, free = list(range(len(now))), list(range(len(before)))
+    found: list[int | None] = [None] * len(now)
+    free = dict.fromkeys(range(len(before)))
     for level in range(len(now[0]) if now else 0):
         offers = defaultdict[object, deque[int]](deque)
         for place in free:
             offers[before[place][level]].append(place)
-        taken, rest = set[int](), list[int]()
-        for place in left:
-            offer = offers[now[place][level]]
-            if offer:
-                taken.add(offer.popleft())
-            else:
-                rest.append(place)
-        left, free = rest, [place for place in free if place not in taken]
-    return tuple(left), tuple(free)
+        for place, keys in enumerate(now):
+            offer = offers.get(keys[level])
+            if found[place] is None and offer:
+                found[place] = offer.popleft()
+                del free[found[place]]
+    return tuple(found)
 
 
 def _identity(rule: str, element: str, message: str) -> Identity:

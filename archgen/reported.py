@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
+from archgen.compare.match import match
 from archgen.diagnostic import Diagnostic, Severity, settle
 from archgen.emit import tree
 from archgen.findings import baseline
 from archgen.findings.rules import by_name
-from archgen.identity import Known, Renames, identity, unmatched
+from archgen.identity import Known, Renames, identity, partners
 from archgen.pipeline import ALL_RULES, Checked
 from archgen.project import baseline as reading
 
@@ -72,17 +73,27 @@ def report(checked: Checked, file: Path | None = None, before: Checked | None = 
     )
 
 
-def since(
-    checked: Checked, before: Checked, renames: Renames | None = None
-) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Give the findings that were not there before, and those that are no more.
+def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Give the findings that were not there before or count more now, and those that are no more. Renamed elements keep
+    theirs.
 
     Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
     """
+    renames = match(before.architecture, checked.architecture)
     now = [_keys(finding, checked, None) for finding in checked.findings]
     then = [_keys(finding, before, renames) for finding in before.findings]
-    new, gone = unmatched(now, then)
-    return tuple(checked.findings[place] for place in new), tuple(before.findings[place] for place in gone)
+    old = partners(now, then)
+    new = [
+        place for place, was in enumerate(old) if was is None or _graver(checked.findings[place], before.findings[was])
+    ]
+    gone = set(range(len(then))).difference(old)
+    return tuple(checked.findings[place] for place in new), tuple(before.findings[place] for place in sorted(gone))
+
+
+def _graver(now: Diagnostic, then: Diagnostic) -> bool:
+    """Say whether a change made a finding count more, by setting its rule for instance."""
+    order = list(Severity)
+    return order.index(now.severity or Severity.ERROR) > order.index(then.severity or Severity.ERROR)
 
 
 def _keys(finding: Diagnostic, of: Checked, renames: Renames | None) -> tuple[Hashable, Hashable]:

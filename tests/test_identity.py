@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from archgen.diagnostic import Diagnostic
-from archgen.identity import identity, numbered, unmatched
+from archgen.identity import identity, numbered, partners
 from archgen.source import Span
 
 _FINDING = Diagnostic(
@@ -71,17 +71,19 @@ def test_renames_are_followed() -> None:
 
 
 def test_what_agrees_more_is_matched_first() -> None:
-    now = [("line 1", "x"), ("line 2", "x"), ("line 9", "y")]
-    before = [("line 2", "x"), ("line 8", "z")]
-    assert unmatched(now, before) == ((0, 2), (1,))
+    now = [("line 1", "x"), ("line 2", "x"), ("line 9", "y"), ("line 3", "x")]
+    before = [("line 8", "z"), ("line 2", "x"), ("line 7", "x")]
+    assert partners(now, before) == (2, 1, None, None)
 
 
-@given(
-    st.lists(st.tuples(st.integers(0, 2), st.integers(0, 2))), st.lists(st.tuples(st.integers(0, 2), st.integers(0, 2)))
-)
+_PAIRS = st.lists(st.tuples(st.integers(0, 2), st.integers(0, 2)))
+
+
+@given(_PAIRS, _PAIRS)
 def test_as_many_are_matched_as_agree_at_all(now: list[tuple[int, int]], before: list[tuple[int, int]]) -> None:
-    keys = [[(a, b), b] for a, b in now], [[(a, b), b] for a, b in before]
-    left, free = unmatched(*keys)
+    found = partners([((a, b), b) for a, b in now], [((a, b), b) for a, b in before])
+    matched = [(now[place][1], before[was][1]) for place, was in enumerate(found) if was is not None]
     loose = [b for _, b in now], [b for _, b in before]
-    common = sum(min(loose[0].count(b), loose[1].count(b)) for b in range(3))
-    assert (len(now) - len(left), len(before) - len(free)) == (common, common)
+    assert all(one == other for one, other in matched)
+    assert len(matched) == sum(min(loose[0].count(b), loose[1].count(b)) for b in range(3))
+    assert len(set(found) - {None}) == len(matched)
