@@ -90,8 +90,8 @@ def partners(now: Sequence[Sequence[Hashable]], before: Sequence[Sequence[Hashab
         for place, keys in enumerate(now):
             offer = offers.get(keys[level])
             if found[place] is None and offer:
-                found[place] = offer.popleft()
-                del free[found[place]]
+                found[place] = partner = offer.popleft()
+                del free[partner]
     return tuple(found)
 
 

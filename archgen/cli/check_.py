@@ -103,21 +103,26 @@ def _print(  # noqa: PLR0913 - what the formats need
     from archgen.findings import github, json, junit, sarif
 
     if form == "json":
-        sys.stdout.write(json.render(shown))
+        _write(json.render(shown))
     elif form == "github":
         sys.stdout.writelines(f"{line}\n" for line in github.render(shown, folder=_folder(checked.root)))
     elif form == "junit":
         lines = junit.render(shown, checked.sources, checked.all_files, strict=strict)
-        sys.stdout.writelines(f"{line}\n" for line in lines)
+        _write("".join(f"{line}\n" for line in lines))
     elif form == "sarif":
         document = _sarif(shown, checked, found)
-        sys.stdout.write(document)
+        _write(document)
         for said in sarif.limits(document, len(shown)):
             run.warn(said)
     elif shown:
         run.lines(shown, checked, sys.stdout)
     elif not quiet:
         click.echo("no new findings" if found.known or found.earlier else "no findings")
+
+
+def _write(document: str) -> None:
+    """Print a document, in UTF-8 whatever the terminal has: it is for programs, and says so of itself."""
+    click.echo(document.encode(), nl=False)
 
 
 def _sarif(shown: list[Diagnostic], checked: Checked, found: Reported) -> str:
