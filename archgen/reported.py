@@ -50,9 +50,9 @@ class Updated:
     cured: int
 
 
-def unread(findings: Iterable[Diagnostic]) -> bool:
-    """Say whether errors of reading or linking hide what else there is to find: then nobody knows what is cured."""
-    return any(RULES[finding.rule].fixed and finding.severity is Severity.ERROR for finding in findings)
+def unread(findings: Iterable[Diagnostic]) -> Diagnostic | None:
+    """Give the first error of reading or linking: behind such a one there is more to find, and nobody knows what is cured."""
+    return next((d for d in findings if RULES[d.rule].fixed and d.severity is Severity.ERROR), None)
 
 
 def report(checked: Checked, file: Path | None = None, before: Checked | None = None) -> Reported:
@@ -62,7 +62,7 @@ def report(checked: Checked, file: Path | None = None, before: Checked | None = 
     caused, healed = since(checked, before) if before else (checked.findings, ())
     found = set(caused)
     wrong = settle(problems, RULES, checked.loaded.rules)
-    sound = not unread(checked.findings)
+    sound = unread(checked.findings) is None
     return Reported(
         findings=tuple(sorted((*(d for d in new if d in found), *wrong), key=lambda finding: finding.key)),
         known=old,

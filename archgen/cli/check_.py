@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import options, run
-from archgen.diagnostic import Diagnostic, Severity
+from archgen.cli import documents, options, run
+from archgen.diagnostic import Severity
 from archgen.findings.escape import visible
 
 if TYPE_CHECKING:
     from archgen.pipeline import Checked
     from archgen.reported import Reported
 
-FORMATS = ["text", "json", "github", "sarif", "junit"]
 _CURED = 20
-"""Cured findings that are named; the others are counted."""
+"""Lines for what is cured; the rest is counted."""
 
 
 @click.command("check")
 @options.project
-@click.option("--format", "form", type=click.Choice(FORMATS), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(["text", *documents.FORMATS]), default="text", show_default=True)
 @options.strict
 @click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and nothing else.")
 @click.option(
@@ -69,7 +69,12 @@ def command(  # noqa: PLR0913 - one for each option
     found = reported.report(checked, baseline, before)
     least = "warning" if strict else "error"
     shown = [d for d in found.findings if not quiet or d.severity in {least, "error"}]
-    _print(form, shown, checked, found, strict=strict, quiet=quiet)
+    if form != "text":
+        _print(form, replace(found, findings=tuple(shown)), checked, strict=strict)
+    elif shown:
+        run.lines(shown, checked, sys.stdout)
+    elif not quiet:
+        click.echo("no new findings" if found.known or found.earlier else "no findings")
     if not quiet:
         _say_known(found, baseline)
         _say_earlier(found, changed_since)
@@ -89,74 +94,49 @@ def _before(project: Path | None, revision: str) -> Checked | None:
         return None
     except GitError as error:
         raise click.UsageError(visible(str(error))) from None
-    if reported.unread(before.findings):
-        first = next(finding for finding in before.findings if finding.severity is Severity.ERROR)
+    first = reported.unread(before.findings)
+    if first is not None:
         why = f"{first.span}: {first.message}" if first.span.file else first.message
         run.warn(f"at `{revision}` the project could not be read whole ({why}): all findings are shown")
         return None
     return before
 
 
-def _print(  # noqa: PLR0913 - what the formats need
-    form: str, shown: list[Diagnostic], checked: Checked, found: Reported, *, strict: bool, quiet: bool
-) -> None:
-    from archgen.findings import github, json, junit, sarif
-
-    if form == "json":
-        _write(json.render(shown))
-    elif form == "github":
-        sys.stdout.writelines(f"{line}\n" for line in github.render(shown, folder=_folder(checked.root)))
-    elif form == "junit":
-        lines = junit.render(shown, checked.sources, checked.all_files, strict=strict)
-        _write("".join(f"{line}\n" for line in lines))
-    elif form == "sarif":
-        document = _sarif(shown, checked, found)
-        _write(document)
-        for said in sarif.limits(document, len(shown)):
-            run.warn(said)
-    elif shown:
-        run.lines(shown, checked, sys.stdout)
-    elif not quiet:
-        click.echo("no new findings" if found.known or found.earlier else "no findings")
-
-
-def _write(document: str) -> None:
-    """Print a document, in UTF-8 whatever the terminal has: it is for programs, and says so of itself."""
-    click.echo(document.encode(), nl=False)
-
-
-def _sarif(shown: list[Diagnostic], checked: Checked, found: Reported) -> str:
-    from archgen import __version__, reported
+def _print(form: str, shown: Reported, checked: Checked, *, strict: bool) -> None:
     from archgen.findings import sarif
 
-    file = checked.files[0] if checked.files else "archgen.yaml"
-    scan = sarif.Scan(
-        checked.architecture.project.id, file, _folder(checked.root), __version__, compared=found.compared
-    )
-    return sarif.render(shown, reported.RULES, scan)
+    document = documents.document(form, shown, checked, strict=strict)
+    if form == "github":  # in what everything else is in that a workflow prints
+        sys.stdout.write(document)
+    else:
+        click.echo(document.encode(), nl=False)  # UTF-8 whatever the terminal has: so it says of itself
+    for said in sarif.limits(document, len(shown.findings)) if form == "sarif" else ():
+        run.warn(said)
 
 
 def _say_known(found: Reported, baseline: Path | None) -> None:
     """Say on the error stream what a baseline did: standard output holds findings only."""
     if found.known:
         click.echo(visible(f"not shown: {run.counted(found.known)} that {baseline} knows"), err=True)
-    gone = [finding for entry in found.cured for finding in [(entry.rule, entry.message)] * entry.times]
-    _cured(gone, "the baseline", f": run `archgen check --update-baseline --baseline {baseline}`")
+    gone = [f"{entry.rule}: {entry.message}{f' ({entry.times} times)' * (entry.times > 1)}" for entry in found.cured]
+    count = sum(entry.times for entry in found.cured)
+    _cured(gone, count, "the baseline", f": run `archgen check --update-baseline --baseline {baseline}`")
 
 
 def _say_earlier(found: Reported, revision: str | None) -> None:
     """Say what a comparison with a revision left out, and what the change cured."""
     if found.earlier:
         click.echo(visible(f"not shown: {run.counted(found.earlier)} that {revision} had already"), err=True)
-    _cured([(finding.rule, finding.message) for finding in found.healed], str(revision), "")
+    gone = [f"{finding.rule}: {finding.message}" for finding in found.healed]
+    _cured(gone, len(gone), str(revision), "")
 
 
-def _cured(gone: list[tuple[str, str]], where: str, what_to_do: str) -> None:
+def _cured(gone: list[str], count: int, where: str, what_to_do: str) -> None:
     if gone:
-        what = "1 finding" if len(gone) == 1 else f"{len(gone)} findings"
-        click.echo(visible(f"{what} of {where} {'is' if len(gone) == 1 else 'are'} cured{what_to_do}"), err=True)
-        for rule, message in gone[:_CURED]:
-            click.echo(visible(f"  {rule}: {message}"), err=True)
+        what = f"1 finding of {where} is" if count == 1 else f"{count} findings of {where} are"
+        click.echo(visible(f"{what} cured{what_to_do}"), err=True)
+        for line in gone[:_CURED]:
+            click.echo(visible(f"  {line}"), err=True)
         if len(gone) > _CURED:
             click.echo(f"  and {len(gone) - _CURED} more", err=True)
 
@@ -165,7 +145,7 @@ def _update(checked: Checked, baseline: Path | None) -> NoReturn:
     """Write the baseline; errors of reading come first, since what is behind them would be lost from it."""
     from archgen import reported
 
-    if reported.unread(checked.findings):
+    if reported.unread(checked.findings) is not None:
         run.report(checked, least=Severity.ERROR)
         click.echo("No baseline was written: nobody knows what is behind errors of reading. Mend them first.", err=True)
         sys.exit(1)
@@ -173,15 +153,3 @@ def _update(checked: Checked, baseline: Path | None) -> NoReturn:
         done = reported.update(checked, baseline or checked.root / reported.FILE)
     run.wrote(done.path, f"{done.known} known: {done.added} added, {done.cured} cured")
     sys.exit(0)
-
-
-def _folder(root: Path) -> str:
-    """Give the project's folder from the repository's root, from which servers name files.
-
-    On GitHub that is the workspace; elsewhere the folder that holds `.git`, or else the current one.
-    """
-    resolved = root.resolve()
-    workspace = os.environ.get("GITHUB_WORKSPACE")
-    above = (folder for folder in (resolved, *resolved.parents) if os.path.lexists(folder / ".git"))
-    top = Path(workspace).resolve() if workspace else next(above, Path.cwd().resolve())
-    return resolved.relative_to(top).as_posix() if resolved.is_relative_to(top) else ""

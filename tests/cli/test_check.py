@@ -264,3 +264,12 @@ def test_what_a_setting_makes_graver_is_shown(run: Run, robot: Path) -> None:
     commit(robot, {})
     (robot / "archgen.yaml").write_text(_HEAD, encoding="utf-8")
     assert _rules(run, robot, "--changed-since", "main") == []
+
+
+def test_a_baseline_that_promises_the_moon_costs_nothing(run: Run, robot: Path) -> None:
+    entries = "".join(f"  - {{rule: unread-output, element: e{n}, message: m, count: 1000000}}\n" for n in range(500))
+    (robot / "b.yaml").write_text(f"archgen_baseline: 1\nfindings:\n{entries}", encoding="utf-8")
+    lines = run("check", robot, "--baseline", robot / "b.yaml").err.splitlines()
+    assert lines[0].startswith("500000000 findings of the baseline are cured: run `archgen check --update-baseline")
+    assert lines[1] == "  unread-output: m (1000000 times)"
+    assert (len(lines), lines[-1]) == (22, "  and 480 more")
