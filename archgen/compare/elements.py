@@ -172,7 +172,7 @@ def _performance(component: Component) -> dict[str, object]:
         f"performance.{each.id}.{key}": value
         for each in component.performance
         for key, value in (
-            ("title", None if each.title == madetitle(each.id) else each.title),
+            ("title", title(each.id, each.title)),
             ("accuracy", each.accuracy),
             ("execution_time", each.execution_time),
         )

@@ -33,22 +33,23 @@ def _ordered(one: Mapping[str, object], other: Mapping[str, object]) -> list[str
 
 
 def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> bool:
+    """Say whether a key only follows: a made title its id, an owner or a timing what it is taken from."""
     one, other = old.values.get(key), new.values.get(key)
     if isinstance(one, Title) and isinstance(other, Title):
         return one.text == other.text or (one.made and other.made)
-    if key == "owner" and _same_giver(old, new, before, after):
-        return True
-    if new.sort == "node" and (key == "owner" or key.startswith("timing.")):
-        return any(("component", ref) not in after for ref in old.refs) or any(
-            ("component", ref) not in before for ref in new.refs
-        )
-    if new.sort == "port" and key == "carried":
-        return True
+    if key == "owner" or (new.sort == "node" and key.startswith("timing.")):
+        return _orphaned(old, new, before, after) or (key == "owner" and _same_giver(old, new, before, after))
     if key in {"inputs", "outputs"}:
         return SOME in {one, other}
-    if old.sort == "project":
+    if new.sort == "project":
         return (key in {"id", "title"} and None in {one, other}) or (key == "chapters" and _only_chapters(one, other))
-    return False
+    return new.sort == "port" and key == "carried"
+
+
+def _orphaned(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> bool:
+    """Say whether a node's component came or went: what the node takes from it went along."""
+    gone = any(("component", ref) not in after for ref in old.refs)
+    return new.sort == "node" and (gone or any(("component", ref) not in before for ref in new.refs))
 
 
 def _same_giver(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> bool:

@@ -71,7 +71,7 @@ def _frozen(value: object) -> object:
 
 def plain(value: object) -> object:
     """Give a value as plain data: quantities as text, sets as sorted lists."""
-    if isinstance(value, Quantity):
+    if isinstance(value, (Quantity, Title)):
         return value.text
     if isinstance(value, Fraction):
         return int(value) if value.denominator == 1 else float(value)
@@ -79,8 +79,6 @@ def plain(value: object) -> object:
         return sorted(value)
     if isinstance(value, Flag):
         return value.on
-    if isinstance(value, Title):
-        return value.text
     if isinstance(value, tuple):
         return [plain(item) for item in value]
     return value
