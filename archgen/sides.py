@@ -9,6 +9,7 @@ from pathlib import Path
 from archgen import git, pipeline, project
 from archgen.compare import Comparison, Version, compare
 from archgen.pipeline import Checked
+from archgen.syntax.tree import Table
 
 _AS_PATHS = ("./", "../", "/", "~")
 WORKING_TREE = "the working tree"
@@ -90,5 +91,11 @@ def version(checked: Checked) -> Version:
         rules={rule: str(severity) for rule, severity in checked.loaded.rules.items()},
         chapters={path: chapter.text for path, chapter in checked.chapters.texts.items()},
         order=checked.chapters.order,
-        defaults=(checked.loaded.id, checked.loaded.title),
+        unnamed=frozenset({"id", "title"} - _written(checked)),
     )
+
+
+def _written(checked: Checked) -> set[str]:
+    """Give the keys that the project says of itself."""
+    section = checked.merged.get("project")
+    return {entry.key for entry in section} if isinstance(section, Table) else set()

@@ -58,10 +58,9 @@ def elements(version: Version, names: Names) -> dict[Key, Element]:
 
 def _project(version: Version, names: Names) -> Iterator[Element]:
     found, project = version.architecture, version.architecture.project
-    default_id, default_title = version.defaults
     values = {
-        "id": None if project.id == default_id else project.id,
-        "title": None if project.title == default_title else project.title,
+        "id": None if "id" in version.unnamed else project.id,
+        "title": None if "title" in version.unnamed else project.title,
         "version": project.version,
         "description": prose(project.description),
         "distro": found.distro,

@@ -86,6 +86,16 @@ class Described:
         return found
 
     @cached_property
+    def topics(self) -> Mapping[str, list[str]]:
+        """Find the topics on which nodes carry a port, as they are written."""
+        found: dict[str, list[str]] = defaultdict(list)
+        for node in self.found.nodes.values():
+            for use in node.uses:
+                if use.port:
+                    found[use.port] += use.topics
+        return found
+
+    @cached_property
     def users(self) -> Mapping[str, list[str]]:
         """Find the components with ports of a type, or that serve a requirement."""
         found: dict[str, list[str]] = defaultdict(list)
@@ -174,7 +184,8 @@ def output(of: Described, name: str) -> Features:
     readers = [reader.rpartition(".")[0] for reader in of.readers.get(name, ())]
     return {
         "name": Feature(2, letters(found.name)),
-        "type": Feature(3, _own(found.type)),
+        "type": Feature(4, _own(found.type)),
+        "topics": Feature(3, frozenset(of.topics[name])),
         "readers": Feature(5, of.refs("component", readers)),
         "text": Feature(1, words(found.description) | words(found.external)),
     }
@@ -185,7 +196,8 @@ def input(of: Described, name: str) -> Features:  # noqa: A001 - what it describ
     found = of.found.inputs[name]
     return {
         "name": Feature(2, letters(found.name)),
-        "type": Feature(3, _own(found.type)),
+        "type": Feature(4, _own(found.type)),
+        "topics": Feature(3, frozenset(of.topics[name])),
         "sources": Feature(5, of.refs("output", of.sources.get(name, ()))),
         "text": Feature(1, words(found.description) | words(found.external)),
     }

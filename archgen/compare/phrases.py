@@ -35,6 +35,8 @@ _NAMES = {
     "parameter_files": "parameter files",
     "execution_time": "execution time",
 }
+_PATHS = frozenset({"component", "input", "output", "connection", "port"})
+"""Sorts whose ids are paths that say enough."""
 _SORTS = {"use_case": "use case", "message": "message", "port": "port"}
 
 
@@ -42,7 +44,7 @@ def changed_key(change: Change) -> str:
     """Say what a key was and is."""
     key, before, after = change.key or "", change.before, change.after
     name = f"`{short(change.element)}`"
-    said = name if "." in change.element else f"{_SORTS.get(change.sort, change.sort)} {name}"
+    said = name if "." in change.element and change.sort in _PATHS else f"{_SORTS.get(change.sort, change.sort)} {name}"
     if change.sort == "project":
         said = "the project"
     if key == "qos" and isinstance(before, Mapping) and isinstance(after, Mapping):

@@ -13,7 +13,7 @@ from archgen.model.architecture import Architecture
 class Version:
     """One side. `rules` are the project's settings of rules, `chapters` its texts by path in the report's `order`.
 
-    `defaults` are the id and the title that the project has where it does not say so: the names of folders and files.
+    `unnamed` are `id` and `title` where the project does not say them: then they are made from the name of a folder or file.
     """
 
     architecture: Architecture
@@ -21,4 +21,4 @@ class Version:
     rules: Mapping[str, str] = field(default_factory=dict)
     chapters: Mapping[str, str] = field(default_factory=dict)
     order: tuple[str, ...] = ()
-    defaults: tuple[str, str] = ("", "")
+    unnamed: frozenset[str] = frozenset()
