@@ -57,7 +57,9 @@ def test_order_and_indentation_are_no_change(packed: dict[str, object], ramcip: 
     assert_same(ramcip, read(tmp_path / "robot.yaml"))
 
 
-_ORDERED = frozenset({"implements", "chapters", "through", "parameters", "parameter_files", "definitions", "texts", "pictures"})
+_ORDERED = frozenset(
+    {"implements", "chapters", "through", "parameters", "parameter_files", "definitions", "texts", "pictures"}
+)
 
 
 def _shuffled(value: object, chance: random.Random) -> object:
@@ -177,7 +179,7 @@ def test_the_way_back_is_the_mirror_image(number: int, ramcip: Version, tmp_path
     other = read(target)
     there, back = compare(ramcip, other), compare(other, ramcip)
     assert there.changes
-    assert _facts(there) == {_turned(*fact) for fact in _facts(back)}
+    assert _facts(there) == {_turned(fact) for fact in _facts(back)}
     assert (there.new, there.cured, there.owners) == (back.cured, back.new, back.owners)
     assert {(c.before, c.after) for c in there.chains} == {(c.after, c.before) for c in back.chains}
     assert_once(there)
@@ -188,7 +190,7 @@ Fact = tuple[str, str, str, str | None, str, str, float]
 
 def _facts(found: Comparison) -> set[Fact]:
     """Give what was told, with the names before and after, in no order; keys by the element's name before."""
-    facts = set()
+    facts = set[Fact]()
     for change in _all(found.changes):
         if change.kind in {"renamed", "moved", "added", "removed"} and change.sort != "connection":
             was = change.was if change.kind in {"renamed", "moved"} else None
@@ -198,7 +200,8 @@ def _facts(found: Comparison) -> set[Fact]:
     return facts
 
 
-def _turned(kind: str, sort: str, element: str, key: str | None, before: str, after: str, sure: float) -> Fact:  # noqa: PLR0913 - a fact
+def _turned(fact: Fact) -> Fact:
+    kind, sort, element, key, before, after, sure = fact
     turned = {"added": "removed", "removed": "added"}.get(kind, kind)
     if kind in {"renamed", "moved"}:
         return kind, sort, key or "", element, "", "", sure

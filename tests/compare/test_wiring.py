@@ -24,21 +24,29 @@ UNFED = SCREEN.replace("image: camera.image", "image: ")
 def test_a_reader_that_went_leaves_an_output_unread(told: Told) -> None:
     assert told(BOTH, CAMERA) == [
         "added component display.lamp: component `display.lamp` is added",
-        "removed component display.screen: component `display.screen` is removed with 1 input; "
-        "`sensing.camera.image` is no longer read by anybody",
+        (
+            "removed component display.screen: component `display.screen` is removed with 1 input; "
+            "`sensing.camera.image` is no longer read by anybody"
+        ),
         "  removed input display.screen.image: input `display.screen.image` is removed",
-        "  removed connection display.screen.image: `sensing.camera.image` is no longer read by anybody: "
-        "its only reader `display.screen.image` was removed",
+        (
+            "  removed connection display.screen.image: `sensing.camera.image` is no longer read by anybody: "
+            "its only reader `display.screen.image` was removed"
+        ),
     ]
 
 
 def test_a_source_that_went_leaves_an_input_unfed(told: Told) -> None:
     assert told(BOTH, UNFED)[:3] == [
-        "removed component sensing.camera: component `sensing.camera` is removed with 1 output; "
-        "`display.screen.image` has no source any more",
+        (
+            "removed component sensing.camera: component `sensing.camera` is removed with 1 output; "
+            "`display.screen.image` has no source any more"
+        ),
         "  removed output sensing.camera.image: output `sensing.camera.image` is removed",
-        "  removed connection display.screen.image: `display.screen.image` no longer reads `sensing.camera.image`, "
-        "which was removed; it has no source any more",
+        (
+            "  removed connection display.screen.image: `display.screen.image` no longer reads `sensing.camera.image`, "
+            "which was removed; it has no source any more"
+        ),
     ]
 
 
