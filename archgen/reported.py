@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
+from archgen.compare.match import match
 from archgen.diagnostic import Diagnostic, Severity, settle
 from archgen.emit import tree
 from archgen.findings import baseline
 from archgen.findings.rules import by_name
-from archgen.identity import Known, identity, partners
+from archgen.identity import Known, Renames, identity, partners
 from archgen.pipeline import ALL_RULES, Checked
 from archgen.project import baseline as reading
 
@@ -73,12 +74,14 @@ def report(checked: Checked, file: Path | None = None, before: Checked | None = 
 
 
 def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Give the findings that were not there before or count more now, and those that are no more.
+    """Give the findings that were not there before or count more now, and those that are no more. Renamed elements keep
+    theirs.
 
     Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
     """
-    now = [_keys(finding, checked) for finding in checked.findings]
-    then = [_keys(finding, before) for finding in before.findings]
+    renames = match(before.architecture, checked.architecture)
+    now = [_keys(finding, checked, None) for finding in checked.findings]
+    then = [_keys(finding, before, renames) for finding in before.findings]
     old = partners(now, then)
     new = [
         place for place, was in enumerate(old) if was is None or _graver(checked.findings[place], before.findings[was])
@@ -93,8 +96,8 @@ def _graver(now: Diagnostic, then: Diagnostic) -> bool:
     return order.index(now.severity or Severity.ERROR) > order.index(then.severity or Severity.ERROR)
 
 
-def _keys(finding: Diagnostic, of: Checked) -> tuple[Hashable, Hashable]:
-    same = identity(finding)
+def _keys(finding: Diagnostic, of: Checked, renames: Renames | None) -> tuple[Hashable, Hashable]:
+    same = identity(finding, renames)
     line = of.sources.line(finding.span.file, finding.span.line) or ""
     return (same, finding.span.file, line.strip()), same
 

@@ -250,6 +250,13 @@ def test_files_are_named_from_the_repositorys_root(run: Run, robot: Path, monkey
     assert run("check", "--format", "github").out.startswith("::warning file=arm/archgen.yaml,")
 
 
+def test_what_was_renamed_keeps_its_findings(run: Run, robot: Path) -> None:
+    (robot / "sensing.yaml").write_text(_CAMERA.replace("camera", "eye"), encoding="utf-8")
+    ran = run("check", robot, "--changed-since", "main")
+    assert (ran.status, ran.out) == (0, "no new findings\n")
+    assert ran.err == "not shown: 1 warning that main had already\n"
+
+
 def test_what_a_setting_makes_graver_is_shown(run: Run, robot: Path) -> None:
     (robot / "archgen.yaml").write_text(_HEAD.replace("off}\n", "off, unread-output: error}\n"), encoding="utf-8")
     ran = run("check", robot, "--changed-since", "main")
