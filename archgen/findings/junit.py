@@ -64,7 +64,7 @@ def _suite(file: str, group: Sequence[Diagnostic], sources: Sources, failing: se
 
 
 def _title(diagnostic: Diagnostic) -> str:
-    title = f"{diagnostic.rule}: {diagnostic.message}"
+    title = visible(f"{diagnostic.rule}: {diagnostic.message}")
     return title if len(title) <= _LONGEST else f"{title[:_LONGEST]}…"
 
 
