@@ -9,7 +9,7 @@ from pathlib import Path
 from archgen.history import kept, workers
 from archgen.history.commits import By, Commit, commits
 from archgen.history.points import plain, read
-from archgen.model.history import Point
+from archgen.model.history import History, Point
 from archgen.project import tracked
 
 Progress = Callable[[int, int], None]
@@ -17,7 +17,7 @@ Progress = Callable[[int, int], None]
 
 def history(
     path: Path | None, by: By = "revision", *, cache: Path | None = None, progress: Progress | None = None
-) -> tuple[Point, ...]:
+) -> History:
     """Give size, progress and findings of a project over time, oldest first: at each commit of HEAD's line of first parents
     that changed its files, or at the last one of each month.
 
@@ -32,7 +32,8 @@ def history(
         counted = workers.count(path, tuple(missing.values()), progress)
         held |= {one.tree: point for one, point in zip(missing.values(), counted, strict=True)}
         kept.store(file, {tree: plain(point) for tree, point in held.items()})
-    return tuple(_at(one, held[one.tree]) for one in line)
+    points = tuple(_at(one, held[one.tree]) for one in line)
+    return History(points, by, whole=not found.objects.repository.shallow)
 
 
 def _at(one: Commit, point: Point) -> Point:

@@ -47,3 +47,12 @@ class Point:
     def whole(self) -> Row:
         """Give the row of the whole project."""
         return self.rows[0]
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """A project over time, oldest first. A shallow clone's is not whole: it begins where the clone does."""
+
+    points: tuple[Point, ...] = ()
+    by: Literal["revision", "month"] = "revision"
+    whole: bool = True
