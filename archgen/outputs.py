@@ -5,13 +5,14 @@ from __future__ import annotations
 import fnmatch
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
 from archgen.emit import kept, tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass
 from archgen.model import selector
 from archgen.model.selector import Selection
 from archgen.model.selector_words import Problem

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
 from archgen import resources
 from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.frozen import dataclass
 from archgen.source import Span
 
 RULE = Rule(

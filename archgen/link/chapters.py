@@ -6,11 +6,12 @@ import base64
 import binascii
 import posixpath
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from urllib.parse import unquote
 
 from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.frozen import dataclass
 from archgen.model.document import GENERATED, Chapter
 from archgen.source import Span
 from archgen.suggest import did_you_mean

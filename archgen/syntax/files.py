@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import stat
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.source import Span
 
 MAX_BYTES = 16 * 1024 * 1024

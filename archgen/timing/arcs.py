@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
 from archgen.model.node import Endpoint, Topic

@@ -6,9 +6,10 @@ F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
 from archgen.timing import route
 from archgen.timing.analysis import Analysis, ChainResult, Term

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
 from archgen.timing.propagate import State, arriving
 from archgen.timing.streams import eta

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
 from typing import NamedTuple
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import Tier
 from archgen.timing.placement import Resource, Unit
 from archgen.timing.streams import Streams

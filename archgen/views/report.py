@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.component import Component, Group
 from archgen.model.document import GENERATED, Chapter
 from archgen.views import tables, timing_chapter, words

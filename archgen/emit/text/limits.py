@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass
+
+from archgen.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.views.graphs import boxes
