@@ -17,9 +17,19 @@ from archgen.timing.placement import Resource, Unit
 from archgen.timing.streams import Streams
 from archgen.timing.system import System
 from archgen.timing.value import Cause, united
-from archgen.timing.windows import Budget, Demand, DivergedError, Work, busy, carried, demand, shared, worst
-
-_NO_DEMAND: tuple[Demand, int] = (lambda _: 0, 0)
+from archgen.timing.windows import (
+    NO_DEMAND,
+    Budget,
+    Demand,
+    DivergedError,
+    Load,
+    Work,
+    busy,
+    shared,
+    together,
+    without,
+    worst,
+)
 
 
 class Found(NamedTuple):
@@ -57,7 +67,7 @@ def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
     if utilisation(works.cost, works.streams) >= 1:
         return Found(None, "dedicated", OVERLOAD)
     try:
-        return Found(worst(works, *_NO_DEMAND, budget), "dedicated")
+        return Found(worst(works, NO_DEMAND, budget), "dedicated")
     except DivergedError:
         return Found(None, "dedicated", DIVERGED)
 
@@ -153,8 +163,10 @@ def _one_core(
         if whole is not None and thread.low is None:
             only = len(everything) == 1 and len(thread.unit) > 1
             yield thread, whole._replace(tier="executor") if only else whole
-        else:
-            yield thread, _by_priority(thread, ranked, budget)
+    above: Found | None = None
+    for thread in sorted((t for t in wanted if t.low is not None), key=lambda t: -(t.low or 0)):
+        above = _by_priority(thread, ranked, budget, above)
+        yield thread, above
 
 
 class _Ranked:
@@ -163,10 +175,21 @@ class _Ranked:
     def __init__(self, threads: Iterable[_Thread]) -> None:
         self.threads = sorted((t for t in threads if t.high is not None), key=_rank)
         self.shares = tuple(accumulate((thread.share for thread in self.threads), initial=Fraction(0)))
+        self.load = Load()
+        self._laid = self._busy = 0
 
     def down_to(self, priority: int) -> int:
         """Count the threads that may have this priority or a higher one."""
         return bisect_right(self.threads, -priority, key=_rank)
+
+    def busy(self, count: int, budget: Budget) -> int:
+        """Give the busy period of so many threads: asked for in order of size, each is at least the one before."""
+        if self._laid < count:
+            for thread in self.threads[self._laid : count]:
+                self.load.add(thread.works)
+            self._laid = count
+            self._busy = busy(self.load.demand(), budget, self._busy)
+        return self._busy
 
 
 def _rank(thread: _Thread) -> int:
@@ -181,13 +204,17 @@ def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
     if causes:
         return Found(None, "host", united(causes))
     try:
-        return Found(busy([work for thread in threads for work in thread.works], budget), "host")
+        whole = Load(work for thread in threads for work in thread.works)
+        return Found(busy(whole.demand(), budget), "host")
     except DivergedError:
         return Found(None, "host", DIVERGED)
 
 
-def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
-    """Analyse one thread below all that may have its priority or a higher one."""
+def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget, above: Found | None) -> Found:
+    """Analyse one thread below all that may have its priority or a higher one.
+
+    Where the search for what is `above` did not end, this one, with more work in it, is not begun.
+    """
     count = ranked.down_to(thread.low or 0)
     tier: Tier = "priorities" if len(thread.unit) == 1 else "executor"
     if ranked.shares[count] >= 1:
@@ -196,11 +223,14 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
     causes = [one.cause for one in level if one.cause]
     if causes:
         return Found(None, tier, united(causes))
-    others, steps = demand(work for other in level if other is not thread for work in other.works)
+    if above is not None and above.cause == DIVERGED:
+        return Found(None, tier, DIVERGED)
     try:
+        whole = ranked.busy(count, budget)
         if len(thread.works) == 1:
-            return Found(worst(thread.works[0], others, steps, budget), tier)
-        return Found(busy(thread.works, budget, others, steps), tier)
+            others = without(ranked.load.demand(), Load(thread.works).demand())
+            whole = worst(thread.works[0], others, budget, whole)
+        return Found(whole, tier)
     except DivergedError:
         return Found(None, tier, DIVERGED)
 
@@ -211,6 +241,7 @@ def _several(
     everything = (*threads[0], *threads[1])
     total = sum((thread.share for thread in everything), Fraction(0))
     causes = [thread.cause for thread in everything if thread.cause]
+    carried = _carried(everything)
     for thread in wanted:
         if total >= resource.cores or thread.share >= 1:
             yield thread, Found(None, "cores", OVERLOAD)
@@ -218,22 +249,30 @@ def _several(
             yield thread, Found(None, "cores", united(causes))
         else:
             try:
-                yield thread, _global(system, resource, thread, everything, budget)
+                yield thread, _global(system, resource, thread, (everything, carried), budget)
             except DivergedError:
                 yield thread, Found(None, "cores", DIVERGED)
+
+
+def _carried(threads: Iterable[_Thread]) -> Demand:
+    load = Load()
+    for thread in threads:
+        load.add_carried(thread.works)
+    return load.demand()
 
 
 def _undisturbed(thread: _Thread, budget: Budget) -> Found:
     """Bound the response where there are no more threads than cores: nobody waits for anybody else."""
     if len(thread.works) == 1:
-        return Found(worst(thread.works[0], *_NO_DEMAND, budget), "cores")
-    return Found(busy(thread.works, budget), "executor")
+        return Found(worst(thread.works[0], NO_DEMAND, budget), "cores")
+    return Found(busy(Load(thread.works).demand(), budget), "executor")
 
 
 def _global(
-    system: System, resource: Resource, thread: _Thread, everything: Sequence[_Thread], budget: Budget
+    system: System, resource: Resource, thread: _Thread, all_work: tuple[Sequence[_Thread], Demand], budget: Budget
 ) -> Found:
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
+    everything, carried = all_work
     threads = system.threads.get(thread.container) if thread.container else None
     narrow = min(threads, resource.cores) if threads else resource.cores
     beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
@@ -243,9 +282,9 @@ def _global(
     share = thread.share + sum((t.share for t in beside), Fraction(0)) / narrow
     if share + sum((t.share for t in rest), Fraction(0)) / resource.cores >= 1:
         return Found(None, "cores", UNBOUNDED)
-    near, near_steps = carried(work for t in beside for work in t.works)
-    far, far_steps = carried(work for t in rest for work in t.works)
-    others, steps = shared(((near, narrow), (far, resource.cores))), near_steps + far_steps
+    own, near = _carried((thread,)), _carried(beside)
+    others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
     if len(thread.works) == 1:
-        return Found(worst(thread.works[0], others, steps, budget), "cores")
-    return Found(busy(thread.works, budget, others, steps), "cores" if rest else "executor")
+        return Found(worst(thread.works[0], others, budget), "cores")
+    whole = together(Load(thread.works).demand(), others)
+    return Found(busy(whole, budget), "cores" if rest else "executor")
