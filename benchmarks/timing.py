@@ -6,6 +6,7 @@ a third runs by timers, the others are fired by one of their two or three inputs
 
 from __future__ import annotations
 
+import gc
 import random
 import sys
 import tempfile
@@ -72,5 +73,6 @@ def measure(activities: int) -> None:
 
 
 if __name__ == "__main__":
+    gc.disable()  # as the command line does
     for count in [int(word) for word in sys.argv[1:]] or [2_500, 5_000, 10_000, 20_000]:
         measure(count)

@@ -8,7 +8,9 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import accumulate
+from math import lcm
 from typing import NamedTuple
 
 from archgen.frozen import dataclass
@@ -16,7 +18,7 @@ from archgen.timing.analysis import Tier
 from archgen.timing.placement import Resource, Unit
 from archgen.timing.streams import Streams
 from archgen.timing.system import System
-from archgen.timing.value import Cause, united
+from archgen.timing.value import Cause, added, united
 from archgen.timing.windows import (
     NO_DEMAND,
     Budget,
@@ -51,9 +53,10 @@ Events = Mapping[str, Streams | Cause]
 OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
 
 
+@lru_cache(1 << 14)
 def utilisation(cost: int, streams: Streams) -> Fraction:
     """Give the share of a core that an activity takes."""
-    return sum((stream.rate for stream in streams), Fraction(0)) * cost
+    return added(stream.rate for stream in streams) * cost
 
 
 def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
@@ -112,7 +115,7 @@ def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Foun
         united(causes) if causes else None,
         min(written) if len(written) == len(priorities) else None,
         max(written, default=None),
-        sum((utilisation(work.cost, work.streams) for work in works), Fraction(0)),
+        added(utilisation(work.cost, work.streams) for work in works),
         system.activities[unit[0]].container,
     )
 
@@ -174,13 +177,29 @@ class _Ranked:
 
     def __init__(self, threads: Iterable[_Thread]) -> None:
         self.threads = sorted((t for t in threads if t.high is not None), key=_rank)
-        self.shares = tuple(accumulate((thread.share for thread in self.threads), initial=Fraction(0)))
+        pairs = [thread.share.as_integer_ratio() for thread in self.threads]
+        self._whole = lcm(*[denominator for _, denominator in pairs])
+        self._shares = tuple(accumulate((above * (self._whole // below) for above, below in pairs), initial=0))
         self.load = Load()
         self._laid = self._busy = 0
+        self._causes: list[Cause] = []
+        self._asked = 0
 
     def down_to(self, priority: int) -> int:
         """Count the threads that may have this priority or a higher one."""
         return bisect_right(self.threads, -priority, key=_rank)
+
+    def share(self, count: int) -> Fraction:
+        """Give the share of a core that so many threads take."""
+        return Fraction(self._shares[count], self._whole)
+
+    def cause(self, count: int) -> Cause | None:
+        """Say what is missing of so many threads; asked for in order of size."""
+        added = [thread.cause for thread in self.threads[self._asked : count] if thread.cause]
+        self._asked = max(count, self._asked)
+        if added:
+            self._causes = [united((*self._causes, *added))]
+        return self._causes[0] if self._causes else None
 
     def busy(self, count: int, budget: Budget) -> int:
         """Give the busy period of so many threads: asked for in order of size, each is at least the one before."""
@@ -198,7 +217,7 @@ def _rank(thread: _Thread) -> int:
 
 def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
     """Bound the response under any scheduler that never idles: the longest busy period."""
-    if sum((thread.share for thread in threads), Fraction(0)) >= 1:
+    if added(thread.share for thread in threads) >= 1:
         return Found(None, "host", OVERLOAD)
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
@@ -217,12 +236,11 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget, above: Found 
     """
     count = ranked.down_to(thread.low or 0)
     tier: Tier = "priorities" if len(thread.unit) == 1 else "executor"
-    if ranked.shares[count] >= 1:
+    if ranked.share(count) >= 1:
         return Found(None, tier, OVERLOAD)
-    level = ranked.threads[:count]
-    causes = [one.cause for one in level if one.cause]
-    if causes:
-        return Found(None, tier, united(causes))
+    cause = ranked.cause(count)
+    if cause is not None:
+        return Found(None, tier, cause)
     if above is not None and above.cause == DIVERGED:
         return Found(None, tier, DIVERGED)
     try:
@@ -239,19 +257,28 @@ def _several(
     system: System, resource: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
 ) -> Iterable[tuple[_Thread, Found]]:
     everything = (*threads[0], *threads[1])
-    total = sum((thread.share for thread in everything), Fraction(0))
-    causes = [thread.cause for thread in everything if thread.cause]
+    total = added(thread.share for thread in everything)
+    cause = united(causes) if (causes := [thread.cause for thread in everything if thread.cause]) else None
     carried = _carried(everything)
+    whole = _Whole(everything, total, carried)
     for thread in wanted:
         if total >= resource.cores or thread.share >= 1:
             yield thread, Found(None, "cores", OVERLOAD)
-        elif causes:
-            yield thread, Found(None, "cores", united(causes))
+        elif cause is not None:
+            yield thread, Found(None, "cores", cause)
         else:
             try:
-                yield thread, _global(system, resource, thread, (everything, carried), budget)
+                yield thread, _global(system, resource, thread, whole, budget)
             except DivergedError:
                 yield thread, Found(None, "cores", DIVERGED)
+
+
+class _Whole(NamedTuple):
+    """All threads of some cores, their share, and the work that they carry into a window."""
+
+    threads: Sequence[_Thread]
+    share: Fraction
+    carried: Demand
 
 
 def _carried(threads: Iterable[_Thread]) -> Demand:
@@ -268,23 +295,20 @@ def _undisturbed(thread: _Thread, budget: Budget) -> Found:
     return Found(busy(Load(thread.works).demand(), budget), "executor")
 
 
-def _global(
-    system: System, resource: Resource, thread: _Thread, all_work: tuple[Sequence[_Thread], Demand], budget: Budget
-) -> Found:
+def _global(system: System, resource: Resource, thread: _Thread, whole: _Whole, budget: Budget) -> Found:
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
-    everything, carried = all_work
+    everything, total, carried = whole
     threads = system.threads.get(thread.container) if thread.container else None
     narrow = min(threads, resource.cores) if threads else resource.cores
     beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
     if len(everything) <= resource.cores and len(beside) < (threads or resource.cores):
         return _undisturbed(thread, budget)
-    rest = [t for t in everything if t is not thread and t not in beside]
-    share = thread.share + sum((t.share for t in beside), Fraction(0)) / narrow
-    if share + sum((t.share for t in rest), Fraction(0)) / resource.cores >= 1:
+    around = added(t.share for t in beside)
+    if thread.share + around / narrow + (total - thread.share - around) / resource.cores >= 1:
         return Found(None, "cores", UNBOUNDED)
     own, near = _carried((thread,)), _carried(beside)
     others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
     if len(thread.works) == 1:
         return Found(worst(thread.works[0], others, budget), "cores")
-    whole = together(Load(thread.works).demand(), others)
-    return Found(busy(whole, budget), "cores" if rest else "executor")
+    alone_here = len(beside) + 1 == len(everything)
+    return Found(busy(together(Load(thread.works).demand(), others), budget), "executor" if alone_here else "cores")

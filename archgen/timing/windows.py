@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from archgen.timing.streams import Stream, Streams, arrivals, eta
 
-_STEPS = 60_000_000
+_STEPS = 40_000_000
 """Terms that one analysis may look at, some seconds' worth."""
 _ONE_SEARCH = 6_000_000
 """Terms that one search may look at: what one of them wastes is not taken from all others."""
@@ -115,7 +115,7 @@ class Load:
 
     def demand(self) -> Demand:
         """Give the work; it goes on growing with the load."""
-        size = len(self._plain) + 2 * len(self._special) + 6 * sum(len(work.streams) for work in self._late) + 1
+        size = len(self._plain) + 2 * len(self._special) + 12 * sum(len(work.streams) for work in self._late) + 1
         return Demand(self._within, size, self._rate, self._ahead + (self._once << _SHIFT))
 
     def _within(self, window: int) -> int:
