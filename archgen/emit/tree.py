@@ -14,12 +14,12 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 
 from archgen.emit.names import is_safe
-from archgen.frozen import dataclass
 
 MANIFEST = ".archgen-files"
 _HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."

@@ -8,9 +8,9 @@ without a host.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
-from archgen.frozen import dataclass
 from archgen.timing.system import Arc
 
 PERIODIC, TRIGGERED, KEPT, IDLE = range(4)

@@ -10,9 +10,8 @@ a reaction is one figure.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
-
-from archgen.frozen import dataclass
 
 Span = tuple[int, int]
 """Figures from the first to the second are equally likely, and as likely as they are many; or one figure, twice."""

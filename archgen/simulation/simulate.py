@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from archgen.frozen import dataclass
 from archgen.simulation.engine import Run
 from archgen.simulation.flatten import Pauses, flatten
 from archgen.simulation.plan import PERIODIC, Plan

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
-from archgen.frozen import dataclass
 from archgen.views.shapes import Graph
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
-from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group, Input, Output
 from archgen.model.node import Node, Topic

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 from archgen.diagnostic import Diagnostic
-from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.mapping import Type

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
-from archgen.frozen import dataclass
 from archgen.model.component import Component, Group
 from archgen.model.document import GENERATED, Chapter
 from archgen.views import tables, timing_chapter, words

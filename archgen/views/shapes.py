@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Literal
-
-from archgen.frozen import dataclass
 
 Record = Mapping[str, Any]
 """The resolved model as plain data: dicts, lists, strings, numbers, booleans, None."""

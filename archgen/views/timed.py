@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system import Activity

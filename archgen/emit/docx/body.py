@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from archgen.emit.docx import chapters, figures, tables, text
 from archgen.emit.docx.draft import Draft
 from archgen.emit.docx.flow import Piece
-from archgen.frozen import dataclass
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text
 
 _SCOPE = 2

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
@@ -19,7 +19,6 @@ from archgen.emit.docx.flow import Piece
 from archgen.emit.docx.inlines import plain, runs
 from archgen.emit.docx.markup import run
 from archgen.emit.docx.numbering import LEVELS
-from archgen.frozen import dataclass
 from archgen.views.shapes import Inlines, Markdown, Text
 
 _STEP = 360

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from urllib.parse import quote, urlsplit
 
 from archgen.emit.docx.markup import R, bookmark_name, clean
@@ -13,7 +13,6 @@ from archgen.emit.docx.package import Package, Relation
 from archgen.emit.docx.sheets import Sheets
 from archgen.emit.docx.styles import Styles
 from archgen.emit.picture import Picture
-from archgen.frozen import dataclass
 
 _HOST = re.compile(r"(?:[^@/\s]*@)?(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?)(?::[0-9]{1,5})?\Z")
 _MAIL = re.compile(r"mailto:[A-Za-z0-9._%+-]+@[A-Za-z0-9.-]+(?:\?[^\s]*)?\Z")

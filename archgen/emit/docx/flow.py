@@ -7,10 +7,9 @@ be close. Everything that decides them is known but the exact breaking of lines:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from archgen.emit.docx.sheets import Sheet
-from archgen.frozen import dataclass
 
 _TOGETHER = 2
 """Lines of a paragraph that stay together at the foot and at the head of a page."""

@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 import struct
 import zlib
+from dataclasses import dataclass
 
 from lxml import etree
-
-from archgen.frozen import dataclass
 
 _SCREEN = 96.0
 _POINTS = 72.0

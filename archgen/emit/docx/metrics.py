@@ -7,9 +7,8 @@ what is reckoned here only fills in the page numbers that it shows until the fie
 from __future__ import annotations
 
 import unicodedata
+from dataclasses import dataclass
 from functools import lru_cache
-
-from archgen.frozen import dataclass
 
 _FIRST = 32
 _WIDTHS = (

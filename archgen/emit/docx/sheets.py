@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import dataclass
 
 from lxml import etree
 
 from archgen.emit.docx.markup import R, twips
 from archgen.emit.docx.styles import tag
-from archgen.frozen import dataclass
 
 _A4 = (595.3, 841.9)
 _MARGIN = 70.85

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from archgen.emit.docx import figures
 from archgen.emit.docx.draft import Draft
@@ -11,7 +12,6 @@ from archgen.emit.docx.inlines import plain, runs
 from archgen.emit.docx.markup import escape, paragraph, run, twips
 from archgen.emit.docx.metrics import MONOSPACE, Face, word_width, word_widths
 from archgen.emit.docx.sheets import Sheet
-from archgen.frozen import dataclass
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
 MOST_COLUMNS = 63

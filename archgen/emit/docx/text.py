@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from archgen.emit.docx.draft import Draft, Entry
 from archgen.emit.docx.flow import Piece
@@ -10,7 +11,6 @@ from archgen.emit.docx.inlines import plain, runs
 from archgen.emit.docx.markup import bookmark_name, paragraph, run
 from archgen.emit.docx.numbering import label
 from archgen.emit.docx.styles import HEADINGS
-from archgen.frozen import dataclass
 from archgen.views.shapes import Bullets, Inlines, Paragraph
 
 _KINDS = {"text": "Normal", "note": "Note Box", "warning": "Warning Box", "error": "Error Box"}

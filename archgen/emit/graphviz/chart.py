@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.draft import measure
@@ -16,7 +17,6 @@ from archgen.emit.graphviz.legend import under
 from archgen.emit.graphviz.marks import Link, linked
 from archgen.emit.graphviz.scene import Part, Scene
 from archgen.emit.graphviz.text import html, quoted, wrapped
-from archgen.frozen import dataclass
 from archgen.views.bars import Bar, Chart, Stretch
 
 Attributes = dict[str, str]

@@ -6,6 +6,7 @@ Ids of the model never get into DOT text: boxes are `n0`, `n1`, arrows `e0`, `e1
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from archgen.emit.graphviz import engine, marks, palette, strokes
 from archgen.emit.graphviz.engine import written
@@ -13,7 +14,6 @@ from archgen.emit.graphviz.labels import along
 from archgen.emit.graphviz.marks import FONT, Link
 from archgen.emit.graphviz.scene import DEFAULTS, Part, Scene, placed
 from archgen.emit.graphviz.text import html, quoted, wrapped
-from archgen.frozen import dataclass
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
 
 Attributes = dict[str, str]

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from archgen.emit.graphviz.text import quoted
-from archgen.frozen import dataclass
 
 Attributes = dict[str, str]
 Point = tuple[float, float]

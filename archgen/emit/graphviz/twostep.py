@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from archgen.emit.graphviz import engine
@@ -20,7 +20,6 @@ from archgen.emit.graphviz.inner import inside
 from archgen.emit.graphviz.labels import declutter
 from archgen.emit.graphviz.order import Rows, folds, forward
 from archgen.emit.graphviz.scene import Frame, Line, Part, Scene, placed
-from archgen.frozen import dataclass
 from archgen.views.shapes import Arrow
 
 _PAGE = (1105.0, 728.0)

@@ -10,10 +10,10 @@ import os
 import pickle
 import struct
 import sys
+from dataclasses import dataclass
 from typing import IO, Any
 
 from archgen.emit.picture import Picture
-from archgen.frozen import dataclass
 from archgen.views.bars import Drawing
 
 _LENGTH = struct.Struct("<Q")

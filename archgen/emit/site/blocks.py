@@ -6,14 +6,13 @@ These are functions, not template macros: measured on 350 pages they take a quar
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from archgen.emit.picture import Picture
 from archgen.emit.site import pictures
 from archgen.emit.site.chapters import Chapters
 from archgen.emit.site.links import Here
 from archgen.emit.site.markup import escape, web, words
-from archgen.frozen import dataclass
 from archgen.views.shapes import (
     Block,
     Bullets,

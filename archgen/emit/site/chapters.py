@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -12,7 +12,6 @@ from urllib.parse import unquote
 from archgen.emit.names import safe_path
 from archgen.emit.site.links import Here
 from archgen.emit.site.markup import escape, web
-from archgen.frozen import dataclass
 from archgen.views.shapes import Markdown
 
 if TYPE_CHECKING:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 from archgen.emit.names import safe_paths
 from archgen.emit.site.markup import element_id
-from archgen.frozen import dataclass
 from archgen.views.shapes import Figure, Page, Section, Table
 
 RESERVED = ("content", "navigation")

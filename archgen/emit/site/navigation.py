@@ -7,11 +7,10 @@ the tree always, under their kind's heading; those below them where the reader i
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from archgen.emit.site.links import Links
 from archgen.emit.site.markup import escape, words
-from archgen.frozen import dataclass
 from archgen.views.shapes import Page
 
 LISTED = 200

@@ -8,9 +8,8 @@ stands for them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from archgen.frozen import dataclass
 from archgen.model.node import Endpoint, Topic
 from archgen.views.graphs import nodes
 from archgen.views.graphs.legend import with_legend

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.views.graphs import boxes

@@ -6,10 +6,9 @@ The period stands in every box as text; what has none (unknown, on an event, on 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from archgen.frozen import dataclass
 from archgen.timing.system import Activity, Arc
 from archgen.views import figures, paces
 from archgen.views.graphs import boxes
