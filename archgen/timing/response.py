@@ -8,16 +8,14 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
 from itertools import accumulate
 from math import lcm
 from typing import NamedTuple
 
-from archgen.frozen import dataclass
 from archgen.timing.analysis import Tier
-from archgen.timing.placement import Resource, Unit
-from archgen.timing.streams import Streams
+from archgen.timing.placement import Resource
 from archgen.timing.system import System
+from archgen.timing.threads import DIVERGED, OVERLOAD, UNBOUNDED, Events, Found, Thread, thread_of, utilisation, work_of
 from archgen.timing.value import Cause, added, united
 from archgen.timing.windows import (
     NO_DEMAND,
@@ -25,21 +23,12 @@ from archgen.timing.windows import (
     Demand,
     DivergedError,
     Load,
-    Work,
     busy,
     shared,
     together,
     without,
     worst,
 )
-
-
-class Found(NamedTuple):
-    """A worst response in ticks, or why there is none."""
-
-    value: int | None
-    tier: Tier
-    cause: Cause = Cause()
 
 
 class Effort(NamedTuple):
@@ -49,22 +38,12 @@ class Effort(NamedTuple):
     stale: frozenset[str] | None = None
 
 
-Events = Mapping[str, Streams | Cause]
-OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
-
-
-@lru_cache(1 << 14)
-def utilisation(cost: int, streams: Streams) -> Fraction:
-    """Give the share of a core that an activity takes."""
-    return added(stream.rate for stream in streams) * cost
-
-
 def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
     """Find the response of what has no host: its own queue, on a core of its own."""
     activity = system.activities[name]
     if activity.response is not None:
         return Found(activity.response, "declared")
-    works = _work(system, name, events, {})
+    works = work_of(system, name, events, {})
     if isinstance(works, Cause):
         return Found(None, "dedicated" if activity.wcet is not None else "unknown", works)
     if utilisation(works.cost, works.streams) >= 1:
@@ -75,49 +54,8 @@ def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
         return Found(None, "dedicated", DIVERGED)
 
 
-def _work(system: System, name: str, events: Events, known: Mapping[str, Found]) -> Work | Cause:
-    cost, streams = system.activities[name].wcet, events[name]
-    if cost == 0:
-        return Work(0, () if isinstance(streams, Cause) else streams)
-    if cost is None or isinstance(streams, Cause):
-        unwritten = Cause((name,)) if cost is None else Cause()
-        return united((unwritten, streams)) if isinstance(streams, Cause) else unwritten
-    found = known.get(name)
-    return Work(cost, streams, (found.value or 0) if found else 0)
-
-
-@dataclass(frozen=True, slots=True)
-class _Thread:
-    """A unit with its work: `low` and `high` are the least and greatest priority of its members, None for ordinary ones."""
-
-    unit: Unit
-    works: tuple[Work, ...]
-    cause: Cause | None
-    low: int | None
-    high: int | None
-    share: Fraction
-    container: str | None
-
-
-_Threads = tuple[Sequence[_Thread], Sequence[_Thread]]
+_Threads = tuple[Sequence[Thread], Sequence[Thread]]
 """Those of a resource, and the foreign ones."""
-
-
-def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> _Thread:
-    found = [_work(system, name, events, known) for name in unit]
-    causes = [one for one in found if isinstance(one, Cause)]
-    works = tuple(one for one in found if isinstance(one, Work))
-    priorities = [system.activities[name].priority for name in unit]
-    written = [one for one in priorities if one is not None]
-    return _Thread(
-        unit,
-        works,
-        united(causes) if causes else None,
-        min(written) if len(written) == len(priorities) else None,
-        max(written, default=None),
-        added(utilisation(work.cost, work.streams) for work in works),
-        system.activities[unit[0]].container,
-    )
 
 
 def responses(
@@ -132,8 +70,8 @@ def responses(
     What has a higher priority than all that is stale is left out.
     """
     budget, stale = effort
-    threads = [_thread(system, unit, events, known) for unit in resource.units]
-    foreign = [_thread(system, unit, events, known) for unit in resource.foreign]
+    threads = [thread_of(system, unit, events, known) for unit in resource.units]
+    foreign = [thread_of(system, unit, events, known) for unit in resource.foreign]
     if stale is not None and resource.cores == 1:
         touched = max(
             (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1
@@ -152,13 +90,13 @@ def responses(
     return found
 
 
-def _high(thread: _Thread) -> int:
+def _high(thread: Thread) -> int:
     return -1 if thread.high is None else thread.high
 
 
 def _one_core(
-    _: System, __: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
-) -> Iterable[tuple[_Thread, Found]]:
+    _: System, __: Resource, threads: _Threads, wanted: Sequence[Thread], budget: Budget
+) -> Iterable[tuple[Thread, Found]]:
     everything = (*threads[0], *threads[1])
     ranked = _Ranked(everything)
     whole = _any_order(everything, budget) if any(thread.low is None for thread in wanted) else None
@@ -175,7 +113,7 @@ def _one_core(
 class _Ranked:
     """Threads by falling priority, with the share of a core that each takes together with all above it."""
 
-    def __init__(self, threads: Iterable[_Thread]) -> None:
+    def __init__(self, threads: Iterable[Thread]) -> None:
         self.threads = sorted((t for t in threads if t.high is not None), key=_rank)
         pairs = [thread.share.as_integer_ratio() for thread in self.threads]
         self._whole = lcm(*[denominator for _, denominator in pairs])
@@ -211,11 +149,11 @@ class _Ranked:
         return self._busy
 
 
-def _rank(thread: _Thread) -> int:
+def _rank(thread: Thread) -> int:
     return -(thread.high or 0)
 
 
-def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
+def _any_order(threads: Sequence[Thread], budget: Budget) -> Found:
     """Bound the response under any scheduler that never idles: the longest busy period."""
     if added(thread.share for thread in threads) >= 1:
         return Found(None, "host", OVERLOAD)
@@ -229,7 +167,7 @@ def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
         return Found(None, "host", DIVERGED)
 
 
-def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget, above: Found | None) -> Found:
+def _by_priority(thread: Thread, ranked: _Ranked, budget: Budget, above: Found | None) -> Found:
     """Analyse one thread below all that may have its priority or a higher one.
 
     Where the search for what is `above` did not end, this one, with more work in it, is not begun.
@@ -254,8 +192,8 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget, above: Found 
 
 
 def _several(
-    system: System, resource: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
-) -> Iterable[tuple[_Thread, Found]]:
+    system: System, resource: Resource, threads: _Threads, wanted: Sequence[Thread], budget: Budget
+) -> Iterable[tuple[Thread, Found]]:
     everything = (*threads[0], *threads[1])
     total = added(thread.share for thread in everything)
     cause = united(causes) if (causes := [thread.cause for thread in everything if thread.cause]) else None
@@ -276,26 +214,26 @@ def _several(
 class _Whole(NamedTuple):
     """All threads of some cores, their share, and the work that they carry into a window."""
 
-    threads: Sequence[_Thread]
+    threads: Sequence[Thread]
     share: Fraction
     carried: Demand
 
 
-def _carried(threads: Iterable[_Thread]) -> Demand:
+def _carried(threads: Iterable[Thread]) -> Demand:
     load = Load()
     for thread in threads:
         load.add_carried(thread.works)
     return load.demand()
 
 
-def _undisturbed(thread: _Thread, budget: Budget) -> Found:
+def _undisturbed(thread: Thread, budget: Budget) -> Found:
     """Bound the response where there are no more threads than cores: nobody waits for anybody else."""
     if len(thread.works) == 1:
         return Found(worst(thread.works[0], NO_DEMAND, budget), "cores")
     return Found(busy(Load(thread.works).demand(), budget), "executor")
 
 
-def _global(system: System, resource: Resource, thread: _Thread, whole: _Whole, budget: Budget) -> Found:
+def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, budget: Budget) -> Found:
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
     everything, total, carried = whole
     threads = system.threads.get(thread.container) if thread.container else None
