@@ -9,12 +9,12 @@ import gc
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import aftermath, rules, suppress
+from archgen.frozen import dataclass
 from archgen.link import chapters, interfaces, merge, shipped
 from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack

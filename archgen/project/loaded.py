@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass
 from archgen.project.find import MARKER, find
 from archgen.project.reading import Reading, matches, read_sources, take
 from archgen.project.slices import Slices
