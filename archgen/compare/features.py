@@ -133,8 +133,7 @@ def _own(*values: object) -> frozenset[str]:
 
 
 def _named(name: str, title: str) -> Features:
-    written = "" if title in {made_title(name), name} else title
-    return {"name": Feature(2, letters(name)), "title": Feature(2, words(written))}
+    return {"name": Feature(2, letters(name)), "title": Feature(2, words(title), title in {made_title(name), name})}
 
 
 def partner(of: Described, name: str) -> Features:
@@ -296,7 +295,7 @@ def requirement(of: Described, name: str) -> Features:
     found = of.found.requirements[name]
     return {
         "name": Feature(1, letters(name)),
-        "title": Feature(4, words(found.title if found.title != name else None)),
+        "title": Feature(4, words(found.title), found.title == name),
         "users": Feature(3, of.refs("component", of.users.get(f"requirement:{name}", ()))),
         "text": Feature(2, words(found.description)),
     }
@@ -307,7 +306,7 @@ def use_case(of: Described, name: str) -> Features:
     found = of.found.use_cases[name]
     return {
         "name": Feature(1, letters(name)),
-        "title": Feature(4, words(found.title if found.title != name else None)),
+        "title": Feature(4, words(found.title), found.title == name),
         "users": Feature(3, of.refs("requirement", of.users.get(f"use_case:{name}", ()))),
         "text": Feature(2, words(found.description)),
     }

@@ -20,6 +20,7 @@ def match(before: Architecture, after: Architecture) -> Names:
     """Pair the elements of both versions."""
     names = Names()
     left, right = features.Described(before, names.known), features.Described(after, _itself(names))
+    names.pair("project", before.project.id, after.project.id)
     for sort, ids in _FIRST.items():
         _same(names, sort, ids(before), ids(after))
     _match(names, "partner", left, right, features.partner)

@@ -30,6 +30,11 @@ class Told:
             word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
         )
 
+    def unread(self, key: Key, before: object, after: object) -> bool:
+        """Say whether a value that is missing in one version may stand in a part of it that could not be read."""
+        lost = self.lost[0] if before is None else self.lost[1] if after is None else frozenset()
+        return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint(key[1].split(".")))
+
     def gone(self, sort: str, name: str) -> bool:
         """Say whether an element was removed."""
         return (sort, name) in self.before and (sort, name) not in self.after
