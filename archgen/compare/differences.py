@@ -87,7 +87,7 @@ class Differences:
                 continue
             moved = sort == "component" and self._home(old) != there.parent
             change = Change("moved" if moved else "renamed", sort, name, was=old, confidence=confidence)
-            self.top.append(replace(change, text=sentences.renamed(change)))
+            self.top.append(replace(change, text=sentences.renamed(change, self.told)))
 
     def _home(self, component: str) -> Key:
         return "group", self.names.to("group", component.partition(".")[0])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from archgen.compare.features import own_messages
+from archgen.compare.described import own_messages
 from archgen.compare.names import Names
 from archgen.compare.nodes import behind, nodes, timing_values
 from archgen.compare.values import known, prose, title, words

@@ -10,6 +10,7 @@ from archgen.compare.phrases import changed_key, listed, short
 from archgen.compare.told import Told
 from archgen.compare.values import Title
 from archgen.compare.wiring import Rewired
+from archgen.transform import ros_names
 
 _WORDS = {
     "use_case": "use case",
@@ -101,8 +102,8 @@ def _unserved(element: Element, told: Told) -> Iterator[str]:
                 yield f"no component serves `{requirement}` any more"
 
 
-def renamed(change: Change) -> str:
-    """Say that an element has another id or stands in another group."""
+def renamed(change: Change, told: Told) -> str:
+    """Say that an element has another id or stands in another group, and which names on the robot follow it."""
     sort = _WORDS.get(change.sort, change.sort)
     was = change.was or ""
     if change.kind == "moved":
@@ -114,7 +115,20 @@ def renamed(change: Change) -> str:
     else:
         said = f"{sort} `{short(was)}` is called `{short(change.element)}` now"
     sure = "" if change.confidence >= 0.9 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
-    return said + sure
+    return said + sure + _following(change, told)
+
+
+def _following(change: Change, told: Told) -> str:
+    """Say which topics, services and actions are called otherwise because nobody named them."""
+    if change.sort not in {"group", "component", "output"}:
+        return ""
+    inside = (port for port in told.unnamed if port == change.element or port.startswith(f"{change.element}."))
+    ports = sorted(port for port in inside if ("output", port) in told.before)
+    if not ports:
+        return ""
+    was = told.before["output", ports[0]].own
+    more = f", and {len(ports) - 1} more such names follow" if len(ports) > 1 else ""
+    return f"; `{ros_names.of_port(was)}` becomes `{ros_names.of_port(ports[0])}`{more}"
 
 
 def connection(each: Rewired, told: Told) -> str:

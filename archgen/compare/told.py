@@ -23,6 +23,9 @@ class Told:
     lost: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The keys of what could not be read, before and after: nobody knows whether that came or went."""
 
+    unnamed: frozenset[str] = frozenset()
+    """Outputs that stand on topics, services or actions that are called after them, since no node says otherwise."""
+
     def unknown(self, key: Key) -> bool:
         """Say whether what is missing in one version may stand in a part of it that could not be read."""
         lost = self.lost[0 if key in self.after else 1]
