@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic
+from archgen.project import baseline
 from archgen.project.find import MARKER
 from archgen.schema import better_keys, normalise, sections, validate
 from archgen.source import Sources, Span
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 _NO_SOURCES = frozenset({"backends"})
 """Folders that hold no slices unless `sources` names them."""
+_NO_SLICE = frozenset({"archgen", baseline.MARK})
+"""Keys of files that are no slices: a project of its own, and a baseline."""
 
 
 @dataclass(slots=True)
@@ -118,7 +121,7 @@ def _take_slice(reading: Reading, file: str, *, named: bool) -> None:
     """Read a file; what a wildcard found is left out if it is a project of its own (a packed one, for instance)."""
     reading.seen.add(file)
     document, found = _read(reading, file)
-    if named or document is None or "archgen" not in document.root.entries:
+    if named or document is None or _NO_SLICE.isdisjoint(document.root.entries):
         _keep(reading, file, document, found)
 
 
@@ -130,12 +133,14 @@ def _read_all(reading: Reading) -> None:
             continue
         reading.seen.add(file)
         document, found = _read(reading, file)
+        if baseline.is_own(reading.sources.text(file) or ""):
+            continue  # broken or not, it is judged where it is used
         if document is None and found[0].rule != "too-large" and not _looks_like_slice(reading, file, known):
             ignored.append((file, None))
         elif document is None:
             _keep(reading, file, None, found)
         elif not known.isdisjoint(document.root.entries):
-            if "archgen" not in document.root.entries:
+            if _NO_SLICE.isdisjoint(document.root.entries):
                 _keep(reading, file, document, found)
         elif document.root.entries:
             ignored.append((file, next(filter(None, (closest(key, known) for key in document.root.entries)), None)))
