@@ -19,7 +19,8 @@ VERBS = {
     "list": "List elements or connections, as text, CSV or JSON.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
-    "init": "Start a project.",
+    "init": "Start a project, or take one over from a spreadsheet.",
+    "new": "Add a group, a component or a node.",
     "completion": "Print the set-up of shell completion.",
 }
 """Every verb with its line in the help; each is a module of this package with a command of the same name."""

@@ -42,6 +42,11 @@ def expand(root: Path, pattern: str, skip: frozenset[str] = frozenset()) -> tupl
     return tuple(sorted((f"{prefix}/{name}" if prefix else name for name in found), key=lambda name: name.split("/")))
 
 
+def matches(pattern: str, file: str) -> bool:
+    """Tell whether a pattern names a file, there or not."""
+    return is_inside(pattern) and re.fullmatch(_regex(PurePosixPath(pattern).parts), file) is not None
+
+
 def _walk(top: Path, skip: frozenset[str]) -> Iterator[str]:
     for folder, folders, names in os.walk(top):
         below = os.path.relpath(folder, top).replace(os.sep, "/")
