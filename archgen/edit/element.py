@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from archgen.emit.yaml import scalar
+from archgen.emit.yaml import flow, scalar
 
 Value = str | tuple[str, ...] | Mapping[str, "Value"] | None
 
@@ -40,7 +40,7 @@ class Element:
 
     def flow(self) -> str:
         """Write it in braces, on one line."""
-        return f"{scalar(self.id)}: {_flow(self.body)}"
+        return f"{scalar(self.id)}: {flow(self.body)}"
 
 
 def _data(value: Value) -> object:
@@ -58,12 +58,4 @@ def _block(key: str, value: Value, indent: str, unit: str, hints: Mapping[str, s
         hint = f"  # {hints[key]}" if key in hints else ""
         yield f"{indent}{scalar(key)}:{hint}"
     else:
-        yield f"{indent}{scalar(key)}: {_flow(value)}"
-
-
-def _flow(value: Value) -> str:
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{scalar(key)}: {_flow(inner)}" for key, inner in value.items()) + "}"
-    if isinstance(value, tuple):
-        return "[" + ", ".join(scalar(item) for item in value) + "]"
-    return "" if value is None else scalar(value)
+        yield f"{indent}{scalar(key)}: {flow(value)}"
