@@ -26,13 +26,34 @@ DISTROS = ("jazzy", "kilted", "humble", "rolling", "noetic")
 @click.command("init")
 @click.argument("folder", required=False, type=click.Path(file_okay=False, path_type=Path))
 @click.option("--title", metavar="TEXT", help="The project's title.  [default: made from the folder's name]")
-@click.option("--partner", "partners", metavar="ID=TITLE", multiple=True, help="A partner, optionally with `@handle` behind; may be repeated.")
-@click.option("--group", "groups", metavar="ID=OWNER", multiple=True, help="A first group and its owner; may be repeated.  [default: sensing, driving]")
+@click.option(
+    "--partner",
+    "partners",
+    metavar="ID=TITLE",
+    multiple=True,
+    help="A partner, optionally with `@handle` behind; may be repeated.",
+)
+@click.option(
+    "--group",
+    "groups",
+    metavar="ID=OWNER",
+    multiple=True,
+    help="A first group and its owner; may be repeated.  [default: sensing, driving]",
+)
 @click.option("--distro", type=click.Choice(DISTROS), help="The ROS distribution.  [default: jazzy]")
-@click.option("--ci", type=click.Choice(["github", "gitlab", "none"]), help="Whose workflow to write.  [default: github]")
-@click.option("--from", "tables", metavar="FILE.csv", multiple=True, type=click.Path(dir_okay=False, path_type=Path), help="Start from tables of components and connections, as spreadsheets export them; `-` is the standard input.")
+@click.option(
+    "--ci", type=click.Choice(["github", "gitlab", "none"]), help="Whose workflow to write.  [default: github]"
+)
+@click.option(
+    "--from",
+    "tables",
+    metavar="FILE.csv",
+    multiple=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Start from tables of components and connections, as spreadsheets export them; `-` is the standard input.",
+)
 @click.option("-y", "--yes", is_flag=True, help="Ask nothing: take the defaults for what no flag says.")
-def command(  # noqa: PLR0913 - one for each option
+def command(  # noqa: PLR0913, PLR0917 - one for each option
     folder: Path | None,
     title: str | None,
     partners: tuple[str, ...],
@@ -50,18 +71,22 @@ def command(  # noqa: PLR0913 - one for each option
     everything is written or nothing. In a git repository that begins above FOLDER, workflow and CODEOWNERS go to its top,
     since nobody reads them elsewhere.
     """
+    from archgen.start.answers import with_partners
+
     target = folder or Path()
     _see_free(target)
     if tables and groups:
         msg = "--from takes the groups from the table: leave out --group"
         raise click.UsageError(msg)
-    imported = _import(tables, distro) if tables else None
     answers = _answers(target, title=title, partners=partners, groups=groups, distro=distro, forge=ci or "github")
-    given = {"title": title, "partner": partners or imported, "group": groups or imported, "distro": distro, "ci": ci}
+    given = {"title": title, "partner": partners or tables, "group": groups or tables, "distro": distro, "ci": ci}
     if not yes and sys.stdin.isatty() and sys.stdout.isatty():
         from archgen.cli import questions
 
         answers = questions.ask(answers, frozenset(key for key, value in given.items() if value), DISTROS)
+    imported = _import(tables, answers.distro) if tables else None
+    if imported:
+        answers = with_partners(answers, imported.data.get("partners", {}))
     _write(target, answers, imported)
 
 
@@ -84,11 +109,12 @@ def _answers(target: Path, **flags: Any) -> Answers:  # noqa: ANN401 - as `gathe
         raise click.UsageError(visible(str(error))) from None
 
 
-def _import(tables: tuple[Path, ...], distro: str | None) -> Imported:
+def _import(tables: tuple[Path, ...], distro: str) -> Imported:
     """Read the tables; what was not taken is said, and where nothing can be taken the run ends."""
     from archgen import importers
+    from archgen.importers import MAX_BYTES
 
-    imported = importers.read([(str(path), run.read_bytes(path)) for path in tables], distro)
+    imported = importers.read([(str(path), run.read_bytes(path, MAX_BYTES)) for path in tables], distro)
     run.excerpts(imported.diagnostics, imported.sources, sys.stderr)
     if not imported.data:
         click.echo("Nothing was written.", err=True)

@@ -64,7 +64,7 @@ def group(name: str, title: str | None, owner: str | None, project: Path | None,
 @click.option("--role", type=click.Choice(ROLES), help="What it does with data.")
 @click.option("--functionality", metavar="TEXT", help="What it does, in a sentence or two.")
 @_shared
-def component(  # noqa: PLR0913 - one for each option
+def component(  # noqa: PLR0913, PLR0917 - one for each option
     name: str,
     group_: str | None,
     role: str | None,
@@ -103,12 +103,14 @@ def component(  # noqa: PLR0913 - one for each option
 
 
 @command.command("node")
-@click.option("--implements", metavar="COMPONENT", multiple=True, help="A component that it implements; may be repeated.")
+@click.option(
+    "--implements", metavar="COMPONENT", multiple=True, help="A component that it implements; may be repeated."
+)
 @click.option("--package", metavar="NAME", help="Its ROS package.")
 @click.option("--host", metavar="HOST", help="The computer on which it runs.")
 @click.option("--status", type=click.Choice(STATUSES), default="planned", show_default=True)
 @_shared
-def node(  # noqa: PLR0913 - one for each option
+def node(  # noqa: PLR0913, PLR0917 - one for each option
     name: str,
     implements: tuple[str, ...],
     package: str | None,

@@ -39,7 +39,7 @@ def _partners() -> tuple[Partner, ...]:
         answers.distinct([*found, *([made] if made else [])], "partner")
         return made
 
-    while (one := _until(f"Partner {len(found) + 1}, Enter for none" if not found else "Next, Enter to go on", "", read)):
+    while one := _until(f"Partner {len(found) + 1}, Enter for none" if not found else "Next, Enter to go on", "", read):
         found.append(one)
     return tuple(found)
 
@@ -69,4 +69,5 @@ def _until(question: str, default: str, read: Callable[[str], T]) -> T:
         except ValueError as error:
             raise click.UsageError(str(error)) from None
 
-    return click.prompt(question, default=default, show_default=bool(default), value_proc=checked)  # type: ignore[no-any-return]
+    answer: T = click.prompt(question, default=default, show_default=bool(default), value_proc=checked)
+    return answer

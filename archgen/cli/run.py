@@ -110,6 +110,18 @@ def phrased() -> Iterator[None]:
         raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
 
 
+def read_bytes(path: Path, most: int) -> bytes:
+    """Read a file, or the standard input where it is `-`: one byte more than the most at the most."""
+    try:
+        if str(path) == "-":
+            return sys.stdin.buffer.read(most + 1)
+        with path.open("rb") as stream:
+            return stream.read(most + 1)
+    except OSError as error:
+        msg = f"cannot read {path}: {error.strerror or error}"
+        raise click.ClickException(msg) from None
+
+
 def counted(findings: Sequence[Diagnostic]) -> str:
     """Count findings in words; empty where there are none."""
     from archgen.findings.text import summary

@@ -52,7 +52,8 @@ def add(checked: Checked, place: Place, element: Element, own: str) -> Edit:
     after = _text(place, element, text)
     found = proof.consequences(checked, place.file, after.removeprefix(_BOM), own)
     if found.errors:
-        raise RefusedError("with it the project would have errors that it does not have now", errors=found.errors)
+        message = "with it the project would have errors that it does not have now"
+        raise RefusedError(message, errors=found.errors)
     if found.changed:
         several = ", ".join(f"`{name}`" for name in found.changed[:3]) + (" and others" if found.changed[3:] else "")
         message = f"it would change what other elements mean: {several}"
@@ -66,7 +67,8 @@ _BOM = codecs.BOM_UTF8.decode()
 def _read(checked: Checked, place: Place) -> tuple[bytes, str]:
     read = files.read(checked.root, place.file)
     if read.problem:
-        raise RefusedError(f"{place.file} cannot be read: {read.problem.message}")
+        message = f"{place.file} cannot be read: {read.problem.message}"
+        raise RefusedError(message)
     data = (checked.root / place.file).read_bytes()
     return data, data.decode()
 

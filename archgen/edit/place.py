@@ -82,8 +82,9 @@ def _tables(checked: Checked, section: str) -> Iterator[tuple[str, Table]]:
 def _weight(group: Value | None) -> tuple[int, int]:
     """Weigh how much a slice says: first its components' keys, then its own."""
     found = group.get("components") if isinstance(group, Table) else None
-    inner = sum(len(e.value.entries) + 1 if isinstance(e.value, Table) else 1 for e in found or ()) if isinstance(found, Table) else 0
-    return inner, len(group.entries) if isinstance(group, Table) else 0
+    inner = [e.value for e in found] if isinstance(found, Table) else []
+    keys = sum(len(value.entries) for value in inner if isinstance(value, Table))
+    return len(inner) + keys, len(group.entries) if isinstance(group, Table) else 0
 
 
 def _is_read(checked: Checked, file: str) -> bool:

@@ -70,9 +70,7 @@ def _judged(checked: Checked, file: str, text: str) -> Checked:
     loaded.sources.add(file, text)
     kept = tuple(d for d in loaded.diagnostics if d.span.file != file)
     ignores = {document.file: document.ignores for document in documents if document.ignores}
-    return pipeline.judge(
-        replace(loaded, documents=tuple(documents), diagnostics=(*kept, *found), ignores=ignores)
-    )
+    return pipeline.judge(replace(loaded, documents=tuple(documents), diagnostics=(*kept, *found), ignores=ignores))
 
 
 def _changed(old: Architecture, new: Architecture, own: str) -> Iterator[str]:
@@ -85,5 +83,7 @@ def _changed(old: Architecture, new: Architecture, own: str) -> Iterator[str]:
         if now is None or replace(now, components=group.components, at=group.at) != group:
             yield name
     before, after = {(e.output, e.input) for e in old.edges}, {(e.output, e.input) for e in new.edges}
-    yield from sorted(f"{a} -> {b}" for a, b in before ^ after if own not in {a.rpartition(".")[0], b.rpartition(".")[0]})
+    yield from sorted(
+        f"{a} -> {b}" for a, b in before ^ after if own not in {a.rpartition(".")[0], b.rpartition(".")[0]}
+    )
     yield from (name for name, node in old.nodes.items() if node.written and name not in new.nodes)

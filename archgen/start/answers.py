@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from archgen.model import ids
@@ -91,6 +91,13 @@ def _named(words: str, sort: str) -> tuple[str, str]:
     if ids.is_id(left):
         return left, title
     return ids.made(left, sort), left
+
+
+def with_partners(given: Answers, named: Mapping[str, str]) -> Answers:
+    """Add the partners that a table names (title by id) to those that were given with title and handle."""
+    known = {one.id for one in given.partners}
+    more = tuple(Partner(name, title) for name, title in named.items() if name not in known)
+    return replace(given, partners=(*given.partners, *more))
 
 
 def distinct(found: Iterable[Partner | Group], sort: str) -> None:

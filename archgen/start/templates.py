@@ -108,7 +108,7 @@ def groups(answers: Answers) -> dict[str, bytes]:
 def _kinds(number: int, count: int) -> list[str]:
     """Say what the example in a group is: sensor first, actuator last, steps between."""
     kinds = ["sensor"] if number == 0 else []
-    if count < 3 and number == count - 1 or 0 < number < count - 1:  # noqa: PLR2004 - first, middle, last
+    if (count < 3 and number == count - 1) or 0 < number < count - 1:  # noqa: PLR2004 - first, middle, last
         kinds.append("step")
     return [*kinds, "actuator"] if number == count - 1 else kinds
 
