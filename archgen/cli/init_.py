@@ -115,7 +115,8 @@ def _import(tables: tuple[Path, ...], distro: str) -> Imported:
     from archgen.importers import MAX_BYTES
 
     imported = importers.read([(str(path), run.read_bytes(path, MAX_BYTES)) for path in tables], distro)
-    run.excerpts(imported.diagnostics, imported.sources, sys.stderr)
+    if imported.diagnostics:
+        run.excerpts(imported.diagnostics, imported.sources, sys.stderr)
     if not imported.data:
         click.echo("Nothing was written.", err=True)
         sys.exit(1)
