@@ -21,6 +21,7 @@ VERBS = {
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project, or take one over from a spreadsheet.",
     "new": "Add a group, a component or a node.",
+    "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
 """Every verb with its line in the help; each is a module of this package with a command of the same name."""

@@ -15,7 +15,7 @@ from archgen.edit.element import Element
 from archgen.edit.insertion import CannotInsertError
 from archgen.edit.place import Place
 from archgen.pipeline import Checked
-from archgen.syntax import files
+from archgen.syntax.files import Refusal
 
 _MODELINE = re.compile(r"\A\s*# yaml-language-server: \$schema=(\S+)")
 
@@ -65,12 +65,15 @@ _BOM = codecs.BOM_UTF8.decode()
 
 
 def _read(checked: Checked, place: Place) -> tuple[bytes, str]:
-    read = files.read(checked.root, place.file)
-    if read.problem:
-        message = f"{place.file} cannot be read: {read.problem.message}"
+    data = checked.loaded.files.fetch(place.file)
+    if isinstance(data, Refusal):
+        message = f"{place.file} cannot be read: {data.message}"
         raise RefusedError(message)
-    data = (checked.root / place.file).read_bytes()
-    return data, data.decode()
+    try:
+        return data, data.decode()
+    except UnicodeDecodeError:
+        message = f"{place.file} is not UTF-8"
+        raise RefusedError(message) from None
 
 
 def _head(checked: Checked, place: Place) -> str:

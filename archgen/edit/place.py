@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from archgen.edit.proof import first_file
 from archgen.pipeline import Checked
 from archgen.project import MARKER
 from archgen.syntax import globs
@@ -28,17 +29,17 @@ class NoPlaceError(Exception):
 def of_group(checked: Checked, name: str) -> Place:
     """Give a new file in the folder in which groups have theirs, or the file that holds all of them."""
     held = {file: len(found.entries) for file, found in _tables(checked, "groups")}
-    folders = Counter(os.path.dirname(file) for file in held if file != _first(checked))  # noqa: PTH120 - text, with `/`
+    folders = Counter(os.path.dirname(file) for file in held if file != first_file(checked))  # noqa: PTH120 - text, with `/`
     if not folders and held:
-        return Place(_first(checked), ("groups",))
-    if _first(checked) != MARKER:
-        return Place(_first(checked), ("groups",))
+        return Place(first_file(checked), ("groups",))
+    if first_file(checked) != MARKER:
+        return Place(first_file(checked), ("groups",))
     folder = max(folders, key=lambda found: (folders[found], found)) if folders else "groups"
     file = f"{folder}/{name}.yaml" if folder else f"{name}.yaml"
     if not _is_read(checked, file):
         msg = f"`sources` of {MARKER} has no pattern for {file}: add `{folder or '.'}/*.yaml` there first"
         raise NoPlaceError(msg)
-    if os.path.lexists(checked.root / file):
+    if checked.loaded.files.exists(file):
         msg = f"{file} is there already, and holds no group `{name}`: write the group into it, or rename the file"
         raise NoPlaceError(msg)
     return Place(file, ("groups",), new=True)
@@ -64,12 +65,7 @@ def of_node(checked: Checked, components: tuple[str, ...]) -> Place:
         return Place(nearest.most_common(1)[0][0], ("nodes",))
     if groups:
         return Place(of_component(checked, min(groups)).file, ("nodes",))
-    return Place(_first(checked), ("nodes",))
-
-
-def _first(checked: Checked) -> str:
-    """Name the file that was read first: archgen.yaml, or the only one."""
-    return MARKER if MARKER in checked.sources.files() else checked.sources.files()[0]
+    return Place(first_file(checked), ("nodes",))
 
 
 def _tables(checked: Checked, section: str) -> Iterator[tuple[str, Table]]:

@@ -10,10 +10,10 @@ from archgen.diagnostic import Diagnostic, Severity
 from archgen.edit.element import Element
 from archgen.model.architecture import Architecture
 from archgen.pipeline import Checked
-from archgen.schema import normalise, validate
-from archgen.source import Span
+from archgen.project.loaded import load_from
 from archgen.syntax import yaml
-from archgen.syntax.tree import Document, Table, plain
+from archgen.syntax.overlay import Overlay
+from archgen.syntax.tree import plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,23 +54,20 @@ def _ordered(data: object) -> object:
 def consequences(checked: Checked, file: str, text: str, own: str) -> Consequences:
     """Judge the project with another text of one file, in memory; `own` is the id of the new element."""
     after = _judged(checked, file, text)
+    checked.sources.add(file, text)  # what is quoted of it now
     known = {(d.rule, d.message) for d in checked.findings}
     errors = (d for d in after.findings if d.severity is Severity.ERROR and (d.rule, d.message) not in known)
     return Consequences(tuple(errors), tuple(_changed(checked.architecture, after.architecture, own)))
 
 
 def _judged(checked: Checked, file: str, text: str) -> Checked:
-    document, found = yaml.parse(file, text)
-    document = document or Document(file, Table({}, Span.of_file(file)))
-    found = (*found, *validate(document), *normalise(document))
-    loaded = checked.loaded
-    documents = [document if old.file == file else old for old in loaded.documents]
-    if document not in documents:
-        documents.append(document)
-    loaded.sources.add(file, text)
-    kept = tuple(d for d in loaded.diagnostics if d.span.file != file)
-    ignores = {document.file: document.ignores for document in documents if document.ignores}
-    return pipeline.judge(replace(loaded, documents=tuple(documents), diagnostics=(*kept, *found), ignores=ignores))
+    files = checked.loaded.files
+    return pipeline.judge(load_from(Overlay(files.root, {file: text.encode()}, files), first_file(checked)))
+
+
+def first_file(checked: Checked) -> str:
+    """Name the file that was read first: archgen.yaml, or the only one."""
+    return checked.sources.files()[0]
 
 
 def _changed(old: Architecture, new: Architecture, own: str) -> Iterator[str]:

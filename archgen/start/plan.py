@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import pipeline
-from archgen.emit import tree
 from archgen.pipeline import Checked
+from archgen.project import MARKER
+from archgen.project.loaded import load_from
 from archgen.start import templates
 from archgen.start.answers import Answers
 from archgen.syntax import globs
+from archgen.syntax.folder import Folder
+from archgen.syntax.overlay import Overlay
 
 _OWNERS = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
 """Where GitHub and GitLab look; the first that is there counts."""
@@ -30,15 +32,12 @@ class Plan:
 
 def other_yaml(folder: Path) -> bool:
     """Tell whether YAML files lie below that are nobody's slices: the project then names its own."""
-    return bool(globs.expand(folder, "**/*.yaml"))
+    return bool(globs.expand(Folder(folder), "**/*.yaml"))
 
 
 def judge(files: Mapping[str, bytes], name: str) -> Checked:
-    """Check the files of a project before they are written, in a folder of a project's name."""
-    with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
-        for path, data in files.items():
-            tree.write_file(Path(folder) / name / path, data)
-        return pipeline.check(Path(folder) / name)
+    """Check the files of a project before they are written."""
+    return pipeline.judge(load_from(Overlay(Path(name), files), MARKER))
 
 
 def plan(folder: Path, answers: Answers, yaml_files: Mapping[str, bytes], owners: bytes = b"") -> Plan:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shlex
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -84,8 +83,7 @@ def workflow(folder: str) -> bytes:
 
 def pipeline(folder: str) -> bytes:
     """Give GitLab's pipeline."""
-    argument = f" {shlex.quote(folder)}" if folder and not folder.startswith("-") else ""
-    return fill("gitlab.yml.j2", argument=argument)
+    return fill("gitlab.yml.j2", folder=folder or ".")
 
 
 def groups(answers: Answers) -> dict[str, bytes]:
