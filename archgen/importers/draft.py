@@ -75,6 +75,7 @@ class Draft:
     _givers: dict[str, dict[tuple[str, str, str], None]] = field(default_factory=dict)
     _ids: dict[str, str] = field(default_factory=dict)
     _names: dict[str, list[Component]] = field(default_factory=dict)
+    _by_id: dict[str, list[Component]] = field(default_factory=dict)
 
     def say(self, rule: str, message: str, at: Span, help_line: str, *labels: Label) -> None:
         """Note what was not taken, or was taken otherwise than written."""
@@ -99,13 +100,13 @@ class Draft:
         if found is None:
             made = self._id("component", wanted or name, at, set(group.components))
             found = group.components[made] = Component(group.id, made, name, at)
-            for word in dict.fromkeys((fold(name), fold(made))):
-                self._names.setdefault(word, []).append(found)
+            self._names.setdefault(fold(name), []).append(found)
+            self._by_id.setdefault(made, []).append(found)
         return found
 
     def named(self, name: str) -> list[Component]:
-        """Give all components of a name."""
-        return self._names.get(fold(name), [])
+        """Give all components of a name, or else of an id."""
+        return self._names.get(fold(name)) or self._by_id.get(name, [])
 
     def partner(self, name: str) -> str:
         """Give the id of a partner."""

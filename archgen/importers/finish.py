@@ -58,7 +58,8 @@ def _group(group: Group, short: set[str]) -> dict[str, Any]:
 
 def _component(component: Component, short: set[str], owner: object) -> dict[str, Any]:
     made: dict[str, Any] = {}
-    if component.name not in (component.id, ids.title(component.id)):
+    bare = not (component.inputs or component.outputs or component.none or {"functionality", "role"} & set(component.keys))
+    if bare or component.name not in (component.id, ids.title(component.id)):
         made["title"] = component.name
     keys = dict(component.keys)
     if keys.get("owner") == owner:

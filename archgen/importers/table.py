@@ -6,8 +6,10 @@ gives), and a row for each connection (from, to, what flows). A table below anot
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from archgen.diagnostic import Diagnostic, Severity
@@ -41,6 +43,11 @@ def read(files: Sequence[tuple[str, bytes]], distro: str | None) -> Imported:
     _take(draft, records)
     broken = any(d.severity is Severity.ERROR for d in draft.diagnostics)
     made = {} if broken else finish.data(draft, distro)
+    if not made and not broken:
+        whole = Span.of_file(files[0][0])
+        help_line = "a row names a component, or connects two"
+        empty = Diagnostic("missing-key", "no row names a component", whole, Severity.ERROR, help=help_line)
+        draft.diagnostics.append(empty)
     ordered = sorted(draft.diagnostics, key=lambda d: ([n for n, _ in files].index(d.span.file), d.key[1:]))
     return Imported(made, tuple(ordered), sources)
 
@@ -84,10 +91,9 @@ def _mark(name: str, text: str) -> str:
     start = text[:100_000]
 
     def weight(mark: str) -> tuple[int, int]:
-        try:
-            table = [row for row, _ in zip(cells.rows(name, start, mark, []), range(50), strict=False)]
-        except cells.TooLargeError:
-            return 0, 0
+        table: list[Row] = []
+        with contextlib.suppress(cells.TooLargeError):
+            table.extend(islice(cells.rows(name, start, mark, []), 50))
         known = (columns.headings(row) for row in table)
         return max((len(found.keys) for found in known if found), default=0), max(map(len, table), default=0)
 

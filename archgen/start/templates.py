@@ -78,12 +78,12 @@ def readme(answers: Answers) -> bytes:
 def workflow(folder: str) -> bytes:
     """Give GitHub's workflow for a project in a folder of the repository (empty: the repository itself)."""
     paths = [f"{folder}/**"] if _PLAIN_PATH.match(folder) else []
-    return fill("github.yml.j2", folder=folder, paths=paths)
+    return fill("github.yml.j2", folder=folder.replace("${{", "${{ '${{' }}"), paths=paths)
 
 
 def pipeline(folder: str) -> bytes:
     """Give GitLab's pipeline."""
-    return fill("gitlab.yml.j2", folder=folder or ".")
+    return fill("gitlab.yml.j2", folder=folder.replace("$", "$$") or ".")
 
 
 def groups(answers: Answers) -> dict[str, bytes]:
