@@ -49,10 +49,11 @@ def group(name: str, title: str | None, owner: str | None, project: Path | None,
     from archgen.edit import place
     from archgen.edit.element import Element
     from archgen.model import ids
+    from archgen.model.names import made_title
 
     checked = run.check(project)
     _free(name, "group", {key: value.at for key, value in checked.architecture.groups.items()})
-    body = _given(title=title or ids.title(name), owner=owner) | {"description": None, "components": None}
+    body = _given(title=title or made_title(name), owner=owner) | {"description": None, "components": None}
     hints = {"description": "what the group is for", "components": "`archgen new component` adds one"}
     with _placed():
         found = place.of_group(checked, name)
@@ -79,6 +80,7 @@ def component(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.edit import place
     from archgen.edit.element import Element
     from archgen.model import ids
+    from archgen.model.names import made_title
 
     checked = run.check(project)
     outer, dot, inner = name.rpartition(".")
@@ -89,7 +91,7 @@ def component(  # noqa: PLR0913, PLR0917 - one for each option
     known = {key.partition(".")[2]: c.at for key, c in checked.architecture.components.items() if c.group == outer}
     _free(inner, "component", known)
     body = {
-        **_given(title=title or ids.title(inner), owner=owner, role=role),
+        **_given(title=title or made_title(inner), owner=owner, role=role),
         "functionality": functionality,
         "inputs": None,
         "outputs": None,
@@ -142,6 +144,7 @@ def _free(name: str, sort: str, known: dict[str, Span]) -> None:
     """See to it that an id is one and is not taken."""
     from archgen.findings.escape import visible
     from archgen.model import ids
+    from archgen.model.names import made_title
 
     if not ids.is_id(name):
         better = ids.made(name, sort)

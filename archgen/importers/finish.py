@@ -8,6 +8,7 @@ from typing import Any
 from archgen.importers.draft import UNSORTED, Component, Draft, Group, Input
 from archgen.link import interfaces
 from archgen.model import ids
+from archgen.model.names import made_title
 from archgen.model.mapping import full_message
 
 
@@ -59,7 +60,7 @@ def _group(group: Group, short: set[str]) -> dict[str, Any]:
 def _component(component: Component, short: set[str], owner: object) -> dict[str, Any]:
     made: dict[str, Any] = {}
     bare = not (component.inputs or component.outputs or component.none or {"functionality", "role"} & set(component.keys))
-    if bare or component.name not in (component.id, ids.title(component.id)):
+    if bare or component.name not in (component.id, made_title(component.id)):
         made["title"] = component.name
     keys = dict(component.keys)
     if keys.get("owner") == owner:

@@ -35,11 +35,6 @@ def made(name: str, prefix: str) -> str:
     return found
 
 
-def title(name: str) -> str:
-    """Give the title that an element has where nobody wrote one: `object_recognition` is "Object Recognition"."""
-    return " ".join(word[:1].upper() + word[1:] for word in name.split("_") if word)
-
-
 def free(wanted: str, taken: frozenset[str] | set[str]) -> str:
     """Give an id that is not taken: the one wanted, or with `_2`, `_3`, ... behind it."""
     found, number = wanted, 2

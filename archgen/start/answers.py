@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from archgen.model import ids
+from archgen.model.names import made_title
 
 Forge = Literal["github", "gitlab", "none"]
 _HANDLE = re.compile(
@@ -64,7 +65,7 @@ def partner(words: str) -> Partner:
         msg = f"'{handle}' is no handle: write @user, @organisation/team or an e-mail address"
         raise ValueError(msg)
     name, title = _named(" ".join(parts), "partner")
-    return Partner(name, title or ids.title(name), handle)
+    return Partner(name, title or made_title(name), handle)
 
 
 def group(words: str, partners: Iterable[Partner]) -> Group:
@@ -76,7 +77,7 @@ def group(words: str, partners: Iterable[Partner]) -> Group:
         msg = f"'{owner}' is no partner's id ({listed})"
         raise ValueError(msg)
     name, title = _named(left, "group")
-    return Group(name, title or ids.title(name), owner)
+    return Group(name, title or made_title(name), owner)
 
 
 def _named(words: str, sort: str) -> tuple[str, str]:
@@ -126,7 +127,7 @@ def gathered(  # noqa: PLR0913 - one for each flag
     distinct(who, "partner")
     distinct(what, "group")
     owners = (who[0].id, who[-1].id) if who else ("", "")
-    first = tuple(Group(id_, ids.title(id_), owner) for id_, owner in zip(ROBOT, owners, strict=True))
+    first = tuple(Group(id_, made_title(id_), owner) for id_, owner in zip(ROBOT, owners, strict=True))
     told = (title or "").strip() or name.replace("_", " ").capitalize()
     return Answers(name, told, distro or DISTRO, who, what or first, forge)
 
