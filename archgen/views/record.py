@@ -67,7 +67,7 @@ def _requirement(view: Index, requirement: Requirement) -> dict[str, object]:
 
 def _group(view: Index, group: Group) -> dict[str, object]:
     components = {"components": [component.id for component in view.components(group.id)]}
-    return _picked(group, "title", "description", "owner", "tags") | _known(dict(components))
+    return _picked(group, "title", "description", "owner", "co_owners", "tags") | _known(dict(components))
 
 
 def _type(mapped: Type) -> dict[str, object]:
@@ -106,6 +106,7 @@ def _component(view: Index, component: Component) -> dict[str, object]:
             "title": component.title,
             "group": component.group,
             "owner": component.owner,
+            "co_owners": list(component.co_owners),
             "role": component.role,
             "functionality": component.functionality,
             "description": component.description,
@@ -170,6 +171,7 @@ def _node(view: Index, node: Node) -> dict[str, object]:
             **{key: getattr(node, key) for key in plain},
             "full_name": node.full_name,
             "kind": list(node.kinds),
+            "co_owners": list(node.co_owners),
             "implements": list(node.implements),
             "derived": None if node.written else True,
             "endpoints": [_endpoint(endpoint) for endpoint in view.endpoints_of.get(node.id, ())],

@@ -93,6 +93,11 @@ def partner_link(architecture: Architecture, partner: str | None) -> Inlines:
     return (Text(found.title if found else partner, ref=f"partner:{partner}"),)
 
 
+def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
+    """Name who answers for an element, as links; that nobody is known to do is said."""
+    return joined(partner_link(architecture, owner) for owner in owners) or UNKNOWN
+
+
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
     """Name a port by its component's title and its own name."""
     component = architecture.components[port.component]
