@@ -96,7 +96,11 @@ def card(view: Index, sort: str, name: str) -> Card:
 
 
 def _group(group: Group) -> Card:
-    facts = [("owner", ", ".join(group.owners) or "?"), ("tags", ", ".join(group.tags)), ("description", group.description or "")]
+    facts = [
+        ("owner", ", ".join(group.owners) or "?"),
+        ("tags", ", ".join(group.tags)),
+        ("description", group.description or ""),
+    ]
     listed = tuple(f"{c.name}: {c.title}" for c in group.components.values())
     return Card("group", group.id, group.title, group.at, _shown(facts), (("components", listed),))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import chain
 
 from archgen.model.architecture import Architecture
@@ -49,7 +50,7 @@ def lines(items: Iterable[Inlines]) -> Inlines:
 
 
 def _broken(part: Text) -> Text:
-    return Text(part.text, part.ref, part.url, part.strong, part.emphasis, part.code, part.muted, line_break=True)
+    return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group: str) -> Text:
