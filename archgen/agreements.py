@@ -46,12 +46,18 @@ def made(checked: Checked, first: str, second: str, since: Side | None = None, p
         first,
         second,
         revision=revision(checked.root, checked.all_files) if printed is None else printed,
-        since=(since.name, _view(since.checked)) if since else None,
+        since=(_named(since), _view(since.checked)) if since else None,
         notices=tuple(_notices(checked, since)),
     )
     if not found.interfaces and not (found.changes and found.changes.removed):
         raise PartnersError(_nothing(checked, first, second))
     return found
+
+
+def _named(since: Side) -> str:
+    """Name an earlier state as it was asked for, with its commit where that says more."""
+    known = not since.commit or since.commit.startswith(since.name)
+    return since.name if known else f"{since.name} ({since.commit[:7]})"
 
 
 def _view(checked: Checked) -> Index:
@@ -91,7 +97,7 @@ def _nothing(checked: Checked, first: str, second: str) -> str:
 
 
 def _notices(checked: Checked, since: Side | None) -> Iterator[Paragraph]:
-    for name, found in (("", checked), *(((f" at {since.name}", since.checked),) if since else ())):
+    for name, found in (("", checked), *(((f" at {_named(since)}", since.checked),) if since else ())):
         if found.broken:
             said = f"The architecture{name} has errors ({severities(found.findings)}). What is sound is shown all the same."
             yield Paragraph(words.text(said), "error")

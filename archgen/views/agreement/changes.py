@@ -11,6 +11,7 @@ from archgen.views.agreement.terms import Terms
 
 SIGNS = {"added": "+ added", "removed": "\u2212 removed", "changed": "~ changed"}
 """What happened, by a sign and in a word: colour is never needed to tell it."""
+_SORTS = {"end": "who gives and takes", "field": "fields", "chain": "chains", "requirement": "requirements"}
 Plain = Mapping[str, tuple[str, str]]
 Key = tuple[str, tuple[str, str]]
 
@@ -32,9 +33,17 @@ class Held:
 class Change:
     """A term that was gained (`before` None), lost (`after` None) or changed."""
 
+    key: str
     name: str
     before: str | None
     after: str | None
+
+    @property
+    def sort(self) -> str:
+        """Say in a word or two which sort of term it is."""
+        return _SORTS.get(self.key.partition(" ")[0]) or (
+            self.name if self.name.startswith("QoS") else self.name.lower()
+        )
 
     @property
     def kind(self) -> Literal["added", "removed", "changed"]:
@@ -90,5 +99,5 @@ def _changes(before: Plain, after: Plain) -> list[Change]:
     for key in (*after, *(key for key in before if key not in after)):
         was, now = before.get(key), after.get(key)
         if (was and was[1]) != (now and now[1]):
-            found.append(Change((now or was or ("", ""))[0], was and was[1], now and now[1]))
+            found.append(Change(key, (now or was or ("", ""))[0], was and was[1], now and now[1]))
     return found

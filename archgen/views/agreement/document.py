@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from archgen.model.architecture import Partner
 from archgen.views import tables, words
-from archgen.views.agreement.changes import SIGNS, Change, Changes, Held
+from archgen.views.agreement.changes import SIGNS, Changes, Held
 from archgen.views.agreement.interfaces import Interface
 from archgen.views.agreement.sections import Writing
-from archgen.views.agreement.terms import partners
+from archgen.views.agreement.terms import Terms, partners
 from archgen.views.index import Index
 from archgen.views.shapes import (
     Block,
@@ -149,15 +149,24 @@ def _summary(of: Agreement) -> Section:
 
 def _row(of: Agreement, held: Held) -> tuple[Inlines, ...]:
     found = held.terms
-    rate = next((value for name, value in found.facts if name.startswith(("Rate", "Answers within"))), ())
     return (
         words.text(Text(found.title, ref=found.interface.anchor)),
         words.text(partners(of.view, found.interface.pair[:1])),
         carried(found.interface),
-        rate[:1],
+        _rate(found),
         words.text(opened(found.missing, len(found.points))),
         mark(of.changes, held),
     )
+
+
+def _rate(found: Terms) -> Inlines:
+    """Give how often it flows, or within what it is answered, without where that is from."""
+    for name, value in found.facts:
+        if name.startswith("Rate"):
+            return value[:1]
+        if name.startswith("Answers within") and not value[0].muted:
+            return words.text("answered within ", value[0])
+    return ()
 
 
 def _gone(of: Agreement, held: Held) -> tuple[Inlines, ...]:
@@ -174,7 +183,7 @@ def _gone(of: Agreement, held: Held) -> tuple[Inlines, ...]:
 
 def carried(interface: Interface) -> Inlines:
     """Say what flows in a few words: the type, and the message that carries it."""
-    said = [words.text(interface.type)] if interface.type else []
+    said = [words.text(interface.type)] if interface.type and interface.type != interface.message else []
     said += [words.text(Text(interface.message, code=True))] if interface.message else []
     return words.lines(said) or words.text(interface.flow)
 
@@ -191,13 +200,8 @@ def mark(changes: Changes | None, held: Held) -> Inlines:
     kind = changes.mark(held.key) if changes else ""
     if not changes or not kind:
         return ()
-    names = ", ".join(dict.fromkeys(_short(each) for each in changes.of(held.key)))
+    names = ", ".join(dict.fromkeys(each.sort for each in changes.of(held.key)))
     return words.text(Text(SIGNS[kind], change=kind), *([f": {names}"] if names else []))
-
-
-def _short(change: Change) -> str:
-    first = change.name.split(" ", 1)[0]
-    return "fields" if first == "Field" else "chains" if first == "Chain" else change.name.lower()
 
 
 def _way(of: Agreement, writing: Writing, way: tuple[str, ...]) -> Iterator[Section]:
@@ -241,7 +245,7 @@ def _open_points(of: Agreement) -> Section:
         blocks.append(
             Paragraph(words.text("Nothing is open: every term is settled, and archgen finds nothing at either end."))
         )
-    return Section("page:open", "Open points", tuple(blocks), page_break=bool(rows or own or near))
+    return Section("page:open", "Open points", tuple(blocks))
 
 
 def _signatures(of: Agreement) -> Section:
@@ -250,7 +254,7 @@ def _signatures(of: Agreement) -> Section:
     lead = Paragraph(
         words.text(f"The partners agree on the interfaces of {title} as this document states them{revision}.")
     )
-    blank = words.text("\u00a0")
+    blank = words.lines([words.text("\u00a0")] * 3)
     rows = tuple((words.text(title), blank, blank, blank) for title in of.titles)
     columns = (Column("Partner", 1.2), Column("Name", 1.3), Column("Date", 0.8), Column("Signature", 1.5))
     table = Table("table:signatures", "Signatures", columns, rows, numbered=False)

@@ -80,7 +80,7 @@ def _box(view: Index, end: str, pair: tuple[str, str]) -> Box:
         found = nodes.node(view, view.architecture.nodes[name.removeprefix("node ")])
     else:
         item = view.architecture.components[name]
-        lines = (partners(view, [pair[0]]),) if side else (view.architecture.groups[item.group].title,)
+        lines = (partners(view, item.owners),) if side else (view.architecture.groups[item.group].title,)
         found = boxes.component(view, item, lines=lines)
     return replace(found, id=end, colour=_HUES[whose], cluster=cluster, side=side)
 

@@ -78,7 +78,7 @@ class Writing:
             words.text(partners(self.view, end.owners)) if end.owners else words.text(Text("nobody", muted=True)),
             (*component, *port),
             self._node(end.node) if end.node else words.text(Text("not decided yet", muted=True)),
-            words.text(end.qos),
+            words.text(end.qos) if end.qos else (),
         )
 
     def _node(self, name: str) -> Inlines:
@@ -145,4 +145,4 @@ def _requirements(found: Terms) -> Iterator[Block]:
 def _points(found: Terms) -> Iterator[Block]:
     if found.points:
         yield Paragraph(words.text(Text("Open points", strong=True)))
-        yield Bullets(tuple(words.text(f"{point.severity}: {point.message}") for point in found.points))
+        yield Bullets(tuple(words.ticked(f"{point.severity}: {point.message}") for point in found.points))

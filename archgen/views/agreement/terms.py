@@ -217,20 +217,22 @@ def plain(view: Index, of: Terms) -> Mapping[str, tuple[str, str]]:
     for end in of.ends:
         name = f"{end.component.title} · {end.port}" if end.component else ""
         key = f"end {end.component.id if end.component else ''} {end.port} {end.taker} {end.node}"
-        said = "; ".join(part for part in (end.role, partners(view, end.owners), end.qos) if part)
+        qos = end.qos if end.taker else ""  # what is offered is a term of its own
+        said = "; ".join(part for part in (end.role, partners(view, end.owners), qos) if part)
         found[key] = (f"{name} (node {end.node})" if name and end.node else name or f"Node {end.node}", said)
     found |= {f"field {row.path}": (f"Field {row.path}", row.type) for row in of.rows or ()}
     titles = view.architecture.chains
     found |= {f"chain {chain.id}": (f"Chain {titles[chain.id].title}", figure(chain)) for chain in of.chains}
-    found |= {f"requirement {text(item)}": ("Requirement", text(item)) for item in of.requirements}
+    found |= {
+        f"requirement {item[0].text}": (f"Requirement {item[0].text}", text(item[1:])) for item in of.requirements
+    }
     return found
 
 
 def figure(chain: ChainResult) -> str:
     """Say a chain's bound, deadline and verdict in a line."""
-    bound = figures.duration(chain.bound)
-    deadline = f" of {figures.duration(chain.deadline)}" if chain.deadline else ""
-    return f"{bound}{deadline}: {chain.verdict}"
+    deadline = f"; deadline {figures.duration(chain.deadline)}" if chain.deadline else ""
+    return f"{figures.duration(chain.bound)}{deadline}; {chain.verdict}"
 
 
 def text(value: Inlines) -> str:

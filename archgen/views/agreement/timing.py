@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 
 from archgen.model.node import Endpoint
 from archgen.timing import activities
 from archgen.timing.analysis import ChainResult, Pace
 from archgen.timing.sizes import MessageSize
+from archgen.timing.system import Arc, System
 from archgen.timing.value import Value
 from archgen.views import figures, paces, words
 from archgen.views.agreement.interfaces import Interface
@@ -40,7 +42,7 @@ def facts(view: Index, named: activities.Names, interface: Interface) -> Iterato
         if size.bytes is not None:
             yield name, words.text(_sized(size))
         elif interface.flow == "topic":
-            yield name, (Text(f"not known: {size.why}", muted=True),)
+            yield name, tuple(replace(run, muted=True) for run in words.ticked(f"not known: {size.why}"))
     if timed is not None and interface.flow == "topic":
         yield "Traffic", _traffic(timed, interface)
 
@@ -57,7 +59,7 @@ def _paced(timed: Timed, activity: str, end: Endpoint, suffix: str) -> Iterator[
         yield f"Answers within{suffix}", words.UNKNOWN
     else:
         kind = _TIERS.get(response.tier, "derived")
-        yield f"Answers within{suffix}", words.text(f"{figures.duration(response.worst)} ({kind})")
+        yield f"Answers within{suffix}", words.text(figures.duration(response.worst), Text(f" ({kind})", muted=True))
 
 
 def _rate(timed: Timed, activity: str, pace: Pace) -> Inlines:
@@ -67,14 +69,18 @@ def _rate(timed: Timed, activity: str, pace: Pace) -> Inlines:
     if pace.rate.value is None:
         return words.text(said)
     if not pace.inferred:
-        return words.text(f"{said} (written)")
+        return words.text(said, Text(" (written)", muted=True))
     origins = figures.from_words(timed.origins.get(activity, ()))
-    return words.text(f"{said} (derived{f' {origins}' if origins else ''})")
+    return words.text(said, Text(f" (derived{f' {origins}' if origins else ''})", muted=True))
 
 
 def _gap(pace: Pace) -> Inlines:
     said = figures.duration(pace.gap)
-    return words.UNKNOWN if pace.gap.value is None and said == figures.UNKNOWN else words.text(f"{said} (derived)")
+    return (
+        words.UNKNOWN
+        if pace.gap.value is None and said == figures.UNKNOWN
+        else words.text(said, Text(" (derived)", muted=True))
+    )
 
 
 def _size(view: Index, interface: Interface, part: str) -> MessageSize:
@@ -106,9 +112,12 @@ def chains(view: Index, named: activities.Names, interface: Interface) -> Iterat
     system = view.timed.analysis.system
     for result in view.timed.chains:
         steps = zip(result.through, result.through[1:], strict=False)
-        if any(
-            arc.target == after and {arc.source, arc.target} & taking and {arc.output, arc.input} & keys
-            for before, after in steps
-            for arc in system.out_of.get(before, ())
-        ):
+        arcs = (arc for before, after in steps for arc in _joining(system, before, after))
+        if any({arc.source, arc.target} & taking and {arc.output, arc.input} & keys for arc in arcs):
             yield result
+
+
+def _joining(system: System, before: str, after: str) -> list[Arc]:
+    """Give what joins two steps of a chain: topics, and only where there is none services and actions."""
+    found = [arc for arc in system.out_of.get(before, ()) if arc.target == after]
+    return [arc for arc in found if arc.role == "data"] or found
