@@ -16,7 +16,7 @@ from archgen.revision import revision
 from archgen.sides import Side
 from archgen.suggest import did_you_mean
 from archgen.views import words
-from archgen.views.agreement import Made, agreement, pairs
+from archgen.views.agreement import Made, agreement, between
 from archgen.views.index import Index
 from archgen.views.shapes import Graph, Paragraph, Section
 from archgen.views.tables import severities
@@ -87,12 +87,10 @@ def _nothing(checked: Checked, first: str, second: str) -> str:
     for name in (first, second):
         if not any(name in each for each in owners):
             return f"nothing flows between `{first}` and `{second}`: `{name}` owns no component and no node"
-    others = []
+    view, others = outputs.view(checked, Ask()), []
     for name in (first, second):
-        with_ = [a if b == name else b for a, b in pairs(checked.architecture) if name in {a, b}]
-        others.append(
-            f"`{name}` has interfaces with {', '.join(with_)}" if with_ else f"`{name}` has interfaces with nobody"
-        )
+        near = [other for other in found.partners if other != name and between(view, name, other)]
+        others.append(f"`{name}` has interfaces with {', '.join(near) or 'nobody'}")
     return f"nothing flows between `{first}` and `{second}`; {'; '.join(others)}"
 
 

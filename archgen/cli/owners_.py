@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 @options.project
 @click.option("--format", "form", type=click.Choice(["text", "codeowners"]), default="text", show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: the terminal]")
-def command(project: Path | None, form: str, output: Path | None) -> None:
+@options.keep_going
+def command(project: Path | None, form: str, output: Path | None, *, keep_going: bool) -> None:
     """Show which partner of PROJECT owns which elements and files, and what nobody owns.
 
     With `--format codeowners` it is the file CODEOWNERS, which asks the owners of a changed file for their review. Who
@@ -29,7 +30,7 @@ def command(project: Path | None, form: str, output: Path | None) -> None:
     from archgen import ownership
 
     if form == "codeowners":
-        checked = run.ready(project, keep_going=False)
+        checked = run.ready(project, keep_going=keep_going)
         made = ownership.codeowners(checked)
         for warning in made.warnings:
             run.warn(warning)

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from archgen.timing import activities
 from archgen.views.agreement.changes import Changes, Held, compare
 from archgen.views.agreement.document import Agreement, document
-from archgen.views.agreement.interfaces import between, pairs
+from archgen.views.agreement.interfaces import between
 from archgen.views.agreement.picture import picture
 from archgen.views.agreement.terms import plain, terms
 from archgen.views.index import Index
 from archgen.views.shapes import Graph, Outline, Paragraph
 
-__all__ = ["Made", "agreement", "pairs"]
+__all__ = ["Made", "agreement", "between"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,7 +135,7 @@ def _summary(of: Agreement) -> Section:
         Column("What flows", 1.7),
         Column("Rate", 0.8),
         Column("Still open", 1),
-        Column("Change", 0.7),
+        Column("Change", 1.1),
     )
     table = without_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows)))
     given = {held.terms.interface.pair for held in of.held}
@@ -211,7 +211,7 @@ def _way(of: Agreement, writing: Writing, way: tuple[str, ...]) -> Iterator[Sect
         sections = tuple(writing.section(held, held.terms.interface.anchor, mark(of.changes, held)) for held in mine)
         name = f"From {giver} to {taker}"
         lead = Paragraph(words.text(f"{giver} gives, {taker} takes: {words.plural(len(mine), 'interface')}."))
-        yield Section(f"way:{way[0]}", name, (lead,), sections, page_break=True)
+        yield Section(f"way:{way[0]}", name, (lead,), sections)
 
 
 def _removed(of: Agreement) -> Iterator[Section]:

@@ -59,18 +59,6 @@ def between(view: Index, first: str, second: str) -> tuple[Interface, ...]:
     return tuple(each for giver in (first, second) for each in made if each.pair[0] == giver)
 
 
-def pairs(architecture: Architecture) -> dict[Pair, int]:
-    """Count the connections between any two partners, by their components' owners alone."""
-    counts: dict[Pair, int] = {}
-    for edge in architecture.edges:
-        giver = architecture.components[architecture.outputs[edge.output].component].owner
-        taker = architecture.components[architecture.inputs[edge.input].component].owner
-        if giver and taker and giver != taker:
-            key = (min(giver, taker), max(giver, taker))
-            counts[key] = counts.get(key, 0) + 1
-    return counts
-
-
 def guests(architecture: Architecture, node: Node) -> tuple[str, ...]:
     """Give a node's owners where somebody wrote others than its components have."""
     inherited = {owner for component in node.implements for owner in architecture.components[component].owners}

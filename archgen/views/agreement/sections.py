@@ -10,7 +10,7 @@ from archgen.views.agreement import messages
 from archgen.views.agreement.changes import SIGNS, Change, Changes, Held
 from archgen.views.agreement.terms import End, Terms, partners
 from archgen.views.index import Index
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import without_empty_columns as tidy
 
 _CUT = 400
@@ -30,13 +30,11 @@ class Writing:
         found = held.terms
         blocks = [
             *self._changed(held, mark),
-            Facts(found.facts),
+            Facts((*found.facts, *_rest(found))),
             self._ends(found),
             *(Paragraph(words.text(said), "note") for said in found.shared),
             *self._fields(found, anchor),
             *self._chains(found),
-            *_requirements(found),
-            *_points(found),
         ]
         return Section(anchor, found.title, tuple(blocks))
 
@@ -83,8 +81,6 @@ class Writing:
 
     def _node(self, name: str) -> Inlines:
         node = self.view.architecture.nodes[name]
-        if not node.written:
-            return words.text(Text("not decided yet", muted=True))
         host = self.view.architecture.hosts.get(node.host or "")
         rest = " · ".join(part for part in (node.status or "", f"on {host.title}" if host else "") if part)
         return words.lines([words.text(Text(name, code=True)), *([words.text(Text(rest, muted=True))] if rest else [])])
@@ -136,13 +132,9 @@ def cut(text: str) -> str:
     return text if len(text) <= _CUT else f"{text[:_CUT]} … ({len(text) - _CUT} more characters)"
 
 
-def _requirements(found: Terms) -> Iterator[Block]:
+def _rest(found: Terms) -> Iterator[tuple[str, Inlines]]:
+    """Give what stands behind the interface, and what is open."""
     if found.requirements:
-        yield Paragraph(words.text(Text("Requirements behind it", strong=True)))
-        yield Bullets(found.requirements)
-
-
-def _points(found: Terms) -> Iterator[Block]:
+        yield "Requirements", words.lines(found.requirements)
     if found.points:
-        yield Paragraph(words.text(Text("Open points", strong=True)))
-        yield Bullets(tuple(words.ticked(f"{point.severity}: {point.message}") for point in found.points))
+        yield "Open points", words.lines(words.ticked(f"{point.severity}: {point.message}") for point in found.points)

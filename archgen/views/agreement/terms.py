@@ -160,7 +160,7 @@ def _side(  # noqa: PLR0913 - the columns of a row
     own = component.owners if component else ()
     with_qos = not is_ros_1(found.distro)
     rows: dict[tuple[str, str], None] = {}
-    for end in ends:
+    for end in (end for end in ends if found.nodes[end.node].written):
         rows[end.node, quality(end) if end.flow == "topic" and with_qos else ""] = None
     for node, qos in rows:
         owners = dict.fromkeys((*own, *guests(found, found.nodes[node]))) or found.nodes[node].owners
