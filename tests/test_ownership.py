@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
 
+import jsonschema_rs
 import pytest
 
 import archgen
-from archgen import ownership
+from archgen import ownership, resources
 from archgen.analyses.size import progress
 from archgen.emit.codeowners import HANDLE, pattern
 from archgen.model.architecture import Architecture
@@ -100,6 +102,11 @@ def test_a_shared_element_survives_packing(tmp_path: Path) -> None:
     assert again.components["moving.calibration"].owners == ("north", "south")
     assert again.partners == project.architecture.partners
     record = project.record()
+    validator = jsonschema_rs.validator_for(
+        json.loads(resources.path("schemas", "resolved.schema.json").read_text("utf-8"))
+    )
+    assert list(validator.iter_errors(dict(record))) == []
+    assert record["partners"]["south"] == {"title": "South Vision", "reviewers": ["@duo/south", "lee@south.example"]}
     assert record["components"]["moving.calibration"]["co_owners"] == ["south"]
     assert "co_owners" not in record["components"]["moving.arm"]
 

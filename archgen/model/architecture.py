@@ -35,7 +35,6 @@ class Partner:
     contact: str | None = None
     reviewers: tuple[str, ...] = ()
     """Who reviews its files, as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
-    urls: Mapping[str, str] = field(default_factory=dict)
     at: Span = field(default=NOWHERE, compare=False, repr=False)
 
 

@@ -255,8 +255,8 @@ def _container(view: Index, name: str) -> Page:
 
 def _partner(view: Index, partner: Partner, drawn: Drawn) -> Page:
     blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
-    if partner.urls:
-        blocks.append(Facts((("Links", words.urls(partner.urls.items())),)))
+    if partner.contact:
+        blocks.append(Facts((("Contact", words.text(partner.contact)),)))
     owned = [c for c in view.architecture.components.values() if partner.id in c.owners and view.scope.component(c.id)]
     if owned:
         caption = f"Components of {partner.title}"

@@ -29,7 +29,7 @@ def record(view: Index) -> Record:
     return {
         "archgen_resolved": VERSION,
         "project": _picked(found.project, "id", "title", "version", "description") | _known({"distro": found.distro}),
-        "partners": {p.id: _picked(p, "title", "description") for p in found.partners.values()},
+        "partners": {p.id: _picked(p, "title", "description", "contact", "reviewers") for p in found.partners.values()},
         "use_cases": {u.id: _picked(u, "title", "description") for u in found.use_cases.values()},
         "requirements": {r.id: _requirement(view, r) for r in found.requirements.values()},
         "groups": {name: _group(view, found.groups[name]) for name in view.groups()},

@@ -9,6 +9,7 @@ import pytest
 from archgen import pipeline, resources
 from archgen.views.agreement import Made, agreement
 from archgen.views.agreement.interfaces import between
+from archgen.views.shapes import Inlines, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
 
 
@@ -235,9 +236,10 @@ def test_a_reader_more_and_a_field_less(tmp_path: Path) -> None:
     assert "Field format | + added |  | string" in said
 
 
-def _summary(found: Made) -> tuple[tuple[tuple[object, ...], ...], ...]:
-    (table,) = section(found.outline, "At a glance").blocks[:1]
-    return table.rows  # type: ignore[union-attr, return-value]
+def _summary(found: Made) -> tuple[tuple[Inlines, ...], ...]:
+    table = section(found.outline, "At a glance").blocks[0]
+    assert isinstance(table, Table)
+    return table.rows
 
 
 @pytest.mark.parametrize(("first", "second"), [("certh", "sssa"), ("accrea", "tum"), ("forth", "certh")])

@@ -133,7 +133,7 @@ def _summary(of: Agreement) -> Section:
         Column("Interface", 1.6),
         Column("From", 0.8),
         Column("What flows", 1.7),
-        Column("Rate", 0.8),
+        Column("Rate", 0.95),
         Column("Still open", 1),
         Column("Change", 1.1),
     )

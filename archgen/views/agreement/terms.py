@@ -224,7 +224,8 @@ def plain(view: Index, of: Terms) -> Mapping[str, tuple[str, str]]:
     titles = view.architecture.chains
     found |= {f"chain {chain.id}": (f"Chain {titles[chain.id].title}", figure(chain)) for chain in of.chains}
     found |= {
-        f"requirement {item[0].text}": (f"Requirement {item[0].text}", text(item[1:])) for item in of.requirements
+        f"requirement {item[0].text}": (f"Requirement {item[0].text}", text(item[1:]).strip())
+        for item in of.requirements
     }
     return found
 
