@@ -130,7 +130,7 @@ def _write(target: Path, answers: Answers, imported: Imported | None) -> None:
     others = plan.other_yaml(target)
     files = slices.imported(answers, imported.data, others) if imported else slices.example(answers, others)
     checked = plan.judge(files, answers.id)
-    made = plan.plan(target, answers, files)
+    made = plan.plan(target, answers, files, checked)
     _see_slices_free(made, target, files)
     with run.phrased():
         fresh.write_new(made.files, made.top)
@@ -156,5 +156,7 @@ def _say(target: Path, checked: Checked, made: Plan) -> None:
     click.echo(f"\n{checked.architecture.project.title}: {size}; archgen check says: {summary(checked.findings)}.")
     if made.top != target.resolve():
         click.echo(f"The repository begins at {made.top}: what the forge reads stands there.")
+    if made.reviewers_missing:
+        click.echo("No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS")
     change = "" if target.resolve() == Path.cwd() else f"cd {shlex.quote(str(target))}; "
     click.echo(f"Now: {change}archgen check, then archgen build. README.md says how to go on.")

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from archgen.emit.codeowners import HANDLE
 from archgen.model import ids
 from archgen.model.names import made_title
 
 Forge = Literal["github", "gitlab", "none"]
-_HANDLE = re.compile(
-    r"(?:@@?[A-Za-z0-9](?:[A-Za-z0-9_.-]*[A-Za-z0-9_])?(?:/[A-Za-z0-9](?:[A-Za-z0-9_.-]*[A-Za-z0-9_])?)*"
-    r"|[A-Za-z0-9._%+-]+@[A-Za-z0-9-]+(?:\.[A-Za-z0-9-]+)+)\Z"
-)
-"""What CODEOWNERS takes: `@user`, `@organisation/team`, an e-mail address."""
-
 
 @dataclass(frozen=True, slots=True)
 class Partner:
@@ -61,7 +55,7 @@ def partner(words: str) -> Partner:
     """Read `certh=CERTH-ITI @certh/robotics`; id, title or handle may be left out. Raises ValueError."""
     parts = words.split()
     handle = parts.pop() if len(parts) > 1 and "@" in parts[-1] else ""
-    if handle and not _HANDLE.match(handle):
+    if handle and not HANDLE.match(handle):
         msg = f"'{handle}' is no handle: write @user, @organisation/team or an e-mail address"
         raise ValueError(msg)
     name, title = _named(" ".join(parts), "partner")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from archgen import pipeline
+from archgen import ownership, pipeline
 from archgen.pipeline import Checked
 from archgen.project import MARKER
 from archgen.project.loaded import load_from
@@ -28,6 +28,7 @@ class Plan:
     files: Mapping[Path, bytes]
     kept: tuple[Path, ...]
     top: Path
+    reviewers_missing: bool
 
 
 def other_yaml(folder: Path) -> bool:
@@ -40,18 +41,19 @@ def judge(files: Mapping[str, bytes], name: str) -> Checked:
     return pipeline.judge(load_from(Overlay(Path(name), files), MARKER))
 
 
-def plan(folder: Path, answers: Answers, yaml_files: Mapping[str, bytes], owners: bytes = b"") -> Plan:
+def plan(folder: Path, answers: Answers, yaml_files: Mapping[str, bytes], checked: Checked) -> Plan:
     """Put the files together: the project's in its folder, what the forge reads at the top of the repository."""
     target = Path(os.path.realpath(folder))
     top = _repository(target) or target
-    inner = target.relative_to(top).as_posix()
+    prefix = "" if target == top else target.relative_to(top).as_posix()
     wanted = {target / name: data for name, data in {**yaml_files, **_beside(answers)}.items()}
-    wanted |= {top / name: data for name, data in _forge(answers, "" if inner == "." else inner).items()}
-    there = next((top / name for name in _OWNERS if os.path.lexists(top / name)), None)
-    if owners:
-        wanted[there or top / "CODEOWNERS"] = owners
+    wanted |= {top / name: data for name, data in _forge(answers, prefix).items()}
+    reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
+    if any(partner.reviewers for partner in answers.partners):
+        there = next((name for name in _OWNERS if os.path.lexists(top / name)), "CODEOWNERS")
+        wanted[top / there] = ownership.codeowners(checked, prefix).text.encode()
     kept = tuple(path for path in wanted if os.path.lexists(path))
-    return Plan({path: data for path, data in wanted.items() if path not in kept}, kept, top)
+    return Plan({path: data for path, data in wanted.items() if path not in kept}, kept, top, reviewers_missing)
 
 
 def _beside(answers: Answers) -> dict[str, bytes]:
