@@ -157,6 +157,8 @@ def _say(target: Path, checked: Checked, made: Plan) -> None:
     if made.top != target.resolve():
         click.echo(f"The repository begins at {made.top}: what the forge reads stands there.")
     if made.reviewers_missing:
-        click.echo("No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS")
+        click.echo(
+            "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"
+        )
     change = "" if target.resolve() == Path.cwd() else f"cd {shlex.quote(str(target))}; "
     click.echo(f"Now: {change}archgen check, then archgen build. README.md says how to go on.")

@@ -48,7 +48,6 @@ def group(name: str, title: str | None, owner: str | None, project: Path | None,
     """Add a functional group, in a file of its own where the others have one."""
     from archgen.edit import place
     from archgen.edit.element import Element
-    from archgen.model import ids
     from archgen.model.names import made_title
 
     checked = run.check(project)
@@ -79,7 +78,6 @@ def component(  # noqa: PLR0913, PLR0917 - one for each option
     """Add a component to a group, in the file that says most of the group. ID may be written GROUP.ID."""
     from archgen.edit import place
     from archgen.edit.element import Element
-    from archgen.model import ids
     from archgen.model.names import made_title
 
     checked = run.check(project)
@@ -144,7 +142,6 @@ def _free(name: str, sort: str, known: dict[str, Span]) -> None:
     """See to it that an id is one and is not taken."""
     from archgen.findings.escape import visible
     from archgen.model import ids
-    from archgen.model.names import made_title
 
     if not ids.is_id(name):
         better = ids.made(name, sort)

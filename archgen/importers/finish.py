@@ -7,9 +7,8 @@ from typing import Any
 
 from archgen.importers.draft import UNSORTED, Component, Draft, Group, Input
 from archgen.link import interfaces
-from archgen.model import ids
-from archgen.model.names import made_title
 from archgen.model.mapping import full_message
+from archgen.model.names import made_title
 
 
 def data(draft: Draft, distro: str | None) -> dict[str, Any]:
@@ -59,7 +58,9 @@ def _group(group: Group, short: set[str]) -> dict[str, Any]:
 
 def _component(component: Component, short: set[str], owner: object) -> dict[str, Any]:
     made: dict[str, Any] = {}
-    bare = not (component.inputs or component.outputs or component.none or {"functionality", "role"} & set(component.keys))
+    bare = not (
+        component.inputs or component.outputs or component.none or {"functionality", "role"} & set(component.keys)
+    )
     if bare or component.name not in (component.id, made_title(component.id)):
         made["title"] = component.name
     keys = dict(component.keys)

@@ -12,6 +12,7 @@ from archgen.model.names import made_title
 
 Forge = Literal["github", "gitlab", "none"]
 
+
 @dataclass(frozen=True, slots=True)
 class Partner:
     """An organisation; `reviewers` is who its changes are shown to, as CODEOWNERS names them."""

@@ -88,6 +88,19 @@ def test_wrong_flags(words: tuple[str, ...], said: str, run: Run, tmp_path: Path
     assert not (tmp_path / "r").exists()
 
 
+def test_codeowners_come_from_the_owners(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    words = ("--partner", "a=Lab A @lab/a", "--partner", "b=Lab B", "--group", "one=a", "--group", "two=b")
+    assert run("init", tmp_path / "r", *words).status == 0
+    lines = (tmp_path / "CODEOWNERS").read_text(encoding="utf-8").splitlines()
+    assert "/r/groups/one.yaml @lab/a" in lines
+    assert findings(tmp_path / "r") == []
+    ran = run("init", tmp_path / "s", *words)
+    assert f"kept {tmp_path / 'CODEOWNERS'}: it is there already" in ran.out
+    ran = run("init", tmp_path / "t", "--partner", "a")
+    assert "No CODEOWNERS yet: give the partners `reviewers`" in ran.out
+
+
 def test_a_project_is_never_overwritten(run: Run, first: Path) -> None:
     before = contents(first)
     ran = run("init", first)

@@ -10,7 +10,6 @@ import pytest
 import yaml
 
 from archgen import resources
-from archgen.pipeline import check
 from tests.cli.conftest import Run
 
 

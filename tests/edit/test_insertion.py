@@ -131,10 +131,10 @@ VALUES = st.sampled_from(
     st.lists(st.tuples(st.lists(LINES, max_size=2), VALUES), min_size=1, max_size=4),
     st.lists(LINES, max_size=3),
     st.sampled_from(["\n", "\r\n"]),
-    st.booleans(),
+    closed=st.booleans(),
 )
 def test_any_layout_keeps_all_its_lines(
-    entries: list[tuple[list[str], str]], after: list[str], ending: str, closed: bool
+    entries: list[tuple[list[str], str]], after: list[str], ending: str, *, closed: bool
 ) -> None:
     lines = ["groups:", "  g:", "    components:"]
     for number, (before, value) in enumerate(entries):

@@ -65,8 +65,10 @@ def test_a_row_for_each_connection() -> None:
         }
     }
     assert said(CONNECTIONS) == [
-        "2:1 note wrong-value: 3 components stand in no group: look for `unsorted` | a column `Group` sorts them; or move "
-        "them by hand"
+        (
+            "2:1 note wrong-value: 3 components stand in no group: look for `unsorted` | a column `Group` sorts them; or move "
+            "them by hand"
+        )
     ]
 
 
@@ -134,9 +136,11 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
         (
             "Group,Component,Costs\nG,A,3 EUR\n",
             [
-                "1:17 warning unknown-key: the column `Costs` is not known: the cell below it was not taken | rename the column "
-                "if it is one of: kind, group, component, id, title, description, owner, role, input, output, from, to, "
-                "from_group, to_group, type, message, node, package, topic, rate, period, requirement, status"
+                (
+                    "1:17 warning unknown-key: the column `Costs` is not known: the cell below it was not taken | rename the column "
+                    "if it is one of: kind, group, component, id, title, description, owner, role, input, output, from, to, "
+                    "from_group, to_group, type, message, node, package, topic, rate, period, requirement, status"
+                )
             ],
         ),
         (
@@ -154,8 +158,10 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
         (
             "Group,Component\nG,Planner\n\nFrom,To,Type\nPlaner,Planner,Pose\n",
             [
-                "5:1 warning unknown-reference: no row declares the component `Planer`: it was added to the group `unsorted` | "
-                "did you mean `Planner`? or add a row for it",
+                (
+                    "5:1 warning unknown-reference: no row declares the component `Planer`: it was added to the group `unsorted` | "
+                    "did you mean `Planner`? or add a row for it"
+                ),
                 "5:1 note wrong-value: 1 component stands in no group: look for `unsorted` | a column `Group` sorts them; or move them by hand",
             ],
         ),
@@ -169,8 +175,10 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
         (
             "Group,Component,Output\nG,A,Pose\nG,B,Pose\n\nGroup,Component,Input\nG,C,Pose\n",
             [
-                "6:5 warning ambiguous-reference: `Pose` comes from several components (`g.a.pose`, `g.b.pose`): the input has no "
-                "source yet | write `Pose from NAME`"
+                (
+                    "6:5 warning ambiguous-reference: `Pose` comes from several components (`g.a.pose`, `g.b.pose`): the input has no "
+                    "source yet | write `Pose from NAME`"
+                )
             ],
         ),
         (
