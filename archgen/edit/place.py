@@ -53,19 +53,19 @@ def of_component(checked: Checked, group: str) -> Place:
 
 
 def of_node(checked: Checked, components: tuple[str, ...]) -> Place:
-    """Give the file with the nodes of the same components, else of their groups, else with most nodes."""
+    """Give the file with the nodes of the same components, else of their groups, else of their like."""
     groups = {component.partition(".")[0] for component in components}
     written = [node for node in checked.architecture.nodes.values() if node.written]
-    nearest = Counter[str]()
-    for node in written:
-        same = 10_000 * bool(set(node.implements) & set(components))
-        near = 100 * any(component.partition(".")[0] in groups for component in node.implements)
-        nearest[node.at.file] += 1 + (same or near)
-    if nearest:
-        return Place(nearest.most_common(1)[0][0], ("nodes",))
-    if groups:
+    same = Counter(node.at.file for node in written if set(node.implements) & set(components))
+    near = Counter(node.at.file for node in written if groups & {name.partition(".")[0] for name in node.implements})
+    for found in (same, near):
+        if found:
+            return Place(found.most_common(1)[0][0], ("nodes",))
+    most = Counter(node.at.file for node in written)
+    beside = set(most) <= {file for file, _ in _tables(checked, "groups")}  # nodes stand in the files of their groups
+    if groups and beside:
         return Place(of_component(checked, min(groups)).file, ("nodes",))
-    return Place(first_file(checked), ("nodes",))
+    return Place(most.most_common(1)[0][0] if most else first_file(checked), ("nodes",))
 
 
 def _tables(checked: Checked, section: str) -> Iterator[tuple[str, Table]]:

@@ -15,8 +15,8 @@ _SPELLINGS = {
     "functional block",
     "id": "id; identifier; component id; key; short name",
     "title": "title; name; label; display name; full name",
-    "description": "description; functionality; purpose; function; comment; comments; notes; note; remarks; remark; what it does; "
-    "details; summary",
+    "functionality": "functionality; purpose; function; what it does; task; does",
+    "description": "description; comment; comments; notes; note; remarks; remark; details; summary",
     "owner": "owner; partner; responsible; responsible partner; organisation; organization; lead; company; team; owned by",
     "role": "role",
     "input": "input; inputs; in; input port; input ports; to input; to port; target port; target input; consumes; needs; input name; "
@@ -60,7 +60,7 @@ LISTED: Mapping[tuple[str, ...], tuple[str, Mapping[str, str]]] = {
         "connection",
         {"output": "from", "input": "to", "type": "type", "message": "message"},
     ),
-    ("id", "implements", "package", "status", "host", "ros_name", "place"): (
+    ("id", "implements", "owner", "package", "status", "host", "ros_name", "place"): (
         "node",
         {"id": "node", "implements": "component", "package": "package", "status": "status", "place": "place"},
     ),
@@ -121,6 +121,8 @@ def _unit(cell: Cell) -> re.Match[str] | None:
 def _sorted_out(keys: Mapping[int, str]) -> dict[int, str]:
     """Say what names a component where no column is called so: a name, a title, an id."""
     held = set(keys.values())
+    if "functionality" not in held and not {"from", "to"} <= held:
+        keys = {column: "functionality" if key == "description" else key for column, key in keys.items()}
     if "component" in held or {"from", "to"} <= held:
         return dict(keys)
     name = next((key for key in ("title", "id", "output", "input") if key in held), "")

@@ -132,7 +132,7 @@ def _feed(draft: Draft, row: Record, ends: tuple[End | None, End], flow: Flow) -
         port.sources.append(path)
     elif not path and told:
         port.type = port.type or told
-    text = row.get("description")
+    text = row.get("description") or row.get("functionality")
     if text and port.description is None:
         port.description = text.line
     elif text and port.description != text.line:

@@ -40,7 +40,11 @@ def declare(draft: Draft, row: Record) -> None:
 def _group(draft: Draft, row: Record) -> None:
     cell = row.cells["group"]
     group = draft.group(cell.line, cell.at)
-    title, owner, text = row.get("title") or row.get("component"), row.get("owner"), row.get("description")
+    title, owner, text = (
+        row.get("title") or row.get("component"),
+        row.get("owner"),
+        row.get("description") or row.get("functionality"),
+    )
     if title:
         group.name = title.line
     if owner:
@@ -50,7 +54,7 @@ def _group(draft: Draft, row: Record) -> None:
 
 
 def _requirement(draft: Draft, row: Record) -> None:
-    cell, text = row.cells["requirement"], row.get("title") or row.get("description") or row.get("component")
+    cell, text = row.cells["requirement"], row.get("title") or row.get("description") or row.get("functionality")
     for name in values.requirements(draft, cell):
         if name in draft.requirements and text:
             draft.requirements[name] = text.line
@@ -69,11 +73,13 @@ def _component(draft: Draft, row: Record) -> None:
         group = draft.groups[known[0].group] if len(known) == 1 else draft.group(UNSORTED, cell.at)
     wanted = row.get("id")
     row.component = component = draft.component(group, name, cell.at, wanted.line if wanted else "")
-    title, text = row.get("title"), row.get("description") if row.kind == "component" else None
+    title = row.get("title")
     if title:
         component.name = title.line
-    for key, found in (("functionality", _prose(text)), ("owner", _owner(draft, row.get("owner")))):
-        _keep(draft, component, key, found, row.get("description" if key == "functionality" else "owner"))
+    if row.kind == "component":
+        for key in ("functionality", "description"):
+            _keep(draft, component, key, _prose(row.get(key)), row.get(key))
+    _keep(draft, component, "owner", _owner(draft, row.get("owner")), row.get("owner"))
     _role(draft, component, row.get("role"))
     asked = row.get("requirement")
     if asked:
@@ -113,12 +119,10 @@ def _role(draft: Draft, component: Component, cell: Cell | None) -> None:
         )
 
 
-def _owner(draft: Draft, cell: Cell | None) -> str | None:
-    """Read a partner; of several the first."""
+def _owner(draft: Draft, cell: Cell | None) -> str | tuple[str, ...] | None:
+    """Read a partner, or several."""
     if cell is None:
         return None
     names = [name.strip() for name in re.split(r"[,;/&+\n]| and ", cell.text) if name.strip()]
-    if len(names) > 1:
-        message = f"`{cell.line}` names several partners; `{names[0]}` was taken"
-        draft.say("wrong-value", message, cell.at, "write the partner who answers for it; add the others by hand")
-    return draft.partner(names[0]) if names else None
+    found = tuple(dict.fromkeys(draft.partner(name) for name in names))
+    return found[0] if len(found) == 1 else found or None

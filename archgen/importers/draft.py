@@ -110,7 +110,7 @@ class Draft:
 
     def partner(self, name: str) -> str:
         """Give the id of a partner."""
-        made = self._ids.setdefault(f"partner {fold(name)}", ids.made(name, "partner"))
+        made = self._ids.setdefault(f"partner {fold(name)}", ids.made(name.casefold(), "partner"))
         self.partners.setdefault(made, name)
         return made
 

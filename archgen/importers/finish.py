@@ -32,7 +32,7 @@ def data(draft: Draft, distro: str | None) -> dict[str, Any]:
 
 def _say_left_out(draft: Draft, groups: dict[str, Group]) -> None:
     for name, group in draft.groups.items():
-        if name not in groups and group.keys:
+        if name not in groups:
             draft.say(
                 "missing-key", f"the group `{group.name}` has no component and was not taken", group.at, "add one"
             )

@@ -145,4 +145,9 @@ def _say_unknown(draft: Draft, heads: Headings | None, lost: Mapping[int, int]) 
         if count:
             many = f"{count} cells below it were" if count > 1 else "the cell below it was"
             help_line = "rename the column if it is one of: " + ", ".join(dict.fromkeys(columns.MEANING.values()))
-            draft.say("unknown-key", f"the column `{cell.line}` is not known: {many} not taken", cell.at, help_line)
+            draft.say(
+                "unknown-key",
+                f"the column `{cell.line}` is not known, or is the second of its kind: {many} not taken",
+                cell.at,
+                help_line,
+            )

@@ -86,7 +86,7 @@ def _named(words: str, sort: str) -> tuple[str, str]:
         raise ValueError(msg)
     if ids.is_id(left):
         return left, title
-    return ids.made(left, sort), left
+    return ids.made(left.casefold() if sort == "partner" else left, sort), left
 
 
 def with_partners(given: Answers, named: Mapping[str, str]) -> Answers:

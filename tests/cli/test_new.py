@@ -79,6 +79,20 @@ def test_a_project_in_one_file_stays_one(run: Run, first: Path) -> None:
     assert not found.broken
 
 
+def test_where_nodes_stand_beside_their_groups_a_new_one_does(run: Run, tmp_path: Path) -> None:
+    assert run("init", tmp_path / "r").status == 0
+    for words in (("group", "arm"), ("component", "arm.hand"), ("node", "hand_driver", "--implements", "hand")):
+        assert run("new", *words, "-C", tmp_path / "r").status == 0
+    assert (tmp_path / "r/groups/arm.yaml").read_text(encoding="utf-8") == (
+        "# yaml-language-server: $schema=../.archgen/archgen.schema.json\n"
+        "groups:\n  arm:\n    title: Arm\n    description:  # what the group is for\n"
+        "    components:  # `archgen new component` adds one\n"
+        "      hand:\n        title: Hand\n        functionality:  # what it does, in a sentence or two\n"
+        "        inputs:  # id: component.output\n        outputs:  # id: conceptual type\n"
+        "nodes:\n  hand_driver:\n    implements: hand\n    status: planned\n"
+    )
+
+
 def test_dry_run_prints_the_difference_and_writes_nothing(run: Run, first: Path) -> None:
     before = contents(first)
     ran = run("new", "node", "second_lidar", "--implements", "lidar", "--dry-run", "-C", first)

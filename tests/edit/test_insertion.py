@@ -131,15 +131,15 @@ VALUES = st.sampled_from(
     st.lists(st.tuples(st.lists(LINES, max_size=2), VALUES), min_size=1, max_size=4),
     st.lists(LINES, max_size=3),
     st.sampled_from(["\n", "\r\n"]),
-    closed=st.booleans(),
+    st.sampled_from(["", "\nnodes: {n: a}"]),
 )
 def test_any_layout_keeps_all_its_lines(
-    entries: list[tuple[list[str], str]], after: list[str], ending: str, *, closed: bool
+    entries: list[tuple[list[str], str]], after: list[str], ending: str, below: str
 ) -> None:
     lines = ["groups:", "  g:", "    components:"]
     for number, (before, value) in enumerate(entries):
         lines += [*before, f"      c{number}: {value}"]
-    text = "\n".join([*lines, *after]) + "\nnodes: {n: a}" * closed
+    text = "\n".join([*lines, *after]) + below
     text = text.replace("\n", ending)
     if yaml.parse("a.yaml", text)[0] is None:
         return

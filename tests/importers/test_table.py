@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,8 +11,11 @@ from hypothesis import strategies as st
 
 from archgen import importers
 from archgen.importers import cells
-from archgen.pipeline import Checked
+from archgen.pipeline import Checked, check
 from archgen.start import answers, plan, slices
+from tests.running import RAMCIP, ROOT, archgen
+
+FIRST = ROOT / "examples" / "first_robot"
 
 
 def read(text: str | bytes) -> importers.Imported:
@@ -137,8 +141,8 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
             "Group,Component,Costs\nG,A,3 EUR\n",
             [
                 (
-                    "1:17 warning unknown-key: the column `Costs` is not known: the cell below it was not taken | rename the column "
-                    "if it is one of: kind, group, component, id, title, description, owner, role, input, output, from, to, "
+                    "1:17 warning unknown-key: the column `Costs` is not known, or is the second of its kind: the cell below it was not taken | rename the column "
+                    "if it is one of: kind, group, component, id, title, functionality, description, owner, role, input, output, from, to, "
                     "from_group, to_group, type, message, node, package, topic, rate, period, requirement, status"
                 )
             ],
@@ -306,3 +310,31 @@ def test_whatever_stands_in_a_table_checks_without_an_error(heads: list[str], ro
 @given(st.binary(max_size=200))
 def test_no_bytes_are_too_strange(data: bytes) -> None:
     read(b"Group,Component,Inputs\n" + data)
+
+
+def test_what_archgen_list_writes_comes_back(tmp_path: Path) -> None:
+    told: list[tuple[str, bytes]] = []
+    for sort in ("components", "groups", "edges", "nodes", "types", "requirements"):
+        table = archgen("list", "--of", sort, "--format", "csv", "-C", RAMCIP, cwd=tmp_path).stdout
+        told.append((f"{sort}.csv", table))
+    found = importers.read(told, "jazzy")
+    assert found.diagnostics == ()
+    before, after = check(RAMCIP).architecture, made(found).architecture
+    assert {(e.output, e.input) for e in after.edges} == {(e.output, e.input) for e in before.edges}
+    assert {c.id: (c.title, c.owner, c.role) for c in after.components.values()} == {
+        c.id: (c.title, c.owner, c.role) for c in before.components.values()
+    }
+    assert {n.id: (n.implements, n.package, n.status) for n in after.nodes.values() if n.written} == {
+        n.id: (n.implements, n.package, n.status) for n in before.nodes.values() if n.written and n.implements
+    }
+    assert {name: r.title for name, r in after.requirements.items()} == {
+        name: r.title for name, r in before.requirements.items()
+    }
+    used = {output.type for output in before.outputs.values()}
+    assert {output.type for output in after.outputs.values()} <= used
+
+
+def test_connections_as_listed_come_back(tmp_path: Path) -> None:
+    table = archgen("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
+    before, after = check(FIRST).architecture, made(importers.read([("c.csv", table)], "jazzy")).architecture
+    assert {(c.input, c.target) for c in after.connections} == {(c.input, c.target) for c in before.connections}
