@@ -13,7 +13,7 @@ from archgen.suggest import closest
 
 UNSORTED = "unsorted"
 """The group of components of which no row names one."""
-_GUESSES = 100
+_GUESSES = 20
 _PARTS = re.compile(r"\s*(?:::|->|[./:>\\|])\s*")
 
 
