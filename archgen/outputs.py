@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen.diagnostic import Diagnostic
-from archgen.emit import kept, tree
+from archgen.emit import folder, kept, stamp, tree
 from archgen.emit.backends import Backend
 from archgen.emit.picture import Picture
 from archgen.model import selector
@@ -86,7 +86,7 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
     if chosen and not pictures:
         msg = "no picture could be drawn, nothing was written"
         raise tree.OutputError(msg)
-    tree.write(_picture_files(pictures, forms), target)
+    tree.write(folder.write(pictures, forms), target)
     return len(pictures)
 
 
@@ -106,22 +106,56 @@ def resolved(checked: Checked, ask: Ask, target: Path) -> None:
 def build(
     checked: Checked, ask: Ask, target: Path, template: Path | None = None, extra: Sequence[str] = ()
 ) -> Iterator[Path]:
-    """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths."""
+    """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths.
+
+    Where all of it lies there as the same inputs gave it before, nothing is made again.
+    """
     chosen = _backends(checked, extra)
+    ask = replace(ask, revision=_revision(checked, ask))
+    name = "" if chosen else stamp.key(_inputs(checked, ask, template))
+    parts = stamp.fresh(cache_folder(), name, target, checked.chapters.picture) if name else None
+    warned: list[str] = []
+    done: list[str] = []
+    for part in parts or _build(checked, replace(ask, warn=_noting(ask.warn, warned)), target, template, chosen):
+        done.append(part)
+        yield target / part / ("index.html" if part == "site" else "")
+    if name and parts is None and not warned:
+        stamp.keep(cache_folder(), name, target, done, checked.chapters.asked)
+
+
+def _noting(warn: Callable[[str], None], said: list[str]) -> Callable[[str], None]:
+    def warned(text: str) -> None:
+        said.append(text)
+        warn(text)
+
+    return warned
+
+
+def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[object]:
+    """Give all that the outputs depend on, but for this program and the pictures of chapters."""
+    project, sources, chapters = checked.architecture.project, checked.sources, checked.chapters
+    yield project.id, project.title, ask.words, ask.level, ask.revision
+    yield checked.files, checked.all_files, [(file, sources.text(file)) for file in sources.files()]
+    yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked.findings
+    yield template and template.read_bytes()
+
+
+def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chosen: Sequence[Backend]) -> Iterator[str]:
+    """Write each part; give its name."""
     made = _make(checked, ask)
     pictures = _draw(made, ask, ("svg", "png", "svg_outlines"))
     tree.write_file(target / "report.docx", _docx(checked, made, pictures, ask, template))
-    yield target / "report.docx"
+    yield "report.docx"
     tree.write(_site(checked, made, pictures), target / "site")
-    yield target / "site" / "index.html"
-    tree.write(_picture_files(pictures, ("svg", "png")), target / "diagrams")
+    yield "site"
+    tree.write(folder.write(pictures, ("svg", "png")), target / "diagrams")
     if pictures:
-        yield target / "diagrams"
+        yield "diagrams"
     pack(checked, target / "packed.yaml")
-    yield target / "packed.yaml"
+    yield "packed.yaml"
     for backend in chosen:
         _extra(made, backend, target / backend.id)
-        yield target / backend.id
+        yield backend.id
 
 
 def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
@@ -177,7 +211,7 @@ def _make(checked: Checked, ask: Ask) -> _Made:
     found = replace(view(checked, ask), timed=timing(checked.architecture))
     drawn = drawings.drawings(found, ask.selection, ask.level or "implementation")
     edition = Edition(
-        revision=revision(checked.root, checked.all_files) if ask.revision is None else ask.revision,
+        revision=_revision(checked, ask),
         level=ask.level or "implementation",
         chapters=checked.chapters.order,
         texts=checked.chapters.texts,
@@ -186,6 +220,10 @@ def _make(checked: Checked, ask: Ask) -> _Made:
         broken=checked.broken,
     )
     return _Made(found, edition, drawn)
+
+
+def _revision(checked: Checked, ask: Ask) -> str:
+    return revision(checked.root, checked.all_files) if ask.revision is None else ask.revision
 
 
 def _matches(name: str, patterns: Sequence[str]) -> bool:
@@ -255,38 +293,6 @@ def _site(checked: Checked, made: _Made, pictures: Mapping[str, Picture]) -> tre
         notices=report_view.notices(made.view, made.edition),
         chapter_files=checked.chapters.picture,
     )
-
-
-def _picture_files(pictures: Mapping[str, Picture], forms: Sequence[str]) -> tree.FileTree:
-    found = [
-        (f"{name}.{form}", _picture_file(picture, form, pictures))
-        for name, picture in pictures.items()
-        for form in forms
-    ]
-    return tree.tree((path, data) for path, data in found if data is not None)
-
-
-def _picture_file(picture: Picture, form: str, others: Mapping[str, Picture]) -> bytes | None:
-    """Give a picture's file; the links of an SVG lead to the other pictures of the folder."""
-    from archgen.emit.site import pictures
-
-    if form == "dot":
-        return picture.dot.encode()
-    data: bytes | None = getattr(picture, form)
-    if form != "svg" or data is None:
-        return data
-    up = "../" * picture.id.count("/")
-
-    def href(anchor: str) -> str | None:
-        kind, _, name = anchor.partition(":")
-        at = f"{_FOLDERS.get(kind, kind)}/{name}"
-        return f"{up}{at}.svg" if at in others and at != picture.id else None
-
-    return pictures.alone(data, href)
-
-
-_FOLDERS = {"group": "groups", "component": "components", "view": "views", "chain": "chains", "host": "load"}
-"""Where the picture of an element lies, by the sort of element."""
 
 
 def _packed(checked: Checked) -> str:
