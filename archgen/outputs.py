@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import fnmatch
-import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from archgen.views import report as report_view
 from archgen.views.bars import Drawing
 from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
-from archgen.views.shapes import Graph
+from archgen.views.shapes import Graph, Outline, Page
 from archgen.views.timed import timing
 
 Progress = Callable[[int, int], None]
@@ -65,13 +65,15 @@ def view(checked: Checked, ask: Ask) -> Index:
 def report(checked: Checked, ask: Ask, target: Path, template: Path | None = None) -> None:
     """Write the Word report."""
     made = _make(checked, ask)
-    tree.write_file(target, _docx(checked, made, _draw(made, ask, ("png", "svg_outlines")), ask, template))
+    outline = report_view.report(made.view, made.edition)
+    tree.write_file(target, _docx(checked, outline, _draw(made, ask, ("png", "svg_outlines")), ask, template))
 
 
 def site(checked: Checked, ask: Ask, target: Path) -> None:
     """Write the static site."""
     made = _make(checked, ask)
-    tree.write(_site(checked, made, _draw(made, ask, ("svg",))), target)
+    listed = tuple(pages.pages(made.view, made.edition))
+    tree.write(_site(checked, made, listed, _draw(made, ask, ("svg",))), target)
 
 
 def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], only: Sequence[str] = ()) -> int:
@@ -113,14 +115,14 @@ def build(
     chosen = _backends(checked, extra)
     ask = replace(ask, revision=_revision(checked, ask))
     name = "" if chosen else stamp.key(_inputs(checked, ask, template))
-    parts = stamp.fresh(cache_folder(), name, target, checked.chapters.picture) if name else None
+    parts = stamp.fresh(kept.folder(), name, target, checked.chapters.picture) if name else None
     warned: list[str] = []
     done: list[str] = []
     for part in parts or _build(checked, replace(ask, warn=_noting(ask.warn, warned)), target, template, chosen):
         done.append(part)
         yield target / part / ("index.html" if part == "site" else "")
     if name and parts is None and not warned:
-        stamp.keep(cache_folder(), name, target, done, checked.chapters.asked)
+        stamp.keep(kept.folder(), name, target, done, checked.chapters.asked)
 
 
 def _noting(warn: Callable[[str], None], said: list[str]) -> Callable[[str], None]:
@@ -143,15 +145,19 @@ def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[objec
 def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chosen: Sequence[Backend]) -> Iterator[str]:
     """Write each part; give its name."""
     made = _make(checked, ask)
-    pictures = _draw(made, ask, ("svg", "png", "svg_outlines"))
-    tree.write_file(target / "report.docx", _docx(checked, made, pictures, ask, template))
+    with ThreadPoolExecutor(1) as beside:  # other processes draw: meanwhile all that needs no picture is made
+        drawing = beside.submit(_draw, made, ask, ("svg", "png", "svg_outlines"))
+        outline, listed = report_view.report(made.view, made.edition), tuple(pages.pages(made.view, made.edition))
+        packed = _packed(checked).encode()
+        pictures = drawing.result()
+    tree.write_file(target / "report.docx", _docx(checked, outline, pictures, ask, template))
     yield "report.docx"
-    tree.write(_site(checked, made, pictures), target / "site")
+    tree.write(_site(checked, made, listed, pictures), target / "site")
     yield "site"
     tree.write(folder.write(pictures, ("svg", "png")), target / "diagrams")
     if pictures:
         yield "diagrams"
-    pack(checked, target / "packed.yaml")
+    tree.write_file(target / "packed.yaml", packed)
     yield "packed.yaml"
     for backend in chosen:
         _extra(made, backend, target / backend.id)
@@ -243,7 +249,7 @@ def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping
 
     try:
         pictures = graphviz.draw(
-            graphs, formats, link=lambda ref: f"#{ref}", cache=cache_folder(), progress=ask.progress
+            graphs, formats, link=lambda ref: f"#{ref}", cache=kept.folder(), progress=ask.progress
         )
     except graphviz.MissingGraphviz as missing:
         ask.warn(str(missing))
@@ -254,17 +260,9 @@ def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping
     return pictures
 
 
-def cache_folder() -> Path | None:
-    """Give the folder in which drawn pictures are kept, None where there is no place for it."""
-    base = os.environ.get("XDG_CACHE_HOME")
-    try:
-        return Path(base) / "archgen" if base else Path.home() / ".cache" / "archgen"
-    except RuntimeError:  # nobody's home
-        return None
-
-
-def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: Ask, template: Path | None) -> bytes:
-    outline = report_view.report(made.view, made.edition)
+def _docx(
+    checked: Checked, outline: Outline, pictures: Mapping[str, Picture], ask: Ask, template: Path | None
+) -> bytes:
     data = template.read_bytes() if template else None
 
     def write(chapter_files: kept.ChapterFiles) -> kept.Written:
@@ -276,17 +274,17 @@ def _docx(checked: Checked, made: _Made, pictures: Mapping[str, Picture], ask: A
             raise tree.OutputError(str(error)) from None
 
     shown = checked.chapters.picture
-    document, warnings = kept.report(cache_folder(), outline, pictures, template=data, chapter_files=shown, write=write)
+    document, warnings = kept.report(kept.folder(), outline, pictures, template=data, chapter_files=shown, write=write)
     for warning in warnings:
         ask.warn(warning)
     return document
 
 
-def _site(checked: Checked, made: _Made, pictures: Mapping[str, Picture]) -> tree.FileTree:
+def _site(checked: Checked, made: _Made, listed: Sequence[Page], pictures: Mapping[str, Picture]) -> tree.FileTree:
     from archgen.emit import site as emitter
 
     return emitter.write(
-        pages.pages(made.view, made.edition),
+        listed,
         pictures,
         title=checked.architecture.project.title,
         revision=made.edition.revision,

@@ -25,6 +25,15 @@ _MOST = 4
 """So many reports are kept."""
 
 
+def folder() -> Path | None:
+    """Give the folder in which pictures, reports and stamps are kept, None where there is no place for it."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return Path(base) / "archgen" if base else Path.home() / ".cache" / "archgen"
+    except RuntimeError:  # nobody's home
+        return None
+
+
 def report(  # noqa: PLR0913 - all that a report depends on, and how to write it
     folder: Path | None,
     outline: Outline,

@@ -20,24 +20,25 @@ _HERE = Path(__file__).resolve().parent
 @cache
 def writers() -> str:
     """Stamp what writes and draws: the emitters with their fonts, the backends that ship, and all libraries."""
-    return f"{_digest((_HERE, resources.path('backends')))} {_libraries()}"
+    return f"{digest((_HERE, resources.path('backends')))} {_libraries()}"
 
 
 @cache
 def program() -> str:
     """Stamp the whole of archgen: its code and data, what ships beside them, and all libraries."""
     beside = (resources.path(name) for name in ("backends", "schemas", "ros_type_mapper.yaml"))
-    return f"{_digest((_HERE.parent, *beside))} {_libraries()}"
+    return f"{digest((_HERE.parent, *beside))} {_libraries()}"
 
 
-def _digest(tops: Iterable[Path]) -> str:
-    digest = hashlib.sha256()
+def digest(tops: Iterable[Path]) -> str:
+    """Digest files and folders: names and contents, but for what Python leaves there."""
+    found = hashlib.sha256()
     for top in tops:
         for file in sorted(_files(top)):
             data = file.read_bytes()
             name = file.relative_to(top.parent).as_posix()
-            digest.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
-    return digest.hexdigest()
+            found.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
+    return found.hexdigest()
 
 
 def _files(top: Path) -> Iterator[Path]:

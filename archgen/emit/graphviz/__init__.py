@@ -7,6 +7,7 @@ title or text meets another. Pictures are light; see `svg` and `dark_rules` for 
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -15,7 +16,7 @@ from typing import Final
 
 from archgen.emit.graphviz import cache as store
 from archgen.emit.graphviz.palette import dark_rules
-from archgen.emit.graphviz.pool import MissingGraphviz, Progress
+from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch
 from archgen.emit.graphviz.pool import draw as draw_all
 from archgen.emit.graphviz.worker import Task
 from archgen.emit.picture import Picture
@@ -48,10 +49,16 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     missing = [at for at in range(len(graphs)) if at not in found]
     if missing:
         tasks = [Task(graphs[at], linked[at], wanted) for at in missing]
-        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, progress)
+
+        def keep(at: int, picture: Picture) -> None:
+            if cache and picture.warning is None:
+                with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
+                    store.store(cache, keys[missing[at]], picture, wanted)
+
+        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, Watch(progress, keep))
         found.update(zip(missing, drawn, strict=True))
         if cache:
-            _keep(cache, {keys[at]: found[at] for at in missing}, wanted, len(graphs))
+            store.prune(cache, len(graphs))
     return {graph.id: found[at] for at, graph in enumerate(graphs)}
 
 
@@ -65,18 +72,11 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, progress: Progress | None) -> tuple[Picture, ...]:
+def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, watch: Watch) -> tuple[Picture, ...]:
     if cache:
-        return draw_all(tasks, cache, workers=workers, progress=progress)
+        return draw_all(tasks, cache, workers=workers, watch=watch)
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
-        return draw_all(tasks, Path(folder), workers=workers, progress=progress)
-
-
-def _keep(cache: Path, drawn: dict[str, Picture], formats: Sequence[str], count: int) -> None:
-    for name, picture in drawn.items():
-        if picture.warning is None:
-            store.store(cache, name, picture, formats)
-    store.prune(cache, count)
+        return draw_all(tasks, Path(folder), workers=workers, watch=watch)
 
 
 def _links(graph: Drawing, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:

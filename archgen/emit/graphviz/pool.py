@@ -12,7 +12,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen.emit.graphviz import fonts
@@ -25,6 +25,15 @@ TIMEOUT = 30.0
 
 Progress = Callable[[int, int], None]
 Command = Sequence[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """Who is told of each picture when it is drawn: how many of how many; which task it is of. In any thread."""
+
+    progress: Progress | None = None
+    drawn: Callable[[int, Picture], None] = lambda _at, _picture: None
+
 
 _START = "import sys; sys.path.append({root!r}); from archgen.emit.graphviz.worker import main; main()"
 _PACKAGES = {
@@ -67,14 +76,14 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     folder: Path,
     *,
     workers: int,
-    progress: Progress | None = None,
+    watch: Watch = Watch(),
     timeout: float = TIMEOUT,
     start: Command | None = None,
 ) -> tuple[Picture, ...]:
     """Draw all tasks, the largest first; gives the pictures in the order of the tasks."""
     # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
     environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
-    run = _Run(tasks, progress, timeout, start or command(), environment)
+    run = _Run(tasks, watch, timeout, start or command(), environment)
     threads = [threading.Thread(target=run.work) for _ in range(max(1, min(workers, len(tasks))))]
     for thread in threads:
         thread.start()
@@ -96,14 +105,14 @@ class _Run:
     def __init__(
         self,
         tasks: Sequence[Task],
-        progress: Progress | None,
+        watch: Watch,
         timeout: float,
         start: Command,
         environment: dict[str, str],
     ) -> None:
         self.done: dict[int, Picture] = {}
         self.missing = ""
-        self._progress, self._timeout, self._start, self._environment = progress, timeout, start, environment
+        self._watch, self._timeout, self._start, self._environment = watch, timeout, start, environment
         self._lock = threading.Lock()
         self._total = len(tasks)
         self._waiting: queue.SimpleQueue[tuple[int, Task]] = queue.SimpleQueue()
@@ -123,10 +132,11 @@ class _Run:
             process.stop()
 
     def _finish(self, at: int, picture: Picture) -> None:
+        self._watch.drawn(at, picture)
         with self._lock:
             self.done[at] = picture
-            if self._progress:
-                self._progress(len(self.done), self._total)
+            if self._watch.progress:
+                self._watch.progress(len(self.done), self._total)
 
     def _drawn(self, process: _Worker, task: Task) -> Picture:
         answer = process.ask(task, self._timeout)
