@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from archgen.diagnostic import Diagnostic
-from archgen.emit import folder, kept, stamp, tree
-from archgen.emit.backends import Backend
+from archgen.emit import folder, kept, tree
 from archgen.emit.picture import Picture
 from archgen.model import selector
 from archgen.model.selector import Selection
@@ -22,8 +20,11 @@ from archgen.views import report as report_view
 from archgen.views.bars import Drawing
 from archgen.views.index import Index, Scope, index
 from archgen.views.report import Edition, Level
-from archgen.views.shapes import Graph, Outline, Page
+from archgen.views.shapes import Outline, Page
 from archgen.views.timed import timing
+
+if TYPE_CHECKING:
+    from archgen.emit.graphviz.pool import Worker
 
 Progress = Callable[[int, int], None]
 """Told how many pictures are drawn, of how many."""
@@ -64,21 +65,21 @@ def view(checked: Checked, ask: Ask) -> Index:
 
 def report(checked: Checked, ask: Ask, target: Path, template: Path | None = None) -> None:
     """Write the Word report."""
-    made = _make(checked, ask)
+    made = make(checked, ask)
     outline = report_view.report(made.view, made.edition)
-    tree.write_file(target, _docx(checked, outline, _draw(made, ask, ("png", "svg_outlines")), ask, template))
+    tree.write_file(target, docx(checked, outline, draw_all(made, ask, ("png", "svg_outlines")), ask, template))
 
 
 def site(checked: Checked, ask: Ask, target: Path) -> None:
     """Write the static site."""
-    made = _make(checked, ask)
+    made = make(checked, ask)
     listed = tuple(pages.pages(made.view, made.edition))
-    tree.write(_site(checked, made, listed, _draw(made, ask, ("svg",))), target)
+    tree.write(site_tree(checked, made, listed, draw_all(made, ask, ("svg",))), target)
 
 
 def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], only: Sequence[str] = ()) -> int:
     """Write pictures, in the formats asked for (svg, png, pdf, dot), and give their number."""
-    made = _make(checked, ask)
+    made = make(checked, ask)
     chosen = {name: graph for name, graph in made.graphs.items() if not only or _matches(name, only)}
     if only and not chosen:
         shown = ", ".join(list(made.graphs)[:8])
@@ -94,7 +95,7 @@ def diagrams(checked: Checked, ask: Ask, target: Path, forms: Sequence[str], onl
 
 def pack(checked: Checked, target: Path) -> None:
     """Write the packed project."""
-    tree.write_file(target, _packed(checked).encode())
+    tree.write_file(target, packed(checked).encode())
 
 
 def resolved(checked: Checked, ask: Ask, target: Path) -> None:
@@ -105,107 +106,8 @@ def resolved(checked: Checked, ask: Ask, target: Path) -> None:
     tree.write_file(target, yaml.write(data).encode())
 
 
-def build(
-    checked: Checked, ask: Ask, target: Path, template: Path | None = None, extra: Sequence[str] = ()
-) -> Iterator[Path]:
-    """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths.
-
-    Where all of it lies there as the same inputs gave it before, nothing is made again.
-    """
-    chosen = _backends(checked, extra)
-    ask = replace(ask, revision=_revision(checked, ask))
-    name = "" if chosen else stamp.key(_inputs(checked, ask, template))
-    parts = stamp.fresh(kept.folder(), name, target, checked.chapters.picture) if name else None
-    warned: list[str] = []
-    done: list[str] = []
-    for part in parts or _build(checked, replace(ask, warn=_noting(ask.warn, warned)), target, template, chosen):
-        done.append(part)
-        yield target / part / ("index.html" if part == "site" else "")
-    if name and parts is None and not warned:
-        stamp.keep(kept.folder(), name, target, done, checked.chapters.asked)
-
-
-def _noting(warn: Callable[[str], None], said: list[str]) -> Callable[[str], None]:
-    def warned(text: str) -> None:
-        said.append(text)
-        warn(text)
-
-    return warned
-
-
-def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[object]:
-    """Give all that the outputs depend on, but for this program and the pictures of chapters."""
-    project, sources, chapters = checked.architecture.project, checked.sources, checked.chapters
-    yield project.id, project.title, ask.words, ask.level, ask.revision
-    yield checked.files, checked.all_files, [(file, sources.text(file)) for file in sources.files()]
-    yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked.findings
-    yield template and template.read_bytes()
-
-
-def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chosen: Sequence[Backend]) -> Iterator[str]:
-    """Write each part; give its name."""
-    made = _make(checked, ask)
-    with ThreadPoolExecutor(1) as beside:  # other processes draw: meanwhile all that needs no picture is made
-        drawing = beside.submit(_draw, made, ask, ("svg", "png", "svg_outlines"))
-        outline, listed = report_view.report(made.view, made.edition), tuple(pages.pages(made.view, made.edition))
-        packed = _packed(checked).encode()
-        pictures = drawing.result()
-    tree.write_file(target / "report.docx", _docx(checked, outline, pictures, ask, template))
-    yield "report.docx"
-    tree.write(_site(checked, made, listed, pictures), target / "site")
-    yield "site"
-    tree.write(folder.write(pictures, ("svg", "png")), target / "diagrams")
-    if pictures:
-        yield "diagrams"
-    tree.write_file(target / "packed.yaml", packed)
-    yield "packed.yaml"
-    for backend in chosen:
-        _extra(made, backend, target / backend.id)
-        yield backend.id
-
-
-def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
-    """Find the further backends that the user asks for, before any long work."""
-    if not names:
-        return []
-    from archgen.emit import backends
-
-    found, problems = backends.find(checked.root)
-    wrong = [problem for problem in problems if any(f"backends/{name}/" in problem.span.file for name in names)]
-    _refuse(wrong)
-    for name in names:
-        if name not in found or found[name].emitter != "text":
-            known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
-            msg = f"there is no text backend `{name}`"
-            raise tree.OutputError(msg, f"there are {known}")
-    return [found[name] for name in names]
-
-
-def _extra(made: _Made, backend: Backend, target: Path) -> None:
-    """Write what one text backend makes."""
-    from archgen.emit import text
-
-    shapes: dict[str, Callable[[], object]] = {
-        "outline": lambda: report_view.report(made.view, made.edition),
-        "pages": lambda: pages.pages(made.view, made.edition),
-        "graphs": lambda: tuple(graph for graph in made.graphs.values() if isinstance(graph, Graph)),
-        "record": lambda: record.record(made.view),
-        "tables": lambda: statistics.statistics(made.view.architecture),
-    }
-    files, problems = text.write(backend, {name: shapes[name]() for name in backend.views})
-    _refuse(problems)
-    if files is not None:
-        tree.write(files, target)
-
-
-def _refuse(problems: Sequence[Diagnostic]) -> None:
-    if problems:
-        said = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)
-        raise tree.OutputError(said, problems[0].help)
-
-
 @dataclass(frozen=True, slots=True)
-class _Made:
+class Made:
     """The views that documents are written from."""
 
     view: Index
@@ -213,11 +115,12 @@ class _Made:
     graphs: Mapping[str, Drawing]
 
 
-def _make(checked: Checked, ask: Ask) -> _Made:
+def make(checked: Checked, ask: Ask) -> Made:
+    """Make the views."""
     found = replace(view(checked, ask), timed=timing(checked.architecture))
     drawn = drawings.drawings(found, ask.selection, ask.level or "implementation")
     edition = Edition(
-        revision=_revision(checked, ask),
+        revision=revision_of(checked, ask),
         level=ask.level or "implementation",
         chapters=checked.chapters.order,
         texts=checked.chapters.texts,
@@ -225,10 +128,11 @@ def _make(checked: Checked, ask: Ask) -> _Made:
         statistics=statistics.statistics(checked.architecture),
         broken=checked.broken,
     )
-    return _Made(found, edition, drawn)
+    return Made(found, edition, drawn)
 
 
-def _revision(checked: Checked, ask: Ask) -> str:
+def revision_of(checked: Checked, ask: Ask) -> str:
+    """Give the revision to print: what was asked for, else what git says of the files."""
     return revision(checked.root, checked.all_files) if ask.revision is None else ask.revision
 
 
@@ -236,11 +140,14 @@ def _matches(name: str, patterns: Sequence[str]) -> bool:
     return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
 
 
-def _draw(made: _Made, ask: Ask, formats: Sequence[str]) -> Mapping[str, Picture]:
-    return draw(tuple(made.graphs.values()), formats, ask)
+def draw_all(made: Made, ask: Ask, formats: Sequence[str], ready: Sequence[Worker] = ()) -> Mapping[str, Picture]:
+    """Draw all pictures of a project."""
+    return draw(tuple(made.graphs.values()), formats, ask, ready)
 
 
-def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping[str, Picture]:
+def draw(
+    graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask, ready: Sequence[Worker] = ()
+) -> Mapping[str, Picture]:
     """Draw graphs and charts; links in a picture lead to `#` and an element's anchor.
 
     Where the machine cannot draw, there is a warning and no picture: everything else can still be made.
@@ -249,7 +156,7 @@ def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping
 
     try:
         pictures = graphviz.draw(
-            graphs, formats, link=lambda ref: f"#{ref}", cache=kept.folder(), progress=ask.progress
+            graphs, formats, link=lambda ref: f"#{ref}", cache=kept.folder(), progress=ask.progress, ready=ready
         )
     except graphviz.MissingGraphviz as missing:
         ask.warn(str(missing))
@@ -260,9 +167,8 @@ def draw(graphs: Sequence[Drawing], formats: Sequence[str], ask: Ask) -> Mapping
     return pictures
 
 
-def _docx(
-    checked: Checked, outline: Outline, pictures: Mapping[str, Picture], ask: Ask, template: Path | None
-) -> bytes:
+def docx(checked: Checked, outline: Outline, pictures: Mapping[str, Picture], ask: Ask, template: Path | None) -> bytes:
+    """Give the Word report: as kept from before, or written anew."""
     data = template.read_bytes() if template else None
 
     def write(chapter_files: kept.ChapterFiles) -> kept.Written:
@@ -280,7 +186,8 @@ def _docx(
     return document
 
 
-def _site(checked: Checked, made: _Made, listed: Sequence[Page], pictures: Mapping[str, Picture]) -> tree.FileTree:
+def site_tree(checked: Checked, made: Made, listed: Sequence[Page], pictures: Mapping[str, Picture]) -> tree.FileTree:
+    """Give the site's files."""
     from archgen.emit import site as emitter
 
     return emitter.write(
@@ -293,7 +200,8 @@ def _site(checked: Checked, made: _Made, listed: Sequence[Page], pictures: Mappi
     )
 
 
-def _packed(checked: Checked) -> str:
+def packed(checked: Checked) -> str:
+    """Give the packed project as YAML."""
     from archgen.emit import yaml
 
     packed = checked.packed()

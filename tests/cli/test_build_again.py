@@ -65,13 +65,13 @@ def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
     (project / "plan.png").write_bytes(_png(200))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     builds = Builds(run, project, tmp_path / "out")
-    make = outputs._make
+    make = outputs.make
 
     def counted(*asked: object) -> object:
         builds.count += 1
         return make(*asked)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(outputs, "_make", counted)
+    monkeypatch.setattr(outputs, "make", counted)
     return builds
 
 

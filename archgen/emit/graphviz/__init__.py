@@ -11,18 +11,19 @@ import contextlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
 from archgen.emit.graphviz import cache as store
 from archgen.emit.graphviz.palette import dark_rules
-from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch
+from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch, Worker, worker
 from archgen.emit.graphviz.pool import draw as draw_all
 from archgen.emit.graphviz.worker import Task
 from archgen.emit.picture import Picture
 from archgen.views.bars import Chart, Drawing
 
-__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw"]
+__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw", "early"]
 
 FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
 """The formats that can be asked for, by Picture's fields; `dot` is always there."""
@@ -36,10 +37,11 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     cache: Path | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    ready: Sequence[Worker] = (),
 ) -> dict[str, Picture]:
     """Draw graphs and charts in some formats. `link` gives the address for a ref, None where its target is not in the output.
 
-    `cache` is a folder that archgen may fill. Raises MissingGraphviz where nothing can be drawn and not all is cached.
+    `cache` is a folder that archgen may fill; `ready` is what `early` gives. Raises MissingGraphviz where nothing can be drawn and not all is cached.
     """
     cache = cache if cache and _writable(cache) else None
     wanted = tuple(form for form in FORMATS if form in formats)
@@ -55,11 +57,26 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
                 with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
                     store.store(cache, keys[missing[at]], picture, wanted)
 
-        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, Watch(progress, keep))
+        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, Watch(progress, keep), ready)
         found.update(zip(missing, drawn, strict=True))
         if cache:
             store.prune(cache, len(graphs))
     return {graph.id: found[at] for at, graph in enumerate(graphs)}
+
+
+@contextmanager
+def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
+    """Start the processes that draw before it is known what: the first time, when no picture is kept, all are needed."""
+    workers: list[Worker] = []
+    if cache and _writable(cache) and not any(cache.glob("*.picture")):
+        workers = [worker(cache) for _ in range(os.cpu_count() or 1)]
+    try:
+        for each in workers:
+            each.begin()
+        yield workers
+    finally:
+        for each in workers:
+            each.stop()
 
 
 def _writable(folder: Path) -> bool:
@@ -72,9 +89,11 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, watch: Watch) -> tuple[Picture, ...]:
+def _draw(
+    tasks: Sequence[Task], cache: Path | None, workers: int, watch: Watch, ready: Sequence[Worker]
+) -> tuple[Picture, ...]:
     if cache:
-        return draw_all(tasks, cache, workers=workers, watch=watch)
+        return draw_all(tasks, cache, workers=workers, watch=watch, ready=ready)
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
         return draw_all(tasks, Path(folder), workers=workers, watch=watch)
 
