@@ -17,7 +17,7 @@ from typing import Final
 
 from archgen.emit.graphviz import cache as store
 from archgen.emit.graphviz.palette import dark_rules
-from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch, Worker, worker
+from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch, Worker, idle
 from archgen.emit.graphviz.pool import draw as draw_all
 from archgen.emit.graphviz.worker import Task
 from archgen.emit.picture import Picture
@@ -69,7 +69,7 @@ def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
     """Start the processes that draw before it is known what: the first time, when no picture is kept, all are needed."""
     workers: list[Worker] = []
     if cache and _writable(cache) and not any(cache.glob("*.picture")):
-        workers = [worker(cache) for _ in range(os.cpu_count() or 1)]
+        workers = [idle(cache) for _ in range(os.cpu_count() or 1)]
     try:
         for each in workers:
             each.begin()

@@ -86,7 +86,7 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     Workers that are `ready` are used, and stopped; further ones are started as needed.
     """
     count = max(1, min(workers, len(tasks)))
-    processes = [*ready[:count], *(worker(folder, start) for _ in range(count - len(ready)))]
+    processes = [*ready[:count], *(idle(folder, start) for _ in range(count - len(ready)))]
     run = _Run(tasks, watch, timeout)
     threads = [threading.Thread(target=run.work, args=(process,)) for process in processes]
     for thread in threads:
@@ -98,7 +98,7 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     return tuple(run.done[at] for at in range(len(tasks)))
 
 
-def worker(folder: Path, start: Command | None = None) -> Worker:
+def idle(folder: Path, start: Command | None = None) -> Worker:
     """Give a worker whose process is not started yet."""
     # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
     environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
