@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from archgen.source import Span
 from archgen.timing.analysis import Pace
 from archgen.timing.system import Activity
-from archgen.views import charts, figures, paces, words
+from archgen.views import figures, loads, paces, words
 from archgen.views.index import Index
 from archgen.views.shapes import (
     Block,
@@ -160,8 +160,9 @@ def hosts(view: Index, timed: Timed) -> Table | None:
         (
             words.text(Text(view.architecture.hosts[name].title, ref=f"host:{name}")),
             words.text(str(load.cores)),
-            figure(figures.share(charts.of_cores(load.utilisation, load.cores))),
+            figure(figures.share(loads.of_cores(load.utilisation, load.cores))),
             figure(figures.share(load.rate_monotonic_bound)) if load.cores == 1 else (),
+            figure(figures.share(load.earliest_deadline_bound)) if load.cores == 1 else (),
             words.text(_VERDICTS[load.verdict]),
             words.text(figures.missing(load.utilisation, timed.analysis, 3)),
         )
@@ -172,6 +173,7 @@ def hosts(view: Index, timed: Timed) -> Table | None:
         Column("Cores", 0.5, "right"),
         Column("Load of all cores", 0.9, "right"),
         Column("Rate-monotonic bound", 0.8, "right"),
+        Column("Earliest-deadline bound", 0.8, "right"),
         Column("Verdict", 1.1),
         Column("Missing", 1.6),
     )

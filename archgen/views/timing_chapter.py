@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.views import tables, timing, timing_of, words
+from archgen.views import tables, timing, timing_between, timing_of, words
 from archgen.views.bars import Drawing
 from archgen.views.index import Index
 from archgen.views.shapes import Block, Figure, Paragraph, Section
@@ -23,6 +23,8 @@ def sections(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[S
     found = (
         Section("timing:groups", "Group by group", groups),
         Section("timing:rates", "Rates and responses", _present(timing.elements(view, timed))),
+        Section("timing:edges", "Where rates differ", tuple(timing_between.edges(view, timed))),
+        Section("timing:services", "Services", tuple(timing_between.services(view, timed))),
         Section("timing:hosts", "Load of the hosts", (*loads, *_present(timing.hosts(view, timed)))),
         Section(
             "timing:network",

@@ -8,7 +8,7 @@ from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import Activity
 from archgen.timing.value import Value
-from archgen.views import charts, figures, paces, timing, words
+from archgen.views import charts, figures, loads, paces, timing, words
 from archgen.views.index import Index
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
 from archgen.views.timed import Timed
@@ -117,7 +117,7 @@ def host_blocks(view: Index, host: str) -> tuple[Block, ...]:
     if load is None or not load.parts:
         return ()
     title = f"{view.architecture.hosts[host].title}: load by activity"
-    return (Figure(f"figure:load/{host}", f"load/{host}", title, charts.load_verdict(load)),)
+    return (Figure(f"figure:load/{host}", f"load/{host}", title, loads.load_verdict(load)),)
 
 
 def topic_facts(view: Index, name: str) -> list[tuple[str, Inlines]]:
