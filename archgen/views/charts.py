@@ -52,7 +52,6 @@ def _terms(view: Index, timed: Timed, result: ChainResult) -> Iterator[Bar]:
     start = Fraction(0)
     for term in result.terms:
         values = (term.sampling, term.response, term.link)
-        known = [value.value for value in values if value.value is not None]
         activity = timed.analysis.system.activities.get(term.activity)
         yield Bar(
             term.activity,
@@ -62,7 +61,12 @@ def _terms(view: Index, timed: Timed, result: ChainResult) -> Iterator[Bar]:
             ref=f"node:{activity.node}" if activity else None,
             around=outside(view, timed, term.activity),
         )
-        start += sum(known, Fraction(0))
+        start += known(term)
+
+
+def known(term: Term) -> Fraction:
+    """Add up what is known of a step."""
+    return sum((value.value or Fraction(0) for value in (term.sampling, term.response, term.link)), Fraction(0))
 
 
 _KINDS = {"sampling": "waits", "response": "responds within", "link": "on the network"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
-from archgen.timing.analysis import ChainResult
+from archgen.timing.analysis import ChainResult, Tier
 from archgen.timing.system import Activity
 from archgen.timing.value import Value
 from archgen.views import charts, figures, loads, paces, timing, words
@@ -47,14 +47,16 @@ def chain_blocks(view: Index, timed: Timed, result: ChainResult) -> tuple[Block,
 
 
 def _assumed(timed: Timed, result: ChainResult) -> Iterator[str]:
-    """Give what a bound rests on, in words; the tiers of the responses say most of it."""
-    yield from (word for word in result.bound.assumptions)
-    tiers: dict[str, list[str]] = {}
+    """Give what a bound rests on, in words; what the tiers of the responses say with names is not said again without."""
+    tiers: dict[Tier, list[str]] = {}
     for term in result.terms:
         response = timed.analysis.responses.get(term.activity)
         if response and response.tier in {"declared", "dedicated"}:
-            tiers.setdefault(timing.TIERS[response.tier], []).append(term.activity)
-    yield from (f"{tier}: {', '.join(dict.fromkeys(names))}" for tier, names in tiers.items())
+            tiers.setdefault(response.tier, []).append(term.activity)
+    said = {f"the response of {name} is as declared" for name in tiers.get("declared", ())}
+    said |= {"assuming a dedicated core"} if "dedicated" in tiers else set()
+    yield from (word for word in result.bound.assumptions if word not in said)
+    yield from (f"{timing.TIERS[tier]}: {', '.join(dict.fromkeys(names))}" for tier, names in tiers.items())
 
 
 def _term(timed: Timed, result: ChainResult, at: int) -> tuple[Inlines, ...]:

@@ -8,7 +8,7 @@ hatched with a question mark. Grid and limit lie below and above the bars as thi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.graphviz import palette
@@ -113,17 +113,24 @@ def _bar(bar: Bar, at: int, scale: _Scale, middle: float) -> Iterator[Part]:
     x = scale.x(bar.start)
     known = [each for each in bar.stretches if each.length is not None]
     unknown = [each for each in bar.stretches if each.length is None]
-    for number, each in enumerate(known):
-        exact = (each.length or 0.0) * scale.factor
-        if exact > 0:
-            width = max(exact, _HAIR)
+    for number, (each, width) in enumerate(zip(known, _widths(known, scale.factor), strict=True)):
+        if width:
             yield Part(f"b{at}.{number}", _stretch(each, width), x + width / 2, middle, width, _BAR)
-            x += exact  # a hair that is drawn wider does not shift what follows: the end stands where the sum does
+            x += width
     if unknown:
         said = Stretch(None, unknown[0].kind, "?", "\n".join(each.tooltip for each in unknown if each.tooltip))
         yield Part(f"b{at}.q", _stretch(said, _UNKNOWN), x + _UNKNOWN / 2, middle, _UNKNOWN, _BAR)
     if bar.mark is not None:
         yield _thin(f"m{at}", scale.x(bar.mark), middle, width=1.6, height=_ROW - 1, colour=palette.TEXT)
+
+
+def _widths(known: Sequence[Stretch], factor: float) -> list[float]:
+    """Give what is there at least a hair, and take that from the others: the bar ends where its sum does."""
+    exact = [(each.length or 0.0) * factor for each in known]
+    thin = sum(_HAIR for width in exact if 0 < width < _HAIR)
+    thick = sum(width for width in exact if width >= _HAIR)
+    share = max(sum(exact) - thin, 0.0) / thick if thick else 1.0
+    return [0.0 if not width else _HAIR if width < _HAIR else max(width * share, _HAIR) for width in exact]
 
 
 def _stretch(item: Stretch, width: float) -> Attributes:
