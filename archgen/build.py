@@ -5,7 +5,7 @@ What takes long runs side by side, and what nothing changed of is not made again
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +28,7 @@ def build(
 
     Where all of it lies there as the same inputs gave it before, nothing is made again.
     """
-    chosen = _backends(checked, extra)
+    chosen = _backends(checked, extra, ask.allowed)
     ask = replace(ask, revision=outputs.revision_of(checked, ask))
     name = "" if chosen else stamp.key(_inputs(checked, ask, template))
     parts = stamp.fresh(kept.folder(), name, target, checked.chapters.picture) if name else None
@@ -83,7 +83,7 @@ def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chos
         yield backend.id
 
 
-def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
+def _backends(checked: Checked, names: Sequence[str], allowed: Collection[str] | None) -> list[Backend]:
     """Find the further backends that the user asks for, before any long work."""
     if not names:
         return []
@@ -97,6 +97,9 @@ def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
             known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
             msg = f"there is no text backend `{name}`"
             raise tree.OutputError(msg, f"there are {known}")
+        if found[name].own and allowed is not None and name not in allowed:
+            msg = f"the project's own backend `{name}` is not run here: the revision that is trusted does not name it"
+            raise tree.OutputError(msg, "add it to `review.backends` there, in a change of its own")
     return [found[name] for name in names]
 
 

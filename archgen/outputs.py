@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +26,8 @@ from archgen.views.timed import timing
 if TYPE_CHECKING:
     from archgen.emit.graphviz.pool import Worker
 
+_SHORT = 10
+"""So many digits of a commit's hash tell it from all others of a repository that holds a robot's architecture."""
 Progress = Callable[[int, int], None]
 """Told how many pictures are drawn, of how many."""
 
@@ -42,6 +44,8 @@ class Ask:
     revision: str | None = None
     progress: Progress | None = None
     warn: Callable[[str], None] = lambda _text: None
+    allowed: Collection[str] | None = None
+    """The only ones of the project's own backends that may run; None for all."""
 
 
 def select(checked: Checked, words: str) -> tuple[Selection, tuple[Problem, ...]]:
@@ -132,8 +136,11 @@ def make(checked: Checked, ask: Ask) -> Made:
 
 
 def revision_of(checked: Checked, ask: Ask) -> str:
-    """Give the revision to print: what was asked for, else what git says of the files."""
-    return revision(checked.root, checked.all_files) if ask.revision is None else ask.revision
+    """Give the revision to print: what was asked for, else the commit that the files were read from, or stand at."""
+    if ask.revision is not None:
+        return ask.revision
+    commit = checked.loaded.files.commit
+    return commit[:_SHORT] if commit else revision(checked.root, checked.all_files)
 
 
 def _matches(name: str, patterns: Sequence[str]) -> bool:

@@ -20,7 +20,7 @@ from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
-from archgen.project import Loaded
+from archgen.project import Loaded, Tracked
 from archgen.source import Sources
 from archgen.syntax import files
 from archgen.syntax import interfaces as interface_files
@@ -79,6 +79,11 @@ class Checked:
         """Say whether there are errors."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
 
+    @property
+    def unsound(self) -> tuple[Diagnostic, ...]:
+        """Give the errors of reading and linking: what they speak of is not in the architecture."""
+        return tuple(d for d in self.findings if d.severity is Severity.ERROR and _BY_NAME[d.rule].fixed)
+
     def packed(self) -> Packed:
         """Give the whole project as one mapping, with what stands in other files put in."""
         texts, _ = definitions(self.loaded)
@@ -98,6 +103,21 @@ def check(path: Path | None = None) -> Checked:
     """
     with _without_collection():
         return judge(project.load(path))
+
+
+def check_at(path: Path | None, revision: str) -> Checked:
+    """Judge the project at a path as a revision of its repository holds it, read from git's objects.
+
+    Raises `git.GitError`, `project.NotAtRevisionError` where the project does not exist there, and
+    `project.ProjectNotFoundError` where there is neither a project nor a repository.
+    """
+    return check_tracked(project.tracked(path), revision)
+
+
+def check_tracked(tracked: Tracked, revision: str) -> Checked:
+    """Judge a project at a revision; whoever wants many revisions finds the project once."""
+    with _without_collection():
+        return judge(project.load_at(tracked, revision))
 
 
 @contextmanager
@@ -134,7 +154,7 @@ def judge(loaded: Loaded) -> Checked:
         partial=loaded.partial,
     )
     architecture = transform.transform(linked)
-    read, chapter_findings = chapters.chapters(merged, loaded.root)
+    read, chapter_findings = chapters.chapters(merged, loaded.files)
     unread = [d for d in loaded.diagnostics if _BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
     raw = (
         *loaded.diagnostics,
@@ -166,7 +186,7 @@ def definitions(loaded: Loaded) -> tuple[dict[str, str], tuple[Diagnostic, ...]]
     """Read the interface files that the project names, by their path."""
     texts, diagnostics = {}, []
     for file in loaded.interfaces:
-        read = files.read(loaded.root, file)
+        read = files.read(loaded.files, file)
         if read.problem:
             diagnostics.append(read.problem)
         else:

@@ -13,6 +13,7 @@ VERBS = {
     "site": "Write the static web site.",
     "diagram": "Draw the diagrams.",
     "pack": "Write one validated YAML file that holds the whole project.",
+    "diff": "Compare two revisions, folders or files: what changed, and what it means.",
     "stats": "Show size and progress.",
     "timing": "Show rates, latency of chains, load; why, what if, what decides.",
     "show": "Show an element: ports, readers, nodes, place in the files.",
@@ -20,6 +21,7 @@ VERBS = {
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project.",
+    "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
 """Every verb with its line in the help; each is a module of this package with a command of the same name."""
