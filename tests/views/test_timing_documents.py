@@ -50,6 +50,8 @@ def test_the_chapter_has_every_table_and_picture(view: Index, edition: Edition) 
         "table:timing",
         "table:edges",
         "table:services-load",
+        "table:edges",
+        "table:services-load",
         "table:load",
         "table:traffic",
         "table:bandwidth",
