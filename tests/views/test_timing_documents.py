@@ -48,10 +48,6 @@ def test_the_chapter_has_every_table_and_picture(view: Index, edition: Edition) 
     assert set(_tables(chapter)) == {
         "table:periods",
         "table:timing",
-        "table:edges",
-        "table:services-load",
-        "table:edges",
-        "table:services-load",
         "table:load",
         "table:traffic",
         "table:bandwidth",
