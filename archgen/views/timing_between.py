@@ -31,20 +31,23 @@ def edges(view: Index, timed: Timed) -> Iterator[Block]:
     if found:
         said.append(
             "A reader that samples takes the newest and leaves the rest: that is a loss only where every sample counts. "
-            "In the time of a beat the age of what is read runs through all values once."
+            "In the time of a beat the age of what is read runs through all values once. "
+            "A queue is named where more can come before its reader looks than it holds."
         )
     yield Paragraph(words.text(" ".join(said)))
     if found:
         columns = (
-            Column("From", 1.3),
-            Column("Topic", 1.6),
-            Column("To", 1.3),
-            Column("Lost", 0.7, "right"),
-            Column("Each is read", 0.8, "right"),
+            Column("From", 1.6),
+            Column("Topic", 2),
+            Column("To", 1.6),
+            Column("Lost", 0.8, "right"),
+            Column("Times read", 0.7, "right"),
             Column("Beat", 0.8, "right"),
-            Column("Queue", 0.9, "right"),
+            Column("Come at once", 0.8, "right"),
+            Column("Queue", 0.6, "right"),
         )
-        table = Table("table:edges", "Edges that lose samples or beat", columns, tuple(_edge(timed, e) for e in found))
+        rows = tuple(_edge(timed, edge) for edge in found)
+        table = Table("table:edges", "Edges that lose samples or beat", columns, rows, wide=True)
         yield without_empty_columns(table)
 
 
@@ -59,19 +62,28 @@ def _order(edge: EdgePace) -> tuple[object, ...]:
 
 
 def _edge(timed: Timed, edge: EdgePace) -> tuple[Inlines, ...]:
-    arc = edge.arc
-    again = edge.rereads.value
+    arc, again = edge.arc, edge.rereads.value
+    short = arc.depth and edge.queue.value and edge.queue.value > arc.depth
     return (
-        timing.named(timed, arc.source),
+        _named(timed, arc.source),
         words.text(words.topic_link(arc.topic)),
-        timing.named(timed, arc.target),
-        words.text(figures.share(_upto(edge.loss))) if edge.loss.value else (),
-        words.text(f"{figures.number(again, 1)} times") if again and again != 1 else (),
-        words.text(f"every {figures.duration(edge.beat)}") if edge.beat.value else (),
-        words.text(f"{figures.number(edge.queue.value)} come, {arc.depth} fit")
-        if arc.depth and edge.queue.value and edge.queue.value > arc.depth
-        else (),
+        _named(timed, arc.target),
+        _whole(figures.share(_upto(edge.loss))) if edge.loss.value else (),
+        words.text(figures.number(again, 1)) if again and again != 1 else (),
+        _whole(figures.duration(edge.beat)) if edge.beat.value else (),
+        words.text(figures.number(edge.queue.value)) if short and edge.queue.value else (),
+        words.text(str(arc.depth)) if short else (),
     )
+
+
+def _named(timed: Timed, name: str) -> Inlines:
+    """Name an activity in plain type, which is narrower than that of code: the row has eight columns."""
+    return tuple(replace(part, code=False) for part in timing.named(timed, name))
+
+
+def _whole(figure: str) -> Inlines:
+    """Write a figure that is not broken from its unit: in narrow columns that costs a line in every row."""
+    return words.text(figure.replace(" ", "\u00a0"))
 
 
 def _upto(value: Value) -> Value:

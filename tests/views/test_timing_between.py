@@ -49,7 +49,7 @@ def view(tmp_path: Path) -> Index:
 
 
 def said(inlines: Inlines) -> str:
-    return "".join(("\n" if part.line_break else "") + part.text for part in inlines)
+    return "".join(("\n" if part.line_break else "") + part.text.replace("\u00a0", " ") for part in inlines)
 
 
 def read(blocks: Iterable[Block]) -> list[object]:
@@ -76,9 +76,9 @@ def test_edges_that_lose_samples_or_beat(view: Index) -> None:
         "Of 3 edges whose readers are not asked on demand, 2 lose samples or beat. Of 1 the rates are not known."
     )
     assert rows == [
-        ["From", "Topic", "To", "Lost", "Each is read", "Beat"],
-        ["camera", "/sensing/camera/image", "viewer", "33.3 %", "", "every 100 ms"],
-        ["camera", "/sensing/camera/image", "logger", "", "1.3 times", "every 100 ms"],
+        ["From", "Topic", "To", "Lost", "Times read", "Beat"],
+        ["camera", "/sensing/camera/image", "viewer", "33.3 %", "", "100 ms"],
+        ["camera", "/sensing/camera/image", "logger", "", "1.3", "100 ms"],
     ]
 
 
