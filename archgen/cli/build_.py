@@ -50,13 +50,14 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
     from archgen import outputs
+    from archgen.build import build
 
     checked = run.ready(project, keep_going=keep_going)
     allowed = run.trusted(project, trust)
     ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn, allowed)
     target = output or checked.out
     with run.phrased():
-        for path in outputs.build(checked, ask, target, template, backend):
+        for path in build(checked, ask, target, template, backend):
             run.wrote(path)
     counts = run.counted(checked.findings)
     click.echo(f"archgen check tells more: {counts}" if counts else "no findings")
