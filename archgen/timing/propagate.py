@@ -13,7 +13,7 @@ from fractions import Fraction
 from archgen.timing.placement import Resource, resources
 from archgen.timing.response import DIVERGED, Cause, Effort, Found, alone, responses, united
 from archgen.timing.rings import components
-from archgen.timing.streams import Stream, Streams, all_of, called, every, late, throttled, together, written
+from archgen.timing.streams import Stream, Streams, all_of, apart, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
 from archgen.timing.triggers import Triggers, states_itself
 from archgen.timing.windows import Budget
@@ -247,7 +247,10 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
     if arc.worst is None:
         return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
     best = 0 if from_start else source.bcet or 0
-    return late(events, max(response.value - best, 0) + arc.worst - (arc.best or 0))
+    done = late(events, max(response.value - best, 0))
+    if source.response is None:  # what is only declared may rest on several cores at once
+        done = apart(done, best)
+    return late(done, arc.worst - (arc.best or 0))
 
 
 def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:

@@ -1,6 +1,7 @@
 """Response times on one resource, by the tiers: any scheduler, fixed priorities, executor, several cores.
 
-Utilisation of one or more on a core is overload. Nothing is ever given that rests on a figure nobody wrote.
+Utilisation of one or more on a core is overload; with fixed priorities exactly one is bearable where all is strictly
+periodic (Burns and Wellings' process set C). Nothing is ever given that rests on a figure nobody wrote.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
+from math import lcm
 from typing import NamedTuple
 
 from archgen.timing.analysis import Tier
@@ -18,6 +20,8 @@ from archgen.timing.streams import Streams
 from archgen.timing.system import System
 from archgen.timing.windows import Budget, Demand, DivergedError, Work, busy, carried, demand, shared, worst
 
+_MOST_JOBS = 20_000
+"""Jobs in one round of a core that is busy all the time."""
 _NO_DEMAND: tuple[Demand, int] = (lambda _: 0, 0)
 
 
@@ -207,9 +211,9 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
     """Analyse one thread below all that may have its priority or a higher one."""
     count = ranked.down_to(thread.low or 0)
     tier: Tier = "priorities" if len(thread.unit) == 1 else "executor"
-    if ranked.shares[count] >= 1:
-        return Found(None, tier, OVERLOAD)
     level = ranked.threads[:count]
+    if ranked.shares[count] > 1 or (ranked.shares[count] == 1 and not _comes_to_rest(level)):
+        return Found(None, tier, OVERLOAD)
     causes = [one.cause for one in level if one.cause]
     if causes:
         return Found(None, tier, united(causes))
@@ -220,6 +224,16 @@ def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
         return Found(busy(thread.works, budget, others, steps), tier)
     except DivergedError:
         return Found(None, tier, DIVERGED)
+
+
+def _comes_to_rest(level: Iterable[_Thread]) -> bool:
+    """Say whether work that takes all of a core is done at the end of each common multiple of the periods, and when."""
+    works = [work for thread in level for work in thread.works if work.cost]
+    streams = [stream for work in works for stream in work.streams]
+    if any(stream.jitter or stream.distance or stream.number != 1 for stream in streams):
+        return False
+    whole = lcm(*(stream.period for stream in streams))
+    return sum(whole // stream.period for stream in streams) <= _MOST_JOBS
 
 
 def _several(

@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analyse import analyse
-from archgen.timing.analysis import Analysis
+from tests.timing.task_sets import MS, periodic, tasks, worst
 
-MS = 10**6
 Derived = Callable[[str], Architecture]
-
-
-def tasks(rows: Mapping[str, str], *, host: str = "cores: 1") -> str:
-    """Write independent elements on one computer, in the order of falling priority where `{p}` stands in a row."""
-    components = "\n".join(f"      {name}: {{outputs: {{out: std_msgs/msg/Empty}}}}" for name in rows)
-    nodes = "\n".join(
-        f"  {name}: {{implements: {name}, host: pc, timing: {{{row.format(p=len(rows) - place)}}}}}"
-        for place, (name, row) in enumerate(rows.items())
-    )
-    return f"groups:\n  g:\n    components:\n{components}\nnodes:\n{nodes}\nhosts: {{pc: {{{host}}}}}\n"
-
-
-def periodic(period: str, cost: str, more: str = "priority: {p}") -> str:
-    return f"behaviour: periodic, period: {period} ms, wcet: {cost} ms, {more}"
-
-
-def worst(found: Analysis) -> dict[str, object]:
-    """Give the worst responses in ms, or what is said instead."""
-    return {
-        name: response.worst.value / MS if response.worst.value is not None else response.worst.assumptions
-        for name, response in found.responses.items()
-    }
 
 
 @pytest.mark.parametrize(
@@ -49,9 +26,6 @@ def worst(found: Analysis) -> dict[str, object]:
         # Lehoczky, Fixed priority scheduling of periodic task sets with arbitrary deadlines (RTSS 1990): seven jobs
         # of the second task respond in 114, 102, 116, 104, 118, 106, 94; the worst is the fifth.
         ({"one": ("70", "26"), "two": ("100", "62")}, {"one": 26, "two": 118}),
-        # Liu and Layland's theorem at work: harmonic periods, and three tasks of the textbook of Burns and Wellings.
-        ({"c": ("7", "3"), "b": ("12", "3"), "a": ("20", "5")}, {"c": 3, "b": 6, "a": 20}),
-        ({"c": ("20", "5"), "b": ("40", "10"), "a": ("80", "40")}, {"c": 5, "b": 15, "a": ("overload",)}),
     ],
 )
 def test_fixed_priorities(derived: Derived, sets: dict[str, tuple[str, str]], expected: dict[str, object]) -> None:
@@ -61,7 +35,7 @@ def test_fixed_priorities(derived: Derived, sets: dict[str, tuple[str, str]], ex
 
 
 def test_jitter_of_what_has_a_higher_priority_adds_jobs(derived: Derived) -> None:
-    """Tindell, Burns, Wellings (1994): w = 30 + ceil((w + 15)/40) 10 gives 50 where without jitter it gives 40."""
+    """Worked by hand: w = 30 + ceil((w + 15)/40) 10 gives 50 where without jitter it gives 40."""
     rows = {"high": periodic("40", "10", "jitter: 15 ms, priority: {p}"), "low": periodic("100", "30")}
     assert worst(analyse(derived(tasks(rows))))["low"] == 50
     rows["high"] = periodic("40", "10")
