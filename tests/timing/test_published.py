@@ -94,7 +94,7 @@ links: {wire: {connects: [r1, r2], latency: 0 ms}}
 
 
 def test_jitter_is_passed_on_from_host_to_host(derived: Derived) -> None:
-    """pyCPA's example of static priorities (J. Diemer, P. Axer, R. Ernst, WATERS 2012): 10, 13, 2 and 19 are its results."""
+    """The example of static priorities of pyCPA (J. Diemer, P. Axer, R. Ernst, WATERS 2012): its results."""
     assert worst(analyse(derived(PYCPA))) == {"t11": 10, "t12": 13, "t21": 2, "t22": 19}
 
 
