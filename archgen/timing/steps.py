@@ -104,6 +104,8 @@ class Steps:
 
     def _linked(self, arc: Arc, ticks: int, *, worst: bool) -> Value:
         value = self.arrivals.time(ticks)
+        if worst and arc.link in self.analysis.system.queued:
+            return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
         load = self.analysis.links.get(arc.link or "")
         queueing = load.queueing.value if load and worst else None
         if not queueing:
