@@ -110,8 +110,12 @@ class Steps:
         queueing = load.queueing.value if load and worst else None
         if not queueing:
             return value
-        covered = f"queueing on link {arc.link} (up to {wording.duration(queueing)}) is within its latency"
-        return replace(value, assumptions=(covered,))
+        waits = wording.duration(queueing)
+        if value.value is not None and queueing > value.value:
+            said = f"link {arc.link} keeps its written latency, though {waits} of traffic can wait for it"
+        else:
+            said = f"queueing on link {arc.link} (up to {waits}) is within its latency"
+        return replace(value, assumptions=(said,))
 
     def _unlinked(self, arc: Arc) -> tuple[str, ...]:
         """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
