@@ -188,8 +188,8 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
     """A service takes longer, with all its callers waiting, than one of them has before it runs again.
 
     Why: Each caller may find the calls of all others before its own: with K callers an answer takes up to K times the
-    server's execution time. A periodic caller that waits for its answers is late then, and skips a period. Actions, which
-    nobody waits for, are not meant here.
+    server's execution time, and more where others work on the server's host. A periodic caller that waits for its answers
+    is late then, and skips a period. Actions, which nobody waits for, are not meant here.
 
     Bad:
         groups:
@@ -215,14 +215,16 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
           control: {implements: control, timing: {period: 200 ms}}
           watch: {implements: watch, timing: {period: 1 s}}
     """
+    seen: set[tuple[str, str]] = set()
     for arc in found.system.arcs:
-        if arc.role != "request" or arc.flow != "service":
+        if arc.role != "request" or arc.flow != "service" or (arc.source, arc.target) in seen:
             continue
+        seen.add((arc.source, arc.target))
         load, caller = found.services[arc.target], found.system.activities[arc.source]
-        calls = caller.calls.get(arc.output, Fraction(1))
-        if load.worst.value is None or caller.period is None:
+        waited = load.waits[caller.id].value
+        if waited is None or caller.period is None:
             continue
-        waited, there_is = load.worst.value * calls, caller.period * found.system.tick
+        there_is = caller.period * found.system.tick
         if waited > there_is:
             server = found.system.activities[arc.target]
             yield _late(load, caller, server, (waited, there_is), arc.at)

@@ -6,10 +6,11 @@ from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
 from archgen.timing.bounds import all_responses, host_loads
 from archgen.timing.build import system as build
-from archgen.timing.edges import Known, edge_paces, service_loads
+from archgen.timing.edges import Known, edge_paces
 from archgen.timing.paces import paces
 from archgen.timing.placement import resources
 from archgen.timing.queueing import settled
+from archgen.timing.services import service_loads
 from archgen.timing.system import System
 from archgen.timing.traffic import link_loads, topic_loads
 
@@ -47,6 +48,6 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: b
             if name in state.diverged or "diverged" in responses[name].worst.assumptions
         ),
         derived=found.derived,
-        services=service_loads(known),
+        services=service_loads(state, found.of, responses),
         notes=notes,
     )

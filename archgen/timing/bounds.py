@@ -21,6 +21,7 @@ _DIGITS = 10**9
 _LN_2 = Fraction(693_147_180, _DIGITS)
 """The bound for any number of elements, rounded down."""
 _MANY = 64
+_ONE_CORE = Value(None, assumptions=("one core only",))
 Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
 _WORDS = {
     "declared": "declared as the worst case",
@@ -94,13 +95,11 @@ def _host(
     return HostLoad(
         utilisation=total(parts.values()),
         cores=cores,
-        rate_monotonic_bound=Value(rate_monotonic_bound(working))
-        if cores == 1
-        else Value(None, assumptions=("one core only",)),
+        rate_monotonic_bound=Value(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE,
         verdict=_verdict(system, loads, tuple(parts), paces, found),
         parts=tuple(parts.items()),
         places=loads,
-        earliest_deadline_bound=Value(Fraction(cores)),
+        earliest_deadline_bound=Value(Fraction(1)) if cores == 1 else _ONE_CORE,
     )
 
 

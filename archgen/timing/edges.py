@@ -1,16 +1,16 @@
-"""How producers and consumers fit together: samples lost and read again, beats, queues; and services with many callers."""
+"""How producers and consumers fit together: samples lost and read again, beats, queues."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
+from archgen.timing.analysis import EdgePace, Pace, Response
 from archgen.timing.propagate import State, arriving
 from archgen.timing.streams import eta
-from archgen.timing.sums import because, times, total, unknown
-from archgen.timing.system import Activity, Arc, System
+from archgen.timing.sums import because, total
+from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
 
@@ -109,33 +109,3 @@ def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: 
         return replace(waiting, value=None, side="exact")
     window = waiting.value / known.state.system.tick
     return max(-(-window.numerator // window.denominator), 1)
-
-
-def service_loads(known: Known) -> dict[str, ServiceLoad]:
-    """Give for each server how long its callers wait, each for one call."""
-    system = known.state.system
-    calls: dict[str, list[Arc]] = {}
-    for arc in system.arcs:
-        if arc.role == "request":
-            calls.setdefault(arc.target, []).append(arc)
-    return {server: _service(known, system.activities[server], arcs) for server, arcs in calls.items()}
-
-
-def _service(known: Known, server: Activity, arcs: Iterable[Arc]) -> ServiceLoad:
-    system = known.state.system
-    callers = tuple(dict.fromkeys(arc.source for arc in arcs))
-    once = unknown(server.id) if server.wcet is None else Value(server.wcet * system.tick)
-    if server.response is not None:
-        once = Value(server.response * system.tick, assumptions=("assumed",))
-    worst = times(once, len(callers))
-    synchronous = {arc.source: _waiting(known, worst, arc) for arc in arcs}
-    return ServiceLoad(callers, worst, synchronous)
-
-
-def _waiting(known: Known, worst: Value, arc: Arc) -> Value:
-    """Give a caller's response where it waits for the answers that one activation asks for."""
-    system = known.state.system
-    calls = system.activities[arc.source].calls.get(arc.output, Fraction(1))
-    number = -(-calls.numerator // calls.denominator)
-    way = unknown(arc.link or arc.source) if arc.worst is None else Value(2 * arc.worst * system.tick)
-    return total((known.responses[arc.source].worst, times(worst, number), times(way, number)))

@@ -64,6 +64,32 @@ def test_hosts_are_judged_as_published(derived: Derived, rows: Rows, verdict: st
 
 
 @pytest.mark.parametrize(
+    ("rows", "verdict"),
+    [
+        # 4/10 + 8/20 is below 2 (sqrt(2) - 1) = 0.828, 4.2/10 + 8.4/20 above; without priorities both may take turns.
+        ({"a": periodic("10", "4", ""), "b": periodic("20", "8", "")}, "schedulable"),
+        ({"a": periodic("10", "4.2", ""), "b": periodic("20", "8.4", "")}, "undecided"),
+        # Exactly one is the bound of earliest deadline first, and more than any order can promise.
+        ({"a": periodic("10", "5", ""), "b": periodic("20", "10", "")}, "overload"),
+        # Far below the bound, but with the priorities the wrong way round: the second waits 50 of its 10.
+        ({"a": periodic("100", "50"), "b": periodic("10", "1")}, "undecided"),
+        # The bound says nothing of activations that come late.
+        ({"a": periodic("10", "4", "jitter: 9 ms"), "b": periodic("20", "8", "")}, "undecided"),
+    ],
+)
+def test_below_the_bound_only_priorities_by_rate_are_sure_to_do(
+    derived: Derived, rows: dict[str, str], verdict: str
+) -> None:
+    assert analyse(derived(tasks(rows))).hosts["pc"].verdict == verdict
+
+
+def test_the_bounds_hold_for_one_core(derived: Derived) -> None:
+    load = analyse(derived(tasks({"a": periodic("10", "4", "")}, host="cores: 2"))).hosts["pc"]
+    for bound in (load.rate_monotonic_bound, load.earliest_deadline_bound):
+        assert (bound.value, bound.assumptions) == (None, ("one core only",))
+
+
+@pytest.mark.parametrize(
     ("number", "bound"),
     [(1, "1.000000"), (2, "0.828427"), (3, "0.779763"), (4, "0.756828"), (5, "0.743492"), (10, "0.717735")],
 )
