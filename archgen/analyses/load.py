@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
 from archgen.timing.bounds import share
+from archgen.timing.placement import homeless
+from archgen.timing.sums import total
 from archgen.timing.wording import duration, number
 
 if TYPE_CHECKING:
@@ -51,8 +53,10 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
     """
     for host, load in found.hosts.items():
         for place, cores, used in load.places:
-            if used.value is not None and used.value >= cores:
+            # What is just full may do.
+            if used.value is not None and used.value >= cores and load.verdict == "overload":
                 yield _overload(architecture, found, host, load, (place, cores, used.value))
+    yield from _overloaded_containers(architecture, found)
     full = {host for host, load in found.hosts.items() if load.verdict == "overload"}
     for name, pace in found.paces.items():
         activity = found.system.activities[name]
@@ -64,6 +68,22 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
                 f"`{name}` takes {number(100 * alone)} % of a core: it is fired again before it is done",
                 activity.places.get("wcet", activity.at),
                 help="fire it less often (`every`, `throttle`), or make it quicker",
+                element=name,
+            )
+
+
+def _overloaded_containers(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """Look at containers without a host whose members share fewer threads than they are."""
+    for name, members in homeless(found.system).items():
+        threads = found.system.threads.get(name) or 1
+        used = total(share(found.system, one.id, found.paces[one.id]) for one in members).value
+        if used is not None and used >= threads:
+            several = "its thread" if threads == 1 else f"its {threads} threads"
+            yield Diagnostic(
+                "overloaded-host",
+                f"`{name}` is overloaded: what runs there takes {number(100 * used / threads)} % of {several}",
+                architecture.containers[name].at,
+                help="give it more threads, move something out, or let it run less often",
                 element=name,
             )
 

@@ -22,7 +22,9 @@ def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterab
     yield from _section("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
     yield from _section("Hosts", _host_rows(analysis))
     yield from _section("Links", _link_rows(analysis))
-    yield from _section("Services and actions: longest time from a call until it is worked off", _service_rows(analysis))
+    yield from _section(
+        "Services and actions: longest time from a call until it is worked off", _service_rows(analysis)
+    )
     yield from _section("Elements", _element_rows(analysis))
     yield from _section("Loops: latency of one round", _loop_rows(loops))
     yield from _faults(analysis)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import pytest
 
+from archgen.analyses.load import overloaded_host
 from archgen.model.architecture import Architecture
 from archgen.timing.analyse import analyse
 from tests.timing.task_sets import MS, periodic, tasks, worst
@@ -96,6 +97,34 @@ def test_an_executor_runs_one_after_the_other(derived: Derived) -> None:
     found = analyse(derived(text))
     assert worst(found) == {"a": 6, "b": 6}
     assert {response.tier for response in found.responses.values()} == {"executor"}
+
+
+def test_an_executor_without_a_host_runs_one_after_the_other_all_the_same(derived: Derived) -> None:
+    text = tasks({"a": periodic("10", "2", ""), "b": periodic("20", "4", "")})
+    text = text.replace("host: pc", "container: c")
+    found = analyse(derived(text + "containers: {c: {threads: 1}}\n"))
+    assert worst(found) == {"a": 6, "b": 6}
+    assert {response.tier for response in found.responses.values()} == {"executor"}
+    assert found.responses["a"].worst.assumptions == ("assuming a dedicated core for container c",)
+    assert set(found.hosts) == {"pc"}
+
+
+def test_more_members_than_threads_wait_for_one(derived: Derived) -> None:
+    """As three on two cores: 2 + (4 + 4)/2 = 6; with a thread for each nobody waits."""
+    text = tasks({name: periodic("10", "2", "") for name in "abc"}).replace("host: pc", "container: c")
+    assert worst(analyse(derived(text + "containers: {c: {threads: 2}}\n"))) == {"a": 6, "b": 6, "c": 6}
+    assert worst(analyse(derived(text + "containers: {c: {threads: 3}}\n"))) == {"a": 2, "b": 2, "c": 2}
+
+
+def test_a_container_without_a_host_can_be_overloaded(derived: Derived) -> None:
+    text = tasks({"a": periodic("10", "6", ""), "b": periodic("10", "5", "")}).replace("host: pc", "container: c")
+    architecture = derived(text + "containers: {c: {threads: 1}}\n")
+    found = analyse(architecture)
+    assert worst(found) == {"a": ("overload", "assuming a dedicated core for container c")} | {
+        "b": ("overload", "assuming a dedicated core for container c")
+    }
+    (finding,) = overloaded_host(architecture, found)
+    assert finding.message == "`c` is overloaded: what runs there takes 110 % of its thread"
 
 
 def test_what_is_not_known_is_named(derived: Derived) -> None:
