@@ -54,7 +54,7 @@ def _host_rows(analysis: Analysis) -> Iterator[Row]:
 def _bounds(load: HostLoad) -> str:
     """Say where the bounds of Liu and Layland lie, on one core."""
     by_rate, by_deadline = load.rate_monotonic_bound.value, load.earliest_deadline_bound.value
-    if by_rate is None or by_deadline is None or not load.parts:
+    if by_rate is None or by_deadline is None or len(load.parts) < 2:  # noqa: PLR2004 - one alone needs no order
         return ""
     rounded_down = Fraction(by_rate * 1000 // 1, 1000)
     return f"priorities by rate are sure to do up to {wording.share(rounded_down)}, deadlines up to {wording.share(by_deadline)}"

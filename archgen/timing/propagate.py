@@ -21,6 +21,8 @@ from archgen.timing.windows import Budget
 
 _SWEEPS = 300
 _ONCE = Fraction(1)
+_LATER = {"overload": "unbounded"}
+"""What an overload is to those who read what comes out of it."""
 
 
 @dataclass(slots=True)
@@ -244,7 +246,7 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
     if response.value is None:
-        return response.cause
+        return Cause(response.cause.missing, tuple(_LATER.get(note, note) for note in response.cause.notes))
     if arc.worst is None:
         return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
     best = 0 if from_start else source.bcet or 0

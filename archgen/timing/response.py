@@ -70,9 +70,11 @@ def _work(system: System, name: str, events: Events, known: Mapping[str, Found])
     cost, streams = system.activities[name].wcet, events[name]
     if cost == 0:
         return Work(0, () if isinstance(streams, Cause) else streams)
-    if cost is None or isinstance(streams, Cause):
-        unwritten = Cause((name,)) if cost is None else Cause()
-        return united((unwritten, streams)) if isinstance(streams, Cause) else unwritten
+    if cost is None:  # that what fires it comes at any time says nothing of how long it takes
+        late = Cause(streams.missing) if isinstance(streams, Cause) else Cause()
+        return united((Cause((name,)), late))
+    if isinstance(streams, Cause):
+        return streams
     found = known.get(name)
     return Work(cost, streams, (found.value or 0) if found else 0)
 

@@ -190,6 +190,29 @@ links: {lan: {connects: [p, q], latency: 0 ms}}
     assert worst(found) == dict.fromkeys("abcd", ("diverged",))
 
 
+def test_who_reads_what_an_overload_sends_is_not_overloaded(derived: Derived) -> None:
+    text = """
+groups:
+  g:
+    components:
+      a: {outputs: {out: std_msgs/msg/Empty}}
+      b: {inputs: {one: a.out}, outputs: {out: std_msgs/msg/Empty}}
+      c: {inputs: {one: a.out}}
+nodes:
+  a: {implements: a, host: pc, timing: {period: 10 ms, wcet: 12 ms}}
+  b: {implements: b, host: pc3, timing: {behaviour: event}}
+  c: {implements: c, host: pc2, timing: {behaviour: event, wcet: 1 ms}}
+hosts: {pc: {cores: 1}, pc2: {cores: 1}, pc3: {cores: 1}}
+links: {lan: {connects: [pc, pc2, pc3], latency: 0 ms}}
+"""
+    architecture = derived(text)
+    found = analyse(architecture)
+    assert found.responses["a"].worst.assumptions == ("overload",)
+    assert (found.responses["b"].worst.missing, found.responses["b"].worst.assumptions) == (("b",), ())
+    assert "overload" not in found.responses["c"].worst.assumptions
+    assert [finding.element for finding in overloaded_host(architecture, found)] == ["pc"]
+
+
 def test_many_tasks_are_quick_and_exact(derived: Derived) -> None:
     rows = {f"t{n}": periodic(str(10 + n), "0.1") for n in range(60)}
     found = analyse(derived(tasks(rows)))
