@@ -100,8 +100,9 @@ def _faults(analysis: Analysis) -> Iterator[str]:
 def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
     """Give a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
-    yield from table(_term_rows(result.terms))
-    yield ""
+    if result.terms:
+        yield from table(_term_rows(result.terms))
+        yield ""
     rows: list[Row] = [("largest reaction time = largest data age", figure(result.bound), gaps(result))]
     if age != result.bound:
         rows = [("largest reaction time, from the event on", figure(result.bound), gaps(result))]
@@ -117,7 +118,7 @@ def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] 
     if result.deadline:
         rows.append(("deadline", figure(result.deadline), _SIGNS[result.verdict]))
     yield from table(rows)
-    for assumption in result.bound.assumptions:
+    for assumption in result.bound.assumptions if result.terms else ():
         yield f"  assumes: {assumption}"
 
 
@@ -154,7 +155,7 @@ def gaps(result: ChainResult) -> str:
             said.append(f"{what} of {wording.listed(names)} unknown")
     named = {name for term in result.terms for v in (term.sampling, term.response, term.link) for name in v.missing}
     elsewhere = tuple(name for name in result.bound.missing if name not in named)
-    if elsewhere:
+    if elsewhere and result.terms:
         said.append(f"on other ways, figures of {wording.listed(elsewhere)} unknown")
     said += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
     return f"{_basis(result)}no bound: {'; '.join(said)}" if said else "no bound"

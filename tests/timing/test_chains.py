@@ -72,7 +72,11 @@ def test_an_event_chain_adds_responses_and_links_only() -> None:
     assert _ms(result.reduced_age) == 50
     assert _ms(result.best) == 5 + 1 + 40 + 2
     assert result.verdict == "met"
-    assert _one(found, "det", "act").bound == ms(42)
+    from_event = _one(found, "det", "act").bound
+    assert _ms(from_event) == 42
+    assert from_event.assumptions == (
+        "the reaction counts from the event that fires det; data age is larger by its largest gap (100 ms)",
+    )
 
 
 def test_a_sampled_input_waits_for_the_readers_next_activation() -> None:
