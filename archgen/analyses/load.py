@@ -113,8 +113,8 @@ def _cores(count: int) -> str:
 def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
     """A component's node takes longer than the execution time that its performance asks for.
 
-    Why: `performance` says what the component promises to others. Its node's worst case execution time (or the response that
-    it declares) is above that, even where nothing else gets in its way.
+    Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
+    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found.
 
     Bad:
         groups:
@@ -138,23 +138,29 @@ def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diag
     """
     for activity in found.system.activities.values():
         component = architecture.components.get(activity.component or "")
-        needed = activity.response if activity.response is not None else activity.wcet
-        if component is None or needed is None:
-            continue
+        worst = found.responses[activity.id].worst.value
+        if component is None or worst is None:
+            continue  # an overload is reported as such
         for indicator in component.performance:
             asked = indicator.execution_time
-            if asked is not None and needed * found.system.tick > asked.value:
-                yield _slow(component, indicator, activity, needed * found.system.tick)
+            if asked is not None and worst > asked.value:
+                alone = activity.response is not None or worst == (activity.wcet or 0) * found.system.tick
+                yield _slow(component, indicator, activity, worst, alone=alone)
 
 
-def _slow(component: Component, indicator: Indicator, activity: Activity, needed: Fraction) -> Diagnostic:
+def _slow(
+    component: Component, indicator: Indicator, activity: Activity, worst: Fraction, *, alone: bool
+) -> Diagnostic:
     place = activity.places.get("wcet" if activity.response is None else "response", activity.at)
+    others = "" if alone or activity.host is None else f" with all that works on `{activity.host}`"
     return Diagnostic(
         "slow-component",
-        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {duration(needed)}",
+        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {duration(worst)}{others}",
         indicator.at,
-        labels=(Label(place, "takes longer"),) if place != NOWHERE else (),
-        help="make the node quicker, or correct what the performance promises",
+        labels=(Label(place, "takes longer" if alone else "takes longer with what gets in its way"),)
+        if place != NOWHERE
+        else (),
+        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
         element=component.id,
     )
 

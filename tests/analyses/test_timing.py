@@ -55,6 +55,21 @@ def test_a_queue_that_was_asked_for_must_hold_what_comes() -> None:
     ]
 
 
+def test_what_else_works_on_a_host_makes_a_component_slow() -> None:
+    host = "host: pc, timing: {period: 100 ms, wcet: %s ms"
+    text = (
+        _PAIR.replace("timing: {{{a}}}", "{a}").replace("timing: {{{b}}}{more}", "{b}")
+        + "hosts: {{pc: {{cores: 1}}}}\n"
+    )
+    both = text.format(a=host % 9 + "}", b=host % 12 + "}")
+    assert told(both) == [
+        "6 warning slow-component: `g.b` is asked to need at most 20 ms, but `b` takes up to 21 ms"
+        " with all that works on `pc`"
+    ]
+    assert told(text.format(a=host % 9 + "}", b=host % 12 + ", priority: 1}")) == []
+    assert told(text.format(a=host % 8 + "}", b=host % 12 + "}")) == []
+
+
 def test_an_element_that_cannot_keep_up() -> None:
     assert of_pair("rate: 10 Hz", "wcet: 120 ms") == [
         "6 warning slow-component: `g.b` is asked to need at most 20 ms, but `b` takes up to 120 ms",

@@ -10,7 +10,7 @@ from archgen.timing import duerr
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chains
 from archgen.timing.value import Value
-from tests.timing.made import analysis, arc, architecture, event, missing, ms, periodic
+from tests.timing.made import analysis, arc, architecture, event, missing, periodic
 
 S1 = {"a": (10, 1), "b": (20, 3)}
 S2 = {"imu": (5, 1), "ctrl": (10, 3), "loc": (20, 8), "plan": (100, 55)}
