@@ -40,7 +40,7 @@ def _judged(system: System, arc: Arc) -> bool:
     """Say whether the rules on lost samples and short queues look at an arc at all."""
     target = system.activities[arc.target]
     return (target.mode == "all" and arc.input in target.triggers) or (
-        arc.depth_written and target.behaviour == "periodic"
+        arc.depth_written and (target.behaviour == "periodic" or fires(system, arc))
     )
 
 
@@ -54,17 +54,38 @@ def fires(system: System, arc: Arc) -> bool:
 def _edge(known: Known, arc: Arc) -> EdgePace:
     if known.state.system.activities[arc.source].behaviour == "once":
         return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
+    queue = _queue(known, arc)
     if fires(known.state.system, arc):
-        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
+        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, queue)
     sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
-        return EdgePace(arc, why, why, why, _queue(known, arc))
+        return EdgePace(arc, why, why, why, queue)
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
-        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
-    loss = max(1 - read.value / sent.value, Fraction(0)) if sent.value else Fraction(0)
+        return EdgePace(arc, ZERO, _ONE, ZERO, queue)
+    taken = _at_once(known, arc) * read.value
+    loss = max(1 - taken / sent.value, Fraction(0)) if sent.value else Fraction(0)
     again = max(read.value / sent.value, Fraction(1)) if sent.value else Fraction(1)
-    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
+    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), queue)
+
+
+def _at_once(known: Known, arc: Arc) -> int:
+    """Give how many messages a reader takes at a time: only the newest, or all of a queue that somebody asked for."""
+    polls = known.state.system.activities[arc.target].behaviour == "periodic"
+    return arc.depth if polls and arc.depth_written and arc.depth else 1
+
+
+def _dropped(known: Known, arc: Arc) -> Value:
+    """Give the share of triggers that `every` and `throttle` leave out."""
+    system = known.state.system
+    target = system.activities[arc.target]
+    if not target.throttle:
+        return ZERO if target.every == 1 else Value(1 - Fraction(1, target.every))
+    firing = [a for a in system.into.get(target.id, ()) if a.role == "data" and fires(system, a)]
+    sent, read = total(known.outputs[a.source, a.output].rate for a in firing), known.paces[target.id].rate
+    if not sent.value or read.value is None or not (sent.complete and read.complete):
+        return _either(sent, read) if sent.value is None or read.value is None else ZERO
+    return _like(max(1 - read.value / sent.value, Fraction(0)), sent, read)
 
 
 def _either(sent: Value, read: Value) -> Value:
