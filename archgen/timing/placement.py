@@ -73,8 +73,8 @@ def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable
         return (Resource(host, host, 1, tuple(units), assumptions=said),)
     pinned: dict[int, list[Unit]] = defaultdict(list)
     loose: list[Unit] = []
-    for unit, core in units.items():
-        (loose if core is None else pinned[core]).append(unit)
+    for unit, core in units.items():  # what is pinned to a core that is not there may run anywhere
+        (loose if core is None or core >= cores else pinned[core]).append(unit)
     return _shared(host, cores, pinned, tuple(loose))
 
 

@@ -91,6 +91,14 @@ def test_pinned_work_is_analysed_core_by_core(derived: Derived) -> None:
     assert found.responses["c"].worst.assumptions == ("cores to which something is pinned are kept for it",)
 
 
+def test_a_core_that_is_not_there_pins_nothing(derived: Derived) -> None:
+    rows = {"a": periodic("10", "2", "core: 2"), "b": periodic("20", "4", "core: 3"), "c": periodic("50", "30", "")}
+    loose = {"a": periodic("10", "2", ""), "b": periodic("20", "4", ""), "c": periodic("50", "30", "")}
+    assert worst(analyse(derived(tasks(rows, host="cores: 2")))) == worst(
+        analyse(derived(tasks(loose, host="cores: 2")))
+    )
+
+
 def test_an_executor_runs_one_after_the_other(derived: Derived) -> None:
     text = tasks({"a": periodic("10", "2", ""), "b": periodic("20", "4", "")}, host="cores: 4")
     text = text.replace("host: pc", "container: c") + "containers: {c: {host: pc, threads: 1}}\n"
