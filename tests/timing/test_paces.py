@@ -99,6 +99,25 @@ def test_a_conditional_output_may_never_come(derived: Derived) -> None:
     assert of_two(derived, "trigger: [one]", a=promised).paces["c"].gap.value == 2000 * MS
 
 
+def test_two_topics_of_one_source_are_told_apart(derived: Derived) -> None:
+    text = """
+groups:
+  g:
+    components:
+      a: {outputs: {left: std_msgs/msg/Empty, right: std_msgs/msg/Empty}}
+      b: {inputs: {both: a}}
+nodes:
+  a: {implements: a, timing: {rate: 10 Hz}}
+  b: {implements: b}
+"""
+    pace = analyse(derived(text)).paces["b"]
+    assert pace.rate.value == 20
+    assert [reason.text for reason in pace.reasons] == [
+        "g.b.both brings 10 Hz from a on /g/a/left",
+        "g.b.both brings 10 Hz from a on /g/a/right",
+    ]
+
+
 _SERVICE = """
 groups:
   g:
