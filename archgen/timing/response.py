@@ -97,7 +97,9 @@ _Threads = tuple[Sequence[_Thread], Sequence[_Thread]]
 
 
 def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> _Thread:
-    found = [_work(system, name, events, known) for name in unit]
+    # What never fires, or only at the start, is in nobody's way, even if nobody knows how long it takes.
+    idle = {name for name in unit if events[name] == () and system.activities[name].wcet is None}
+    found = [Work(0, ()) if name in idle else _work(system, name, events, known) for name in unit]
     causes = [one for one in found if isinstance(one, Cause)]
     works = tuple(one for one in found if isinstance(one, Work))
     priorities = [system.activities[name].priority for name in unit]
@@ -158,7 +160,9 @@ def _one_core(
     for thread in wanted:
         if whole is not None and thread.low is None:
             only = len(everything) == 1 and len(thread.unit) > 1
-            yield thread, whole._replace(tier="executor") if only else whole
+            once = sum(work.cost for work in thread.works if not work.streams)
+            found = _any_order(everything, budget, once) if once and whole.value is not None else whole
+            yield thread, found._replace(tier="executor") if only else found
         else:
             yield thread, _by_priority(thread, ranked, budget)
 
@@ -179,15 +183,16 @@ def _rank(thread: _Thread) -> int:
     return -(thread.high or 0)
 
 
-def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
-    """Bound the response under any scheduler that never idles: the longest busy period."""
+def _any_order(threads: Sequence[_Thread], budget: Budget, once: int = 0) -> Found:
+    """Bound the response under any scheduler that never idles: the longest busy period, with what works `once` on top."""
     if sum((thread.share for thread in threads), Fraction(0)) >= 1:
         return Found(None, "host", OVERLOAD)
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
         return Found(None, "host", united(causes))
     try:
-        return Found(busy([work for thread in threads for work in thread.works], budget), "host")
+        works = [work for thread in threads for work in thread.works]
+        return Found(busy(works, budget, lambda _: once, 1), "host")
     except DivergedError:
         return Found(None, "host", DIVERGED)
 

@@ -141,6 +141,15 @@ def test_what_is_not_known_is_named(derived: Derived) -> None:
     assert (response.value, response.complete, response.missing, response.side) == (2 * MS, False, ("b",), "at least")
 
 
+def test_what_works_only_at_the_start_is_in_nobodys_way(derived: Derived) -> None:
+    rows = {"a": periodic("10", "2", ""), "map": "behaviour: once", "grid": "behaviour: once, wcet: 50 ms"}
+    found = analyse(derived(tasks(rows)))
+    assert found.responses["a"].worst.value == 2 * MS
+    assert found.responses["grid"].worst.value == 64 * MS  # 50 + 7 times 2 in 64
+    assert (found.responses["map"].worst.value, found.responses["map"].worst.missing) == (None, ("map",))
+    assert found.hosts["pc"].verdict == "schedulable"
+
+
 def test_a_declared_response_is_used_as_it_is(derived: Derived) -> None:
     rows = {"a": periodic("10", "2", "response: 7 ms"), "b": periodic("20", "4", "")}
     found = analyse(derived(tasks(rows)))
