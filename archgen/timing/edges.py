@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import EdgePace, Pace, Response
 from archgen.timing.propagate import State, arriving
 from archgen.timing.streams import eta
@@ -27,6 +28,8 @@ class Known:
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
     """Found once for each reader."""
+    fits: dict[tuple[Fraction, Fraction, int], tuple[Fraction, Fraction]] = field(default_factory=dict)
+    """Loss and reads of each sample, found once for each pair of rates and number of messages that are read at once."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -54,19 +57,26 @@ def fires(system: System, arc: Arc) -> bool:
 def _edge(known: Known, arc: Arc) -> EdgePace:
     if known.state.system.activities[arc.source].behaviour == "once":
         return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
-    queue = _queue(known, arc)
     if fires(known.state.system, arc):
-        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, queue)
+        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, _queue(known, arc))
     sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
-        return EdgePace(arc, why, why, why, queue)
+        return EdgePace(arc, why, why, why, _queue(known, arc))
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
-        return EdgePace(arc, ZERO, _ONE, ZERO, queue)
-    taken = _at_once(known, arc) * read.value
-    loss = max(1 - taken / sent.value, Fraction(0)) if sent.value else Fraction(0)
-    again = max(read.value / sent.value, Fraction(1)) if sent.value else Fraction(1)
-    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), queue)
+        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
+    rates = sent.value, read.value, _at_once(known, arc)
+    fit = known.fits.get(rates)
+    if fit is None:
+        fit = known.fits[rates] = _fit(*rates)
+    loss, again = fit
+    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
+
+
+def _fit(sent: Fraction, read: Fraction, at_once: int) -> tuple[Fraction, Fraction]:
+    """Give the share of samples that is lost, and how often each is read."""
+    each = read / sent if sent else Fraction(1)
+    return max(1 - at_once * each, Fraction(0)), max(each, Fraction(1))
 
 
 def _at_once(known: Known, arc: Arc) -> int:
@@ -128,5 +138,5 @@ def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: 
     waiting = response if is_fired else total((known.paces[reader].gap, response))
     if waiting.value is None or not waiting.complete:
         return replace(waiting, value=None, side="exact")
-    window = waiting.value / known.state.system.tick
-    return max(-(-window.numerator // window.denominator), 1)
+    (above, below), tick = waiting.value.as_integer_ratio(), known.state.system.tick
+    return max(-(-above * tick.denominator // (below * tick.numerator)), 1)

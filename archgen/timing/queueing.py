@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import count
 
 from archgen.timing.propagate import State, propagate
 from archgen.timing.sending import sent
@@ -15,25 +16,26 @@ from archgen.timing.system import Arc, System, grouped
 from archgen.timing.ticks import SECOND
 from archgen.timing.triggers import Triggers, triggers
 from archgen.timing.value import Cause, united
-from archgen.timing.windows import Budget, DivergedError, Work, busy
+from archgen.timing.windows import Budget, DivergedError, Load, Work, busy
 
-_TURNS = 100
+_TURNS = 24
+_LONGEST = 20 * SECOND
+"""A link that needs more turns, or longer than this, has no latency that could be told."""
 SATURATED, DIVERGED = Cause(notes=("unbounded",)), Cause(notes=("diverged",))
 
 
 def settled(system: System) -> tuple[System, Triggers, State]:
     """Find the state of a system, with the latency of those links that state none but could."""
     waits: dict[str, int | None] = {arc.link: 0 for arc in system.arcs if _asks(system, arc) and arc.link is not None}
-    for _ in range(_TURNS):
+    for turn in count(1):
         tried = _with(system, waits) if waits else system
         firing = triggers(tried)
         state = propagate(tried, firing)
         found = {link: None if before is None else _wait(state, link) for link, before in waits.items()}
         if found == waits:
-            return tried, firing, state
-        waits = found
-    firing = triggers(system)
-    return system, firing, propagate(system, firing)
+            break
+        waits = found if turn % _TURNS else {link: was if was == waits[link] else None for link, was in found.items()}
+    return tried, firing, state
 
 
 def _asks(system: System, arc: Arc) -> bool:
@@ -59,7 +61,7 @@ def _with(system: System, waits: Mapping[str, int | None]) -> System:
 
 def _wait(state: State, link: str) -> int | None:
     found = longest(state, link, (arc for arc in state.system.arcs if arc.link == link))
-    return None if isinstance(found, Cause) else found
+    return None if isinstance(found, Cause) or found * state.system.tick > _LONGEST else found
 
 
 def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
@@ -82,6 +84,6 @@ def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
     if causes:
         return united(causes)
     try:
-        return busy(works, Budget()) if works else 0
+        return busy(Load(works).demand(), Budget()) if works else 0
     except DivergedError:
         return DIVERGED

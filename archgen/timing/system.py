@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.node import Flow
 from archgen.model.timing import Behaviour
 from archgen.source import NOWHERE, Span
