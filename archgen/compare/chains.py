@@ -27,6 +27,8 @@ def chains(
     """Give the chains that came, went, or have another bound or deadline, in the order of the second version."""
     if not (before.chains or after.chains) or not any(map(_matters, changes)):
         return ()
+    if before.lost or after.lost:  # of what could not be read nobody knows how long it takes
+        return ()
     old, new = _results(before), _results(after)
     pairs = [(names.back.get("chain", {}).get(name), name) for name in new]
     gone = [(name, None) for name in old if names.known("chain", name) is None]
