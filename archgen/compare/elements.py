@@ -99,6 +99,7 @@ def _around(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(partner.id, partner.title),
             "description": prose(partner.description),
             "contact": partner.contact,
+            "reviewers": words(partner.reviewers),
         }
         name = names.to("partner", partner.id)
         yield Element("partner", name, partner.id, known(values), owner=name)
@@ -125,6 +126,7 @@ def _groups(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(group.id, group.title),
             "description": prose(group.description),
             "owner": owner,
+            "co_owners": words(names.to("partner", other) for other in group.co_owners),
             "tags": words(group.tags),
             "layout": group.layout.direction,
             **_urls(group.urls),
@@ -143,6 +145,7 @@ def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> 
         "functionality": prose(component.functionality),
         "description": prose(component.description),
         "owner": owner,
+        "co_owners": words(names.to("partner", other) for other in component.co_owners),
         "role": component.role,
         "requirements": words(names.to("requirement", use.text) for use in component.requirements),
         "tags": words(component.tags),

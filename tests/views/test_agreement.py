@@ -77,6 +77,40 @@ def test_topics_without_a_connection_are_interfaces_too(tmp_path: Path) -> None:
     assert "publishes | North Robotics | north_frames | default (not written)" in said
 
 
+def test_a_physical_flow_needs_no_message(tmp_path: Path) -> None:
+    source = DUO.replace(
+        "outputs: {joints: Joint states}", "outputs: {joints: Joint states, grip: {type: Force, medium: physical}}"
+    )
+    source = source.replace(
+        "inputs: {image: camera.image, planner", "inputs: {felt: moving.arm.grip, image: camera.image, planner"
+    )
+    source = source.replace(", owner: west", "")
+    assert lines(section(made(tmp_path, source=source).outline, "Arm · grip").blocks) == [
+        "Kind: physical: neither message nor topic",
+        "Type: Force",
+        "Requirements: R-1 The arm grasps what lies on the table (Finder)",
+        "gives | North Robotics | Arm · grip",
+        "takes | South Vision | Finder · felt",
+    ]
+
+
+def test_every_connection_between_owners_is_in_their_agreement() -> None:
+    found = view(pipeline.check(resources.path("example_ramcip")))
+    architecture, partners = found.architecture, sorted(found.architecture.partners)
+    agreed = {
+        (each.key, port.id): each.pair
+        for at, first in enumerate(partners)
+        for second in partners[at + 1 :]
+        for each in between(found, first, second)
+        for port in each.inputs
+    }
+    for edge in architecture.edges:
+        giver = architecture.components[architecture.outputs[edge.output].component].owner
+        taker = architecture.components[architecture.inputs[edge.input].component].owner
+        assert agreed.pop((edge.output, edge.input), None) == (None if giver == taker else (giver, taker))
+    assert agreed == {}
+
+
 def test_what_an_interface_says(tmp_path: Path) -> None:
     assert lines(section(made(tmp_path).outline, "Finder · objects").blocks) == [
         "Topic: /objects",
@@ -144,7 +178,7 @@ def test_open_points(tmp_path: Path) -> None:
     assert f"Open points: {clash}" in lines(section(outline, "Finder · objects").blocks)
     points = lines(section(outline, "Open points").blocks)
     assert points[0] == "Planner · plan | definition of the message"
-    assert any("`planner_node` receives nothing" in line and "incompatible-qos" in line for line in points)
+    assert any("planner_node receives nothing" in line and "incompatible-qos" in line for line in points)
 
 
 def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
@@ -184,7 +218,7 @@ def test_what_changed_stands_side_by_side(tmp_path: Path) -> None:
         "Traffic | ~ changed | 360 kB/s | 300 kB/s",
         "Chain See And Move | ~ changed | 66.333 ms; deadline 300 ms; met | 73 ms; deadline 60 ms; missed",
     ]
-    assert [text(row[-1]) for row in _summary(found)] == [
+    assert [text(row[1]) for row in _summary(found)] == [
         "",
         "~ changed: rate, largest gap, traffic",
         "~ changed: rate, largest gap, traffic, chains",
@@ -197,7 +231,7 @@ def test_added_and_removed(tmp_path: Path) -> None:
         (", planner: moving.planner.plan", ""),
         ("{image: camera.image}, outputs: {offset", "{info: camera.info}, outputs: {offset"),
     )
-    assert [(text(row[0]), text(row[-1])) for row in _summary(found)] == [
+    assert [(text(row[0]), text(row[1])) for row in _summary(found)] == [
         ("Camera · info", "+ added"),
         ("Finder · objects", "~ changed: chains"),
         ("Planner · plan", "\u2212 removed"),
@@ -206,7 +240,7 @@ def test_added_and_removed(tmp_path: Path) -> None:
     assert text(found.outline.notices[0].inlines) == "Interfaces since v1: 1 added, 1 changed, 2 removed."
     gone = section(found.outline, "Removed").sections[0]
     assert lines(gone.blocks)[:2] == ["\u2212 removed", "Service: /moving/planner/plan"]
-    assert {run.change for row in _summary(found) for run in row[-1]} >= {"added", "removed"}
+    assert {run.change for row in _summary(found) for run in row[1]} >= {"added", "removed"}
 
 
 def test_a_new_name_on_the_same_topic_is_a_change(tmp_path: Path) -> None:

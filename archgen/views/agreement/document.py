@@ -131,11 +131,11 @@ def _summary(of: Agreement) -> Section:
     rows += [_gone(of, held) for held in (of.changes.removed if of.changes else ())]
     columns = (
         Column("Interface", 1.6),
+        Column("Change", 1.1),
         Column("From", 0.8),
         Column("What flows", 1.7),
         Column("Rate", 0.95),
         Column("Still open", 1),
-        Column("Change", 1.1),
     )
     table = without_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows)))
     given = {held.terms.interface.pair for held in of.held}
@@ -151,11 +151,11 @@ def _row(of: Agreement, held: Held) -> tuple[Inlines, ...]:
     found = held.terms
     return (
         words.text(Text(found.title, ref=found.interface.anchor)),
+        mark(of.changes, held),
         words.text(partners(of.view, found.interface.pair[:1])),
         carried(found.interface),
         _rate(found),
-        words.text(opened(found.missing, len(found.points))),
-        mark(of.changes, held),
+        opened(found.missing, len(found.points)),
     )
 
 
@@ -173,11 +173,11 @@ def _gone(of: Agreement, held: Held) -> tuple[Inlines, ...]:
     found = held.terms
     return (
         words.text(Text(found.title, ref=f"removed:{found.interface.anchor}")),
+        words.text(Text(SIGNS["removed"], change="removed")),
         words.text(partners(of.view, found.interface.pair[:1])),
         carried(found.interface),
         (),
         (),
-        words.text(Text(SIGNS["removed"], change="removed")),
     )
 
 
@@ -188,11 +188,11 @@ def carried(interface: Interface) -> Inlines:
     return words.lines(said) or words.text(interface.flow)
 
 
-def opened(missing: Sequence[str], points: int) -> str:
+def opened(missing: Sequence[str], points: int) -> Inlines:
     """Say what is still to be settled: the terms that are not known, and the findings."""
-    return "; ".join(
-        [*([", ".join(missing)] if missing else []), *([words.plural(points, "finding")] if points else [])]
-    )
+    said = [", ".join(missing)] if missing else []
+    said += [words.plural(points, "finding")] if points else []
+    return words.text("; ".join(said)) if said else ()
 
 
 def mark(changes: Changes | None, held: Held) -> Inlines:

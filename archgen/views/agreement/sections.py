@@ -57,7 +57,8 @@ class Writing:
             yield Table(f"table:changes/{name.key}/{name.pair[0]}", f"{held.terms.title}: what changed", columns, rows)
 
     def _ends(self, found: Terms) -> Table:
-        rows = tuple(self._end(end) for end in found.ends)
+        undecided = () if found.interface.flow == "physical" else words.text(Text("not decided yet", muted=True))
+        rows = tuple(self._end(end, undecided) for end in found.ends)
         columns = (
             Column("Side", 0.7),
             Column("Partner", 0.9),
@@ -68,14 +69,14 @@ class Writing:
         name = f"table:ends/{found.interface.key}/{found.interface.pair[0]}"
         return tidy(Table(name, f"{found.title}: who gives and who takes", columns, rows))
 
-    def _end(self, end: End) -> tuple[Inlines, ...]:
+    def _end(self, end: End, undecided: Inlines) -> tuple[Inlines, ...]:
         component = words.text(end.component.title) if end.component else ()
         port = words.text(" · ", Text(end.port, code=True)) if end.port else ()
         return (
             words.text(Text(end.role, strong=not end.taker)),
             words.text(partners(self.view, end.owners)) if end.owners else words.text(Text("nobody", muted=True)),
             (*component, *port),
-            self._node(end.node) if end.node else words.text(Text("not decided yet", muted=True)),
+            self._node(end.node) if end.node else undecided,
             words.text(end.qos) if end.qos else (),
         )
 
@@ -137,4 +138,4 @@ def _rest(found: Terms) -> Iterator[tuple[str, Inlines]]:
     if found.requirements:
         yield "Requirements", words.lines(found.requirements)
     if found.points:
-        yield "Open points", words.lines(words.ticked(f"{point.severity}: {point.message}") for point in found.points)
+        yield "Open points", words.lines(words.spoken(f"{point.severity}: {point.message}") for point in found.points)
