@@ -30,7 +30,7 @@ MS = 10**6
 
 def bounds(compared: Compared, after: str, before: str = ROBOT) -> list[tuple[str, Fraction | None, Fraction | None]]:
     found = compared(before, after).chains
-    return [(c.id, c.before and c.before.bound.value, c.after and c.after.bound.value) for c in found]
+    return [(c.id, c.before.bound.value if c.before else None, c.after.bound.value if c.after else None) for c in found]
 
 
 def test_a_bound_that_changed(compared: Compared) -> None:
