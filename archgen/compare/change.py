@@ -54,7 +54,9 @@ class ChainChange:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """All that differs. `cured` findings speak of the first version, `new` ones of the second."""
+    """All that differs. `cured` and `silenced` findings speak of the first version, `new` ones of the second. A silenced one
+    is not cured: a comment or a setting keeps it quiet now.
+    """
 
     before: Version
     after: Version
@@ -65,8 +67,9 @@ class Comparison:
     cured: tuple[Diagnostic, ...]
     chains: tuple[ChainChange, ...]
     owners: tuple[str, ...]
+    silenced: tuple[Diagnostic, ...] = ()
 
     @property
     def empty(self) -> bool:
         """Say whether nothing differs."""
-        return not (self.changes or self.new or self.cured or self.chains)
+        return not (self.changes or self.new or self.cured or self.silenced or self.chains)
