@@ -103,7 +103,7 @@ def _around(found: Architecture, names: Names) -> Iterator[Element]:
         values: dict[str, object] = {
             "title": title(partner.id, partner.title),
             "description": prose(partner.description),
-            **_urls(partner.urls),
+            "contact": partner.contact,
         }
         name = names.to("partner", partner.id)
         yield Element("partner", name, partner.id, known(values), owner=name)
