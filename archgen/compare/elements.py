@@ -15,6 +15,7 @@ from archgen.compare.values import known, prose, title, words
 from archgen.compare.version import Version
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
+from archgen.model.interfaces import Interface
 from archgen.model.node import Node
 from archgen.model.review import Review
 
@@ -76,9 +77,13 @@ def _project(version: Version, names: Names) -> Iterator[Element]:
         yield Element("chapter", path, path, {"text": prose(text)})
     for name in own_messages(found):
         definition = found.interfaces.definitions.get(name)
-        parts = definition.parts if definition else ()
-        fields = tuple(" ".join((f"{f.type}{f.array}", f.name)) for part in parts for f in part)
-        yield Element("message", names.to("message", name), name, {"fields": fields, "parts": tuple(map(len, parts))})
+        yield Element("message", names.to("message", name), name, {"fields": _fields(definition) if definition else ()})
+
+
+def _fields(definition: Interface) -> tuple[str, ...]:
+    """Give the fields as ROS writes them, `---` between the parts of a service or action."""
+    parts = [[f"{field.type}{field.array} {field.name}" for field in part] for part in definition.parts]
+    return tuple(parts[0]) + tuple(line for part in parts[1:] for line in ("---", *part)) if parts else ()
 
 
 def _review(review: Review) -> dict[str, object]:

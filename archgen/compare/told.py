@@ -38,6 +38,10 @@ class Told:
         lost = self.lost[0] if before is None else self.lost[1] if after is None else frozenset()
         return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint(key[1].split(".")))
 
+    def using(self, sort: str, key: str, value: str) -> list[str]:
+        """Name the elements of the second version that have a value at a key."""
+        return sorted(name for (kind, name), e in self.after.items() if kind == sort and e.values.get(key) == value)
+
     def gone(self, sort: str, name: str) -> bool:
         """Say whether an element was removed."""
         return (sort, name) in self.before and (sort, name) not in self.after

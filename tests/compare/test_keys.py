@@ -88,6 +88,21 @@ def test_a_type_at_a_port_names_the_readers(told: Told) -> None:
     ]
 
 
+def test_the_fields_of_a_message_concern_who_carries_it(compared: Compared) -> None:
+    text = ROBOT.replace("sensor_msgs/msg/Image", "own_msgs/msg/Image")
+    text += (
+        'ros: {definitions: {own_msgs/msg/Image: "int32 a\\nint32 b", own_msgs/srv/Do: "int32 x\\n---\\nint32 y"}}\n'
+    )
+    found = compared(text, text.replace("int32 b", "int64 b   # wider"))
+    (change,) = found.changes
+    assert (change.sort, change.element, change.key) == ("message", "own_msgs/msg/Image", "fields")
+    assert (change.before, change.after) == (["int32 a", "int32 b"], ["int32 a", "int64 b"])
+    assert change.text == "message `own_msgs/msg/Image`: fields `int64 b` added, `int32 b` removed; it carries `T`"
+    assert found.owners == ("certh",)
+    (change,) = compared(text, text.replace("int32 x\\n---", "---\\nint32 x")).changes
+    assert (change.before, change.after) == (["int32 x", "---", "int32 y"], ["---", "int32 x", "int32 y"])
+
+
 def test_a_long_or_hostile_text_stays_on_one_line(told: Told) -> None:
     title = "Evil `rm`\\n| <b>" + "x" * 200
     (line,) = told(ROBOT, ROBOT.replace("title: Robot", f'title: "{title}"'))
