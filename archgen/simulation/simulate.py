@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from archgen.simulation.engine import Run
+from archgen.simulation.engine import go
 from archgen.simulation.flatten import Pauses, flatten
 from archgen.simulation.plan import PERIODIC, Plan
+from archgen.simulation.run import Run
 from archgen.simulation.series import Series, Span, quantiles, series
 from archgen.timing.system import System
 
@@ -104,9 +105,7 @@ def simulate(
     horizon = int(seconds * _SECOND / plan.unit)
     seen = _Seen(plan, ways, chains or {})
     for seed in range(seeds):
-        run = Run(plan, seed, watched, logged)
-        run.go(horizon)
-        seen.add(run, horizon)
+        seen.add(go(plan, seed, horizon, watched, logged), horizon)
     return seen.result(seconds, seeds, horizon)
 
 
