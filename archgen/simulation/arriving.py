@@ -11,7 +11,16 @@ def deliver(run: Run, now: int, wire: int, sample: int) -> None:
     """Let a sample arrive: it fires its reader, fills a place among all that must be there, or is kept."""
     wires, steps = run.wires, run.steps
     slot = wires.slot[wire]
-    if slot == ANY:
+    if slot == SAMPLED:
+        wires.newest[wire] = sample
+        queue = wires.queue[wire]
+        if wires.request[wire]:
+            steps.asked[wires.target[wire]].append(wire)
+        elif queue >= 0:
+            wires.waiting[queue] += 1
+            if wires.waiting[queue] > wires.depth[wire] > 0:
+                wires.drops[queue] += 1
+    elif slot == ANY:
         at = wires.target[wire]
         if wires.request[wire]:
             fire(run, now, at, wire, sample)
@@ -23,15 +32,6 @@ def deliver(run: Run, now: int, wire: int, sample: int) -> None:
                 _drop(run, at, queue)
             wires.waiting[queue] += 1
             fire(run, now, at, wire, sample)
-    elif slot == SAMPLED:
-        wires.newest[wire] = sample
-        queue = wires.queue[wire]
-        if wires.request[wire]:
-            steps.asked[wires.target[wire]].append(wire)
-        elif queue >= 0:
-            wires.waiting[queue] += 1
-            if wires.waiting[queue] > wires.depth[wire] > 0:
-                wires.drops[queue] += 1
     else:
         _fill(run, now, wire, slot, sample)
 

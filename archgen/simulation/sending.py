@@ -15,21 +15,30 @@ def send(run: Run, now: int, wire: int, sample: int) -> None:
         wires.sent += 1
         deliver(run, now, wire, sample)
         return
+    there = now + wires.best[wire]
     spread = wires.spread[wire]
-    there = now + (run.between(wires.target[wire], wires.best[wire], spread) if spread else wires.best[wire])
+    if spread:
+        there = run.between(wires.target[wire], there, spread)
     if wires.link[wire] >= 0:
         there = _over_link(run, now, there, wire)
-    there = wires.last[wire] = max(there, wires.last[wire])
+    last = wires.last
+    if there < last[wire]:
+        there = last[wire]
+    else:
+        last[wire] = there
     heappush(run.heap, (there << 2 | ARRIVAL, wire, sample))
 
 
 def _over_link(run: Run, now: int, there: int, wire: int) -> int:
     """Queue for a link's bandwidth. A declared latency holds with the queueing in it, and is kept in any case."""
     wires = run.wires
-    link, limit = wires.link[wire], wires.limit[wire]
-    sent = max(now, wires.link_free[link]) + wires.transmission[wire]
+    link, transmission = wires.link[wire], wires.transmission[wire]
+    free = wires.link_free[link]
+    sent = (free if free > now else now) + transmission  # noqa: FURB136 - a call costs more than the comparison
     wires.link_free[link] = sent
-    wires.link_busy[link] += wires.transmission[wire]
+    wires.link_busy[link] += transmission
     wires.link_wait[link] = max(wires.link_wait[link], sent - now)
-    there = max(there, sent)
-    return there if limit is None else min(there, now + limit)
+    if sent <= there:
+        return there
+    limit = wires.limit[wire]
+    return sent if limit is None or sent <= now + limit else now + limit
