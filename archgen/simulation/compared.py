@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from archgen.simulation.simulate import ChainSeen, Distribution, Result
+from archgen.simulation.result import ChainSeen, Distribution, Result
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import data_age
 from archgen.timing.network import Network
@@ -155,7 +155,7 @@ def _chains_text(result: Result, chains: Mapping[str, ChainResult], oldest: Mapp
     assumed: dict[str, None] = {}
     for key, seen in result.chains.items():
         deadline = chains[key].deadline
-        parts = (("reaction", seen.reaction, chains[key].bound), ("age", seen.age, oldest[key]))
+        parts = (("reaction", seen.comparable.reaction, chains[key].bound), ("age", seen.comparable.age, oldest[key]))
         for what, spread, bound in parts:
             figures = (spread.least, spread.median, spread.most_of_it, spread.largest) if spread else (None,) * 4
             mark = "*" if bound.assumptions and _known(bound) is not None else ""

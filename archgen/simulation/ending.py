@@ -42,17 +42,28 @@ def _finish(run: Run, now: int, at: int, job: Job) -> None:
     _note(run, now, at, now - fired)
     if run.calls[at]:
         for request in _calls(run, at):
+            _note_passed(run, request, number)
             send(run, now, request, number)
     for place, targets, conditional, patience in run.outputs[at]:
         if not conditional or _publishes(run, now, at, place, patience):
             for one in targets:
+                if conditional:
+                    _note_passed(run, one, number)
                 send(run, now, one, number)
     if wire >= 0 and run.answers[wire] >= 0:
+        _note_passed(run, run.answers[wire], number)
         send(run, now, run.answers[wire], number)
     if steps.taken[at]:
         taken, steps.taken[at] = steps.taken[at], []
         for request in taken:
+            _note_passed(run, run.answers[request], number)
             send(run, now, run.answers[request], number)
+
+
+def _note_passed(run: Run, wire: int, number: int) -> None:
+    """Note that a job sent something where not every job does."""
+    if run.wires.noted[wire]:
+        run.wires.passed[wire].append(number)
 
 
 def _note(run: Run, now: int, at: int, response: int) -> None:

@@ -14,7 +14,7 @@ from archgen.simulation.cores import dispatch
 from archgen.simulation.ending import ended, keep_promise
 from archgen.simulation.firing import fire, passes
 from archgen.simulation.plan import KEPT, PERIODIC, Plan
-from archgen.simulation.run import ARRIVAL, NOBODY, RELEASE, Run
+from archgen.simulation.run import ARRIVAL, HELD, LATE, NOBODY, RELEASE, TICK, Run
 
 
 def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logged: Collection[int] = ()) -> Run:
@@ -55,20 +55,24 @@ def _begin(run: Run) -> None:
                 for wire in output.wires:
                     run.wires.newest[wire] = run.wires.arrived[wire] = 0
         elif step.kind == PERIODIC:
-            run.heap.append((run.steps.phase[at] << 2 | RELEASE, at, 0))
+            run.heap.append((run.steps.phase[at] << 2 | RELEASE, at, TICK))
     heapify(run.heap)
 
 
-def _release(run: Run, now: int, at: int, late: int) -> None:
-    """Let a clock tick, or let through a tick that was held back by jitter."""
+def _release(run: Run, now: int, at: int, what: int) -> None:
+    """Let a clock tick, or let through what was held back by jitter."""
     steps = run.steps
-    if not late:
-        heappush(run.heap, (now + steps.period[at] << 2 | RELEASE, at, 0))
+    if what == HELD:
+        if steps.held[at]:  # else a full queue has thrown it away
+            fire(run, now, at, *steps.held[at].popleft())
+        return
+    if what == TICK:
+        heappush(run.heap, (now + steps.period[at] << 2 | RELEASE, at, TICK))
         jitter = steps.jitter[at]
         if jitter:
             delay = run.between(at, 0, jitter)
             if delay:
-                heappush(run.heap, (now + delay << 2 | RELEASE, at, 1))
+                heappush(run.heap, (now + delay << 2 | RELEASE, at, LATE))
                 return
     if not steps.gated[at] or passes(run, now, at):
         fire(run, now, at, NOBODY, 0)

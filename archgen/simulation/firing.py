@@ -5,7 +5,7 @@ from __future__ import annotations
 from heapq import heappush
 from typing import Any
 
-from archgen.simulation.run import END, LOAD, SEVERAL, Run
+from archgen.simulation.run import END, HELD, LOAD, RELEASE, SEVERAL, Run
 from archgen.simulation.state import Job
 
 
@@ -17,6 +17,19 @@ def passes(run: Run, now: int, at: int) -> bool:
         if steps.turn[at]:
             return False
     return not (step.throttle and steps.fired[at] >= 0 and now - steps.fired[at] < step.throttle)
+
+
+def set_off(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Fire a step by data: later by its jitter, in order."""
+    steps = run.steps
+    jitter = steps.jitter[at]
+    if not jitter:
+        fire(run, now, at, wire, sample)
+        return
+    there = max(now + run.between(at, 0, jitter), steps.held_until[at])
+    steps.held_until[at] = there
+    steps.held[at].append((wire, sample))
+    heappush(run.heap, (there << 2 | RELEASE, at, HELD))
 
 
 def fire(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job

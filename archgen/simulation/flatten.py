@@ -118,7 +118,18 @@ class _Flat:
             transmission=transmission,
             limit=None if arc.worst is None else worst,
             request=request,
+            selective=self.selective(arc),
         )
+
+    def selective(self, arc: Arc) -> bool:
+        """Tell whether a job of the source may send nothing on an arc, with no promise of when one does."""
+        source = self.system.activities[arc.source]
+        if arc.role == "request":
+            return source.calls.get(arc.output, 1) < 1
+        if arc.role == "answer":
+            into = self.system.into.get(arc.source, ())
+            return any(other.role == "data" or other.source != arc.target for other in into)
+        return arc.output in source.conditional and arc.output not in source.max_gaps
 
     def step(self, activity: Activity) -> Step:
         kind = self.kind(activity)
@@ -145,6 +156,7 @@ class _Flat:
             tuple(self.calls(activity)),
             self.thread(activity),
             activity.priority,
+            activity.behaviour == "periodic",
         )
 
     def cores(self) -> dict[str, int]:
@@ -163,12 +175,21 @@ class _Flat:
                 return PERIODIC
             self.unknown[f"period of {activity.id}"] = None
             return IDLE
+        if activity.period and not self.fired(activity):
+            return PERIODIC
         if activity.behaviour is None:
             self.unknown[f"behaviour of {activity.id}"] = None
         for outside in self.system.external.get(activity.id, ()):
             if outside in activity.triggers:
                 self.unknown[f"events from outside at {outside}"] = None
         return TRIGGERED
+
+    def fired(self, activity: Activity) -> bool:
+        """Tell whether something within the architecture fires an activity; else it keeps the period that it states."""
+        return any(
+            arc.role == "request" or (arc.role == "data" and arc.input in activity.triggers)
+            for arc in self.system.into.get(activity.id, ())
+        )
 
     def kept(self, activity: Activity) -> tuple[int, ...]:
         once = {

@@ -10,6 +10,8 @@ from archgen.simulation.state import CRITICAL, Steps, Threads, Wires
 
 END, ARRIVAL, RELEASE = range(3)
 """The order of events at one moment."""
+TICK, LATE, HELD = range(3)
+"""Releases: a clock's tick, one that its jitter held back, and what data fired and jitter held back."""
 NOBODY, SEVERAL, LOAD = -1, -2, -3
 """What fired a job, where no one wire did: a clock, all of several, or nobody (it only loads its host)."""
 
