@@ -25,6 +25,8 @@ from archgen.views.report import Edition, Level
 from archgen.views.shapes import Graph
 from archgen.views.timed import timing
 
+_SHORT = 10
+"""So many digits of a commit's hash tell it from all others of a repository that holds a robot's architecture."""
 Progress = Callable[[int, int], None]
 """Told how many pictures are drawn, of how many."""
 
@@ -177,7 +179,7 @@ def _make(checked: Checked, ask: Ask) -> _Made:
     found = replace(view(checked, ask), timed=timing(checked.architecture))
     drawn = drawings.drawings(found, ask.selection, ask.level or "implementation")
     edition = Edition(
-        revision=revision(checked.root, checked.all_files) if ask.revision is None else ask.revision,
+        revision=_revision(checked) if ask.revision is None else ask.revision,
         level=ask.level or "implementation",
         chapters=checked.chapters.order,
         texts=checked.chapters.texts,
@@ -186,6 +188,11 @@ def _make(checked: Checked, ask: Ask) -> _Made:
         broken=checked.broken,
     )
     return _Made(found, edition, drawn)
+
+
+def _revision(checked: Checked) -> str:
+    commit = checked.loaded.files.commit
+    return commit[:_SHORT] if commit else revision(checked.root, checked.all_files)
 
 
 def _matches(name: str, patterns: Sequence[str]) -> bool:

@@ -20,7 +20,7 @@ from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
-from archgen.project import Loaded
+from archgen.project import Loaded, Tracked
 from archgen.source import Sources
 from archgen.syntax import files
 from archgen.syntax import interfaces as interface_files
@@ -100,6 +100,21 @@ def check(path: Path | None = None) -> Checked:
         return judge(project.load(path))
 
 
+def check_at(path: Path | None, revision: str) -> Checked:
+    """Judge the project at a path as a revision of its repository holds it, read from git's objects.
+
+    Raises `git.GitError`, `project.NotAtRevisionError` where the project does not exist there, and
+    `project.ProjectNotFoundError` where there is neither a project nor a repository.
+    """
+    return check_tracked(project.tracked(path), revision)
+
+
+def check_tracked(tracked: Tracked, revision: str) -> Checked:
+    """Judge a project at a revision; whoever wants many revisions finds the project once."""
+    with _without_collection():
+        return judge(project.load_at(tracked, revision))
+
+
 @contextmanager
 def _without_collection() -> Iterator[None]:
     """Keep the garbage collector out: trees and models hold no circles, and it walks all of them again and again."""
@@ -134,7 +149,7 @@ def judge(loaded: Loaded) -> Checked:
         partial=loaded.partial,
     )
     architecture = transform.transform(linked)
-    read, chapter_findings = chapters.chapters(merged, loaded.root)
+    read, chapter_findings = chapters.chapters(merged, loaded.files)
     unread = [d for d in loaded.diagnostics if _BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
     raw = (
         *loaded.diagnostics,
@@ -166,7 +181,7 @@ def definitions(loaded: Loaded) -> tuple[dict[str, str], tuple[Diagnostic, ...]]
     """Read the interface files that the project names, by their path."""
     texts, diagnostics = {}, []
     for file in loaded.interfaces:
-        read = files.read(loaded.root, file)
+        read = files.read(loaded.files, file)
         if read.problem:
             diagnostics.append(read.problem)
         else:

@@ -3,23 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
-_SAFE = (
-    "git",
-    "--no-pager",
-    "--no-replace-objects",
-    "-c",
-    "core.fsmonitor=false",
-    "-c",
-    "log.showSignature=false",
-    "-c",
-    "core.hooksPath=/dev/null",
-)
-_SECONDS = 20
+from archgen.git.call import call
 
 
 def revision(root: Path, files: Iterable[str]) -> str:
@@ -60,21 +47,5 @@ def _blob(data: bytes, algorithm: str) -> str:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    try:
-        done = subprocess.run(  # noqa: S603 - a fixed program; the arguments are file names after `--`
-            [*_SAFE, *arguments],
-            cwd=root,
-            env=_environment(os.environ),
-            capture_output=True,
-            timeout=_SECONDS,
-            check=False,
-        )
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return done.stdout.decode("utf-8", "replace") if done.returncode == 0 else None
-
-
-def _environment(outer: Mapping[str, str]) -> dict[str, str]:
-    """Keep what git needs to run; leave out what could point it elsewhere or make it run a program."""
-    kept = {key: value for key, value in outer.items() if not key.startswith("GIT_")}
-    return kept | {"GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0", "GIT_LITERAL_PATHSPECS": "1", "LC_ALL": "C"}
+    done = call(root, *arguments)
+    return None if done.status else done.out.decode("utf-8", "replace")

@@ -24,6 +24,7 @@ from archgen.analyses import (
     selectors,
     timing,
     topics,
+    triggers,
     type_mapping,
 )
 from archgen.diagnostic import Rule
@@ -55,7 +56,7 @@ _JUDGES = (
     *progress.RULES,
 )
 
-_TIMED_JUDGES = (*timing.RULES, *load.RULES, *latency.RULES)
+_TIMED_JUDGES = (*timing.RULES, *triggers.RULES, *load.RULES, *latency.RULES)
 """These also take what follows from the architecture's timing, which is found once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
 from archgen.timing.bounds import share
-from archgen.timing.words import duration, number
+from archgen.timing.wording import duration, number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,14 +1,14 @@
-"""Do rates fit: what elements state and what their inputs give, what is sent and what is read, what fires whom?"""
+"""Do rates fit: what elements state and what their inputs give, what is sent and what is read?"""
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
 from archgen.timing.ticks import SECOND, period
-from archgen.timing.words import number, rate
+from archgen.timing.wording import number, rate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -213,131 +213,8 @@ def _overflow(edge: EdgePace, target: Activity, depth: int, needed: Fraction) ->
     )
 
 
-def endless_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
-    """Elements fire one another in a ring: an event that enters it circulates for ever.
-
-    Why: Each element of the ring runs whenever the one before it has published, and publishes in turn. The first event never
-    comes to rest; each further one is added, until a processor or a queue is full. One of the elements must run by a timer,
-    or only sample what comes back (`trigger`). Where nobody has written yet what fires an element, it is a warning.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {behaviour: event}}
-          motor: {implements: motor, timing: {behaviour: event}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {behaviour: event, trigger: [wish]}}
-          motor: {implements: motor, timing: {behaviour: event}}
-    """
-    for ring in found.endless:
-        members = [found.system.activities[name] for name in ring]
-        guessed = [activity for activity in members if activity.behaviour_inferred]
-        first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
-        sure = not guessed
-        yield Diagnostic(
-            "endless-trigger",
-            f"{_listed(ring)} fire {'one another' if len(ring) > 1 else 'itself'} without an end"
-            if len(ring) > 1
-            else f"`{ring[0]}` fires itself without an end",
-            first.places.get("trigger", first.at),
-            severity=None if sure else Severity.WARNING,
-            labels=tuple(
-                Label(other.at, "in the ring") for other in members if other is not first and other.at != NOWHERE
-            ),
-            help="let one of them run by a timer (`period`), or only sample what comes back: name its other inputs in `trigger`",
-            element=first.id,
-        )
-
-
-def deadlocked_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
-    """Elements wait for all of several inputs, one of which never comes: they never run.
-
-    Why: An element with `trigger: all` runs when each of its inputs has something new. Where one of them only comes after it
-    has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {trigger: all}}
-          motor: {implements: motor, timing: {behaviour: event}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {trigger: {all: [wish]}}}
-          motor: {implements: motor, timing: {behaviour: event}}
-    """
-    arrives = _arrives(found)
-    for ring in found.deadlocked:
-        members = [found.system.activities[name] for name in ring]
-        first = next(activity for activity in members if activity.mode == "all")
-        empty = [key for key in first.triggers if key not in arrives[first.id]]
-        why = f"nothing feeds {_listed(empty)}" if empty else f"{_listed(ring)} wait for one another"
-        yield Diagnostic(
-            "deadlocked-trigger",
-            f"`{first.id}` never runs: it waits for all of its triggers, and {why}",
-            first.places.get("trigger", first.at),
-            labels=tuple(
-                Label(other.at, "waits, too") for other in members if other is not first and other.at != NOWHERE
-            ),
-            help="name in `trigger: {all: [...]}` only the inputs that it has to wait for",
-            element=first.id,
-        )
-
-
-def _arrives(found: Analysis) -> dict[str, set[str]]:
-    arrives = defaultdict[str, set[str]](set)
-    for arc in found.system.arcs:
-        arrives[arc.target].add(arc.input)
-    for name, keys in found.system.external.items():
-        arrives[name].update(keys)
-    return arrives
-
-
-def _listed(names: tuple[str, ...] | list[str]) -> str:
-    shown = [f"`{name}`" for name in names]
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
-
-
 RULES = (
     (period_conflict, Severity.WARNING),
     (lost_samples, Severity.WARNING),
     (short_queue, Severity.WARNING),
-    (endless_trigger, Severity.ERROR),
-    (deadlocked_trigger, Severity.ERROR),
 )

@@ -7,14 +7,13 @@ import binascii
 import posixpath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from urllib.parse import unquote
 
 from archgen.diagnostic import Diagnostic, Rule, Severity
 from archgen.model.document import GENERATED, Chapter
 from archgen.source import Span
 from archgen.suggest import did_you_mean
-from archgen.syntax import files
+from archgen.syntax.files import Files, read, read_bytes
 from archgen.syntax.tree import Listing, Scalar, Table
 
 MISSING_CHAPTER = Rule(
@@ -57,7 +56,7 @@ Good:
 class Chapters:
     """The order of all chapters, and the texts of those that the project wrote, by path."""
 
-    root: Path
+    files: Files
     order: tuple[str, ...] = GENERATED
     texts: Mapping[str, Chapter] = field(default_factory=dict)
     packed: Mapping[str, bytes] = field(default_factory=dict)
@@ -70,7 +69,7 @@ class Chapters:
             return self.packed[clean]
         if clean.startswith(("/", "../")) or clean == ".." or "\\" in clean or "\0" in clean:
             return None
-        return files.read_bytes(self.root, clean)
+        return read_bytes(self.files, clean)
 
     def pictures(self) -> dict[str, bytes]:
         """Read all pictures that the chapters show, by path."""
@@ -98,11 +97,11 @@ def shown(markdown: str) -> Iterator[str]:
                 yield unquote(address)
 
 
-def chapters(merged: Table, root: Path) -> tuple[Chapters, tuple[Diagnostic, ...]]:
+def chapters(merged: Table, files: Files) -> tuple[Chapters, tuple[Diagnostic, ...]]:
     """Find and read the chapters that the project asks for."""
     report = merged.get("report")
     if not isinstance(report, Table):
-        return Chapters(root), ()
+        return Chapters(files), ()
     listed = report.get("chapters")
     entries = [item for item in listed.items if isinstance(item, Scalar)] if isinstance(listed, Listing) else None
     packed = dict(_texts(report.get("texts")))
@@ -112,14 +111,14 @@ def chapters(merged: Table, root: Path) -> tuple[Chapters, tuple[Diagnostic, ...
         if name in order:
             continue
         if name not in GENERATED:
-            text, problem = (packed[name], None) if name in packed else _read(root, name, entry.at)
+            text, problem = (packed[name], None) if name in packed else _read(files, name, entry.at)
             if problem:
                 diagnostics.append(problem)
                 continue
             texts[name] = Chapter(name, text)
         order.append(name)
     wanted = tuple(order) if entries is not None else GENERATED
-    return Chapters(root, wanted, texts, dict(_pictures(report.get("pictures")))), tuple(diagnostics)
+    return Chapters(files, wanted, texts, dict(_pictures(report.get("pictures")))), tuple(diagnostics)
 
 
 def _texts(value: object) -> Iterator[tuple[str, str]]:
@@ -136,17 +135,17 @@ def _pictures(value: object) -> Iterator[tuple[str, bytes]]:
             continue  # the chapter says that its picture cannot be read
 
 
-def _read(root: Path, name: str, at: Span) -> tuple[str, Diagnostic | None]:
+def _read(files: Files, name: str, at: Span) -> tuple[str, Diagnostic | None]:
     if not name.endswith(".md"):
         said = did_you_mean(name, GENERATED) or f"archgen writes {', '.join(GENERATED)}; a file ends in .md"
         return "", Diagnostic("missing-chapter", f"there is no chapter `{name}`", at, help=said)
     clean = posixpath.normpath(name)
     if clean.startswith(("/", "../")):
         return "", Diagnostic("missing-chapter", f"the chapter `{name}` lies outside the project's folder", at)
-    read = files.read(root, clean)
-    if read.problem:
+    text = read(files, clean)
+    if text.problem:
         message = (
-            f"the chapter `{name}` cannot be read: {read.problem.message.removeprefix('the file cannot be read: ')}"
+            f"the chapter `{name}` cannot be read: {text.problem.message.removeprefix('the file cannot be read: ')}"
         )
-        return "", Diagnostic("missing-chapter", message, at, help=read.problem.help)
-    return read.text, None
+        return "", Diagnostic("missing-chapter", message, at, help=text.problem.help)
+    return text.text, None

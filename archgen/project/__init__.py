@@ -1,7 +1,21 @@
-"""Project: find a project and read its files, archgen.yaml first, then what `sources` names."""
+"""Project: find a project and read its files, archgen.yaml first, then what `sources` names.
+
+From the disk, or from a commit of the repository that it stands in.
+"""
 
 from archgen.project.find import MARKER, ProjectNotFoundError
 from archgen.project.loaded import Loaded, load
 from archgen.project.rules import RULES
+from archgen.project.tracked import NotAtRevisionError, Tracked, load_at, tracked
 
-__all__ = ["MARKER", "RULES", "Loaded", "ProjectNotFoundError", "load"]
+__all__ = [
+    "MARKER",
+    "RULES",
+    "Loaded",
+    "NotAtRevisionError",
+    "ProjectNotFoundError",
+    "Tracked",
+    "load",
+    "load_at",
+    "tracked",
+]

@@ -11,6 +11,8 @@ from archgen.diagnostic import Diagnostic, Severity
 from archgen.project.find import MARKER, find
 from archgen.project.reading import Reading, matches, read_sources, take
 from archgen.source import Sources, Span
+from archgen.syntax.files import Files
+from archgen.syntax.folder import Folder
 from archgen.syntax.tree import Document, Ignore, Listing, Scalar, Table
 
 if TYPE_CHECKING:
@@ -24,13 +26,13 @@ class Loaded:
     """A project, read. `documents` are in normal form, in the order in which they are merged.
 
     `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
-    stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to `root`.
+    stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to the project's folder.
     `chapters` are the entries of `report.chapters`, None where nobody wrote them.
     Nothing is used of the files in `broken`. `lost` are the keys in them, and in whatever else was not understood, so that
     nobody complains of what they declare; with `partial` that was a whole file or section.
     """
 
-    root: Path
+    files: Files
     id: str
     title: str
     documents: tuple[Document, ...]
@@ -47,11 +49,21 @@ class Loaded:
     lost: frozenset[str] = frozenset()
     partial: bool = False
 
+    @property
+    def root(self) -> Path:
+        """Give the project's folder."""
+        return self.files.root
+
 
 def load(path: Path | None = None) -> Loaded:
     """Read the project in a folder, in a file, or (with nothing given) around the current folder."""
     root, first = find(path)
-    reading = Reading(root)
+    return load_from(Folder(root), first)
+
+
+def load_from(files: Files, first: str) -> Loaded:
+    """Read a project, wherever its files are; `first` is the one that is read first."""
+    reading = Reading(files)
     take(reading, first)
     if first == MARKER:
         read_sources(reading)
@@ -59,7 +71,7 @@ def load(path: Path | None = None) -> Loaded:
 
 
 def _finish(reading: Reading, first: str) -> Loaded:
-    stem = reading.root.name if first == MARKER else Path(first).stem
+    stem = reading.files.root.name.removesuffix(".git") if first == MARKER else Path(first).stem
     words = re.findall(r"[a-z0-9]+", stem.lower())
     slug = "_".join(words) if words and words[0][0].isalpha() else "_".join(["project", *words])
     interfaces = [
@@ -73,7 +85,7 @@ def _finish(reading: Reading, first: str) -> Loaded:
     distro = next((value.text for value in _values(reading, "ros", "distro") if isinstance(value, Scalar)), None)
     chapters = next((value for value in _values(reading, "report", "chapters") if isinstance(value, Listing)), None)
     return Loaded(
-        root=reading.root,
+        files=reading.files,
         id=slug,
         title=" ".join(words).capitalize() or "Project",
         documents=tuple(reading.documents),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic
@@ -13,7 +12,8 @@ from archgen.project.find import MARKER
 from archgen.schema import better_keys, normalise, sections, validate
 from archgen.source import Sources, Span
 from archgen.suggest import closest
-from archgen.syntax import files, globs, yaml
+from archgen.syntax import globs, yaml
+from archgen.syntax.files import Files, read
 from archgen.syntax.tree import Listing, Scalar, Table
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _NO_SOURCES = frozenset({"backends"})
 class Reading:
     """What has been read so far."""
 
-    root: Path
+    files: Files
     sources: Sources = field(default_factory=Sources)
     documents: list[Document] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -46,7 +46,7 @@ def _read(reading: Reading, file: str) -> tuple[Document | None, tuple[Diagnosti
     if not file.isprintable():
         message = f"a file's name cannot be read as text: {file!a}"
         return None, (Diagnostic("syntax-error", message, Span.of_file(MARKER), help="rename the file"),)
-    text = files.read(reading.root, file)
+    text = read(reading.files, file)
     reading.sources.add(file, text.text)
     return (None, (text.problem,)) if text.problem else yaml.parse(file, text.text)
 
@@ -125,7 +125,7 @@ def _take_slice(reading: Reading, file: str, *, named: bool) -> None:
 def _read_all(reading: Reading) -> None:
     """Read every *.yaml below that holds a section, and say which do not."""
     known, ignored = sections(), list[tuple[str, str | None]]()
-    for file in globs.expand(reading.root, "**/*.yaml", skip=_NO_SOURCES):
+    for file in globs.expand(reading.files, "**/*.yaml", skip=_NO_SOURCES):
         if file in reading.seen:
             continue
         reading.seen.add(file)
@@ -167,7 +167,7 @@ def matches(reading: Reading, pattern: Value) -> Iterator[str]:
         help_line = "write paths relative to the folder of archgen.yaml, with `/`"
         reading.diagnostics.append(Diagnostic("wrong-value", message, pattern.at, help=help_line))
         return
-    found = globs.expand(reading.root, pattern.text)
+    found = globs.expand(reading.files, pattern.text)
     if not found:
         reading.diagnostics.append(Diagnostic("missing-source", f"`{pattern.text}` matches no file", pattern.at))
     yield from found

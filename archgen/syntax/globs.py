@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from archgen.syntax.files import Files
 
 _WILD = re.compile(r"[*?\[]")
 OUTPUT = "archgen-out"
@@ -26,8 +27,8 @@ def is_inside(pattern: str) -> bool:
     )
 
 
-def expand(root: Path, pattern: str, skip: frozenset[str] = frozenset()) -> tuple[str, ...]:
-    """Give the files below `root` that match, relative to it and sorted by path.
+def expand(files: Files, pattern: str, skip: frozenset[str] = frozenset()) -> tuple[str, ...]:
+    """Give the files that match, sorted by path.
 
     Wildcards never find hidden files and folders, output folders, links to folders, folders named in `skip`, or other
     projects below this one; a pattern that spells such a folder out does.
@@ -36,20 +37,19 @@ def expand(root: Path, pattern: str, skip: frozenset[str] = frozenset()) -> tupl
     fixed = next((i for i, part in enumerate(parts) if _WILD.search(part)), len(parts))
     prefix = "/".join(parts[:fixed])
     if fixed == len(parts):
-        return (prefix,) if os.path.lexists(root / prefix) else ()
+        return (prefix,) if files.exists(prefix) else ()
     wanted = re.compile(_regex(parts[fixed:]))
-    found = (name for name in _walk(root / prefix, skip) if wanted.fullmatch(name))
+    found = (name for name in _walk(files, prefix, skip) if wanted.fullmatch(name))
     return tuple(sorted((f"{prefix}/{name}" if prefix else name for name in found), key=lambda name: name.split("/")))
 
 
-def _walk(top: Path, skip: frozenset[str]) -> Iterator[str]:
-    for folder, folders, names in os.walk(top):
-        below = os.path.relpath(folder, top).replace(os.sep, "/")
-        if below != "." and "archgen.yaml" in names:
+def _walk(files: Files, top: str, skip: frozenset[str]) -> Iterator[str]:
+    for below, folders, names in files.walk(top):
+        if below and "archgen.yaml" in names:
             folders.clear()
             continue
         folders[:] = sorted(name for name in folders if name[0] != "." and name != OUTPUT and name not in skip)
-        start = "" if below == "." else f"{below}/"
+        start = f"{below}/" if below else ""
         yield from (f"{start}{name}" for name in names if name[0] != ".")
         # a folder or a link to one that is called like a file is told apart only by reading it
         yield from (f"{start}{name}" for name in folders if name.endswith(".yaml"))

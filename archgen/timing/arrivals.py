@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from archgen.timing.analysis import Analysis
-from archgen.timing.sums import known, nameless, total
+from archgen.timing.sums import bounded, known, nameless, times
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
 
@@ -50,7 +50,7 @@ class Arrivals:
         """Give the largest gap between two ends of an activity: that of its activations, and R - B."""
         response = self.analysis.responses[name]
         best = Value(-(response.best.value or Fraction(0)))
-        return total((self.gap(name), nameless(response.worst, name), best))
+        return bounded((self.gap(name), nameless(response.worst, name), best))
 
     def waits_for_all(self, activity: Activity) -> bool:
         """Tell whether several triggers must have come before an activity fires."""
@@ -72,9 +72,9 @@ class Arrivals:
             return self.time(activity.jitter) if activity.behaviour == "event" else ZERO
         gap = self._firing_gap(activity)
         if not activity.throttle:
-            return total((_times(gap, activity.every - 1), self.time(activity.jitter)))
-        kept = (_times(gap, activity.every), self.time(activity.throttle), self.time(activity.jitter))
-        return _less(total(kept), self._smallest_gap(activity))
+            return bounded((times(gap, activity.every - 1), self.time(activity.jitter)))
+        kept = (times(gap, activity.every), self.time(activity.throttle), self.time(activity.jitter))
+        return _less(bounded(kept), self._smallest_gap(activity))
 
     def time(self, ticks: int) -> Value:
         """Give a duration of the system in ns."""
@@ -108,7 +108,7 @@ class Arrivals:
     def _arriving_on(self, arc: Arc) -> Value:
         if arc.best is None or arc.worst is None:
             return Value(None, complete=False, missing=(arc.link or arc.topic,))
-        return total((self.sent_gap(arc), self.time(arc.worst - arc.best)))
+        return bounded((self.sent_gap(arc), self.time(arc.worst - arc.best)))
 
     def _smallest_gap(self, activity: Activity) -> Value:
         """Give the smallest gap between two triggers: known of a single stream only, else 0."""
@@ -128,7 +128,7 @@ def _largest(values: Iterable[Value]) -> Value:
         return ZERO
     open_parts = tuple(part for part in parts if not known(part))
     if open_parts:
-        return total(tuple(replace(part, value=None) for part in open_parts))
+        return bounded(tuple(replace(part, value=None) for part in open_parts))
     return max(parts, key=lambda part: part.value or Fraction(0))
 
 
@@ -137,11 +137,7 @@ def _smallest(values: Iterable[Value]) -> Value:
     shut = [part for part in parts if known(part)]
     if shut:
         return min(shut, key=lambda part: part.value or Fraction(0))
-    return total(parts) if parts else UNKNOWN
-
-
-def _times(value: Value, count: int) -> Value:
-    return replace(value, value=value.value * count) if value.value is not None else value
+    return bounded(parts) if parts else UNKNOWN
 
 
 def _less(value: Value, off: Value) -> Value:

@@ -8,10 +8,10 @@ from functools import lru_cache
 from typing import Literal
 
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
-from archgen.timing.arithmetic import times, total, unknown
 from archgen.timing.placement import Resource
 from archgen.timing.propagate import State
 from archgen.timing.response import Found
+from archgen.timing.sums import times, total, unknown
 from archgen.timing.system import Activity, System
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import Value

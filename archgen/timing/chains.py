@@ -14,7 +14,7 @@ from archgen.timing import route
 from archgen.timing.analysis import Analysis, ChainResult, Term
 from archgen.timing.network import Aim, Network
 from archgen.timing.paths import Way, Ways, ways
-from archgen.timing.sums import boundless, known, total
+from archgen.timing.sums import bounded, boundless, known
 from archgen.timing.system import Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
 
@@ -106,7 +106,7 @@ def data_age(network: Network, result: ChainResult) -> Value:
     """
     if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
         return result.bound
-    return total((result.bound, network.steps.arrivals.gap(result.through[0])))
+    return bounded((result.bound, network.steps.arrivals.gap(result.through[0])))
 
 
 def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "open"]:
@@ -135,7 +135,7 @@ def _sum(network: Network, way: Way, aim: Aim) -> Value:
     parts = list(network.start(network.names[way.start], aim))
     for at in way.arcs:
         parts += network.step(network.arcs[at], aim)
-    return total(parts, "at least" if aim == "best" else "at most")
+    return bounded(parts, "at least" if aim == "best" else "at most")
 
 
 def _whole(network: Network, found: Ways, way: Way, aim: Aim) -> Value:
@@ -145,7 +145,7 @@ def _whole(network: Network, found: Ways, way: Way, aim: Aim) -> Value:
         value = replace(value, assumptions=(*value.assumptions, _cut_text([network.arcs[at] for at in found.cut])))
     if aim == "best" or found.count == 1 or boundless(value):
         return value
-    others = total([part for at in found.arcs() for part in network.step(network.arcs[at], aim)])
+    others = bounded([part for at in found.arcs() for part in network.step(network.arcs[at], aim)])
     if others.complete:
         return value
     missing = tuple(dict.fromkeys((*value.missing, *others.missing)))

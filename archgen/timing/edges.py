@@ -7,13 +7,12 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
-from archgen.timing.arithmetic import because, times, total, unknown
 from archgen.timing.propagate import State, arriving
-from archgen.timing.response import Cause
 from archgen.timing.streams import eta
+from archgen.timing.sums import because, times, total, unknown
 from archgen.timing.system import Activity, Arc, System
 from archgen.timing.ticks import SECOND
-from archgen.timing.value import ZERO, Value
+from archgen.timing.value import ZERO, Cause, Value
 
 _ONE = Value(Fraction(1))
 

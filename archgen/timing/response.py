@@ -16,16 +16,10 @@ from archgen.timing.analysis import Tier
 from archgen.timing.placement import Resource, Unit
 from archgen.timing.streams import Streams
 from archgen.timing.system import System
+from archgen.timing.value import Cause, united
 from archgen.timing.windows import Budget, Demand, DivergedError, Work, busy, carried, demand, shared, worst
 
 _NO_DEMAND: tuple[Demand, int] = (lambda _: 0, 0)
-
-
-class Cause(NamedTuple):
-    """Why something cannot be said: the elements whose figures are missing, or a word for it."""
-
-    missing: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
 
 
 class Found(NamedTuple):
@@ -45,17 +39,6 @@ class Effort(NamedTuple):
 
 Events = Mapping[str, Streams | Cause]
 OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
-MOST_NAMED = 12
-
-
-def united(causes: Iterable[Cause]) -> Cause:
-    """Lay causes together. The first dozen of what is missing is named; more would only grow along a chain."""
-    found = tuple(causes)
-    missing = tuple(dict.fromkeys(one for cause in found for one in cause.missing))
-    notes = tuple(dict.fromkeys(note for cause in found for note in cause.notes))
-    if len(missing) > MOST_NAMED:
-        missing, notes = missing[:MOST_NAMED], tuple(dict.fromkeys((*notes, "more figures are missing")))
-    return Cause(missing, notes)
 
 
 def utilisation(cost: int, streams: Streams) -> Fraction:

@@ -1,11 +1,14 @@
-"""Strongly connected components, without recursion (Tarjan 1972, with a stack of its own)."""
+"""Strongly connected components and loops, without recursion (R. Tarjan, 1972, with a stack of its own)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import Generic, TypeVar
+
+T = TypeVar("T", bound=Hashable)
 
 
-def components(elements: Iterable[str], after: Callable[[str], Iterable[str]]) -> list[tuple[str, ...]]:
+def components(elements: Iterable[T], after: Callable[[T], Iterable[T]]) -> list[tuple[T, ...]]:
     """Give the components, each behind all that lead to it. Within one, elements stand in the order of `elements`."""
     order = list(elements)
     place = {element: number for number, element in enumerate(order)}
@@ -13,22 +16,30 @@ def components(elements: Iterable[str], after: Callable[[str], Iterable[str]]) -
     for element in order:
         if element not in search.number:
             search.run(element)
-    return [tuple(sorted(found, key=place.__getitem__)) for found in reversed(search.found)]
+    return [tuple(sorted(found, key=lambda one: place.get(one, len(place)))) for found in reversed(search.found)]
 
 
-class _Search:
+def rings(after: Mapping[T, Sequence[T]]) -> list[tuple[T, ...]]:
+    """Give the components that hold a loop, in order of appearance."""
+    found = components(after, lambda element: after.get(element, ()))
+    place = {element: number for number, element in enumerate(after)}
+    looped = (ring for ring in found if len(ring) > 1 or ring[0] in after.get(ring[0], ()))
+    return sorted(looped, key=lambda ring: place[ring[0]])
+
+
+class _Search(Generic[T]):
     """One depth-first search."""
 
-    def __init__(self, after: Callable[[str], Iterable[str]]) -> None:
-        self.number: dict[str, int] = {}
-        self.found: list[list[str]] = []
+    def __init__(self, after: Callable[[T], Iterable[T]]) -> None:
+        self.number: dict[T, int] = {}
+        self.found: list[list[T]] = []
         self._after = after
-        self._low: dict[str, int] = {}
-        self._open: list[str] = []
-        self._is_open: set[str] = set()
+        self._low: dict[T, int] = {}
+        self._open: list[T] = []
+        self._is_open: set[T] = set()
 
-    def run(self, start: str) -> None:
-        path: list[tuple[str, Iterator[str]]] = [self._enter(start)]
+    def run(self, start: T) -> None:
+        path: list[tuple[T, Iterator[T]]] = [self._enter(start)]
         while path:
             here, following = path[-1]
             for there in following:
@@ -45,14 +56,14 @@ class _Search:
                 if self._low[here] == self.number[here]:
                     self._close(here)
 
-    def _enter(self, element: str) -> tuple[str, Iterator[str]]:
+    def _enter(self, element: T) -> tuple[T, Iterator[T]]:
         self._low[element] = self.number[element] = len(self.number)
         self._open.append(element)
         self._is_open.add(element)
         return element, iter(self._after(element))
 
-    def _close(self, root: str) -> None:
-        members: list[str] = []
+    def _close(self, root: T) -> None:
+        members: list[T] = []
         while not members or members[-1] != root:
             members.append(self._open.pop())
         self._is_open.difference_update(members)

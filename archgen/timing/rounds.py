@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from archgen.timing.loops import rings
 from archgen.timing.network import Network
-from archgen.timing.sums import total
+from archgen.timing.rings import rings
+from archgen.timing.sums import bounded
 from archgen.timing.system import Arc
 from archgen.timing.value import Value
 
@@ -35,7 +35,7 @@ def rounds(network: Network) -> tuple[Round, ...]:
     made: list[Round] = []
     for ring in rings(after):
         arcs = _round(network, ring)
-        latency = total([value for arc in arcs for value in network.step(arc, "bound")])
+        latency = bounded([value for arc in arcs for value in network.step(arc, "bound")])
         made.append(Round((*(arc.source for arc in arcs), ring[0]), len(ring), latency))
     return tuple(made)
 

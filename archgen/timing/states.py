@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from archgen.timing.loops import rings
+from archgen.timing.rings import rings
 
 STATES = 20_000
 """How many states the unfolding of loops may make before arcs that lead back are cut instead."""

@@ -14,11 +14,9 @@ from archgen.source import Span
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis
 from archgen.timing.arrivals import Arrivals
-from archgen.timing.sums import known, nameless, total
+from archgen.timing.sums import UNBOUNDED, bounded, known, nameless
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
-
-NEVER = Value(None, complete=True, assumptions=("unbounded",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +55,7 @@ class Steps:
     def sampling(self, arc: Arc) -> Value:
         """Give S of a step: how long a sample may lie before the reader takes it, and before it is sent at all."""
         waited, held = self._reading(arc), self._condition(arc)
-        return waited if held is ZERO else total((waited, held))
+        return waited if held is ZERO else bounded((waited, held))
 
     def delay(self, arc: Arc) -> Delay:
         """Give S of a step with its reason and its place."""
@@ -127,7 +125,7 @@ class Steps:
             if arc.role == "request":
                 return ZERO
             others, thinned = self.arrivals.others(reader, arc), self.arrivals.thinned(reader)
-            return others if thinned is ZERO else total((others, thinned))
+            return others if thinned is ZERO else bounded((others, thinned))
         if reader.behaviour is None or reader.behaviour == "once":
             return _strange(reader).value
         return self.arrivals.gap(reader.id)
@@ -149,7 +147,7 @@ class Steps:
 
 def _strange(activity: Activity) -> Delay:
     if activity.behaviour == "once":
-        return Delay(NEVER, "works once, at the start: nothing later reaches it", _place(activity, "behaviour"))
+        return Delay(UNBOUNDED, "works once, at the start: nothing later reaches it", _place(activity, "behaviour"))
     missing = Value(None, complete=False, missing=(activity.id,))
     return Delay(missing, "its behaviour is not known", activity.at)
 

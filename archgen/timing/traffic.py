@@ -9,13 +9,12 @@ from fractions import Fraction
 from heapq import merge
 
 from archgen.timing.analysis import LinkLoad, Pace, TopicLoad
-from archgen.timing.arithmetic import UNBOUNDED, times, total, unknown
 from archgen.timing.propagate import State, arriving
-from archgen.timing.response import Cause
 from archgen.timing.streams import Streams, arrivals, eta
+from archgen.timing.sums import UNBOUNDED, times, total, unknown
 from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
-from archgen.timing.value import ZERO, Value
+from archgen.timing.value import ZERO, Cause, Value
 
 _MOST = 50_000
 """Arrivals in one busy period of a link that are looked at; beyond, nothing is said of its queue."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,3 +26,21 @@ class Value:
 
 UNKNOWN = Value(None, complete=False)
 ZERO = Value(Fraction(0))
+MOST_NAMED = 12
+
+
+class Cause(NamedTuple):
+    """Why something cannot be said: the elements whose figures are missing, or a word for it."""
+
+    missing: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def united(causes: Iterable[Cause]) -> Cause:
+    """Lay causes together. The first dozen of what is missing is named; more would only grow along a chain."""
+    found = tuple(causes)
+    missing = tuple(dict.fromkeys(one for cause in found for one in cause.missing))
+    notes = tuple(dict.fromkeys(note for cause in found for note in cause.notes))
+    if len(missing) > MOST_NAMED:
+        missing, notes = missing[:MOST_NAMED], tuple(dict.fromkeys((*notes, "more figures are missing")))
+    return Cause(missing, notes)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 
 from archgen.timing.value import Value
 
-_DURATIONS = ((3600 * 10**9, "h"), (60 * 10**9, "min"), (10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
+_DURATIONS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 _LARGEST_MS = 10**4
-_DIGITS = 3
+_DIGITS, _MOST_DIGITS = 3, 12
 
 
+@lru_cache(4096)
 def duration(ns: Fraction) -> str:
     """Write a duration: milliseconds from 1 ms to 10 s, then seconds; smaller ones in their unit."""
-    for factor, unit in _DURATIONS[2:]:
+    for factor, unit in _DURATIONS:
         if abs(ns) >= (_LARGEST_MS * 10**6 if unit == "s" else factor):
             return f"{number(ns / factor)} {unit}"
     return f"{number(ns)} ns" if ns else "0 ms"
@@ -38,15 +40,19 @@ def size(count: Fraction) -> str:
     return f"{number(count)} B"
 
 
+@lru_cache(4096)
 def number(value: Fraction) -> str:
-    """Write a number with three digits behind the point at most, none that is not needed; `~` where it was rounded."""
-    scaled = round(value * 10**_DIGITS)
+    """Write a number with three digits behind the point at most, more where it is small; `~` says that it was rounded."""
+    digits = _DIGITS
+    while digits < _MOST_DIGITS and value and abs(value) * 10**digits < 100:  # noqa: PLR2004 - three digits that count
+        digits += 1
+    scaled = round(value * 10**digits)
     if scaled == 0 and value:
         return f"~{float(value):.2g}"
-    whole, rest = divmod(abs(scaled), 10**_DIGITS)
-    digits = f"{rest:0{_DIGITS}}".rstrip("0")
-    about = "" if scaled == value * 10**_DIGITS else "~"
-    return about + ("-" if scaled < 0 else "") + f"{whole}" + (f".{digits}" if digits else "")
+    whole, rest = divmod(abs(scaled), 10**digits)
+    after = f"{rest:0{digits}}".rstrip("0")
+    about = "" if scaled == value * 10**digits else "~"
+    return about + ("-" if scaled < 0 else "") + f"{whole}" + (f".{after}" if after else "")
 
 
 def listed(names: tuple[str, ...], most: int = 6) -> str:
@@ -61,3 +67,11 @@ def reason(value: Value) -> str:
         if value.value is None and any(text.split(":")[0].strip() == word for text in value.assumptions):
             return word
     return "" if value.value is not None else "unknown"
+
+
+def told(value: Value, unit: str) -> str:
+    """Give a figure in words: with its side where it is a bound, or why there is none."""
+    if value.value is None:
+        return next(iter(value.assumptions), "unknown") if value.complete else "unknown"
+    text = rate(value.value) if unit == "Hz" else duration(value.value)
+    return text if value.side == "exact" else f"{value.side} {text}"

@@ -8,8 +8,6 @@ _RULES = {
     "period-conflict",
     "lost-samples",
     "short-queue",
-    "endless-trigger",
-    "deadlocked-trigger",
     "overloaded-host",
     "slow-component",
     "saturated-link",
@@ -62,31 +60,3 @@ def test_an_element_that_cannot_keep_up() -> None:
         "6 warning slow-component: `g.b` is asked to need at most 20 ms, but `b` takes up to 120 ms",
         "9 warning overloaded-host: `b` takes 120 % of a core: it is fired again before it is done",
     ]
-
-
-def test_what_fires_itself() -> None:
-    text = """
-groups:
-  g:
-    components:
-      a: {inputs: {back: a.out}, outputs: {out: std_msgs/msg/Empty}}
-nodes:
-  a: {implements: a, timing: {BEHAVIOUR}}
-"""
-    assert told(text.replace("BEHAVIOUR", "behaviour: event")) == [
-        "7 error endless-trigger: `a` fires itself without an end"
-    ]
-    assert told(text.replace("BEHAVIOUR", "wcet: 1 ms")) == [
-        "7 warning endless-trigger: `a` fires itself without an end"
-    ]
-
-
-def test_where_nobody_wrote_of_time_nothing_is_said() -> None:
-    text = """
-groups:
-  g:
-    components:
-      a: {inputs: {back: b.out}, outputs: {out: std_msgs/msg/Empty}}
-      b: {inputs: {on: a.out}, outputs: {out: std_msgs/msg/Empty}}
-"""
-    assert told(text) == []

@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 
 from archgen.syntax import files
+from archgen.syntax.folder import Folder
 
 
 def problem(root: Path, name: str = "a.yaml") -> tuple[str, str, int, int]:
     """Read a file that cannot be used: rule, message, line and column."""
     start = time.monotonic()
-    found = files.read(root, name).problem
+    found = files.read(Folder(root), name).problem
     assert time.monotonic() - start < 20
     assert found is not None
     assert found.span.file == name
@@ -23,7 +24,7 @@ def problem(root: Path, name: str = "a.yaml") -> tuple[str, str, int, int]:
 
 def test_text_with_a_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_bytes(b"\xef\xbb\xbfa: 1\r\nb: \xc3\xa4\r\n")
-    assert files.read(tmp_path, "a.yaml") == files.Text("a: 1\r\nb: ä\r\n")
+    assert files.read(Folder(tmp_path), "a.yaml") == files.Text("a: 1\r\nb: ä\r\n")
 
 
 @pytest.mark.parametrize(
@@ -58,7 +59,7 @@ def test_a_pipe_that_nobody_writes(tmp_path: Path) -> None:
 
 def test_a_device(tmp_path: Path) -> None:
     assert problem(Path("/dev"), "zero")[1] == "this is a device, not a file"
-    assert files.read(tmp_path, "../../../../../../../../dev/zero").problem is not None
+    assert files.read(Folder(tmp_path), "../../../../../../../../dev/zero").problem is not None
 
 
 def test_a_broken_link(tmp_path: Path) -> None:
@@ -82,7 +83,7 @@ def test_a_link_that_leaves_the_project(tmp_path: Path) -> None:
 def test_a_link_within_the_project(tmp_path: Path) -> None:
     (tmp_path / "b.yaml").write_text("a: 1")
     (tmp_path / "a.yaml").symlink_to("b.yaml")
-    assert files.read(tmp_path, "a.yaml").text == "a: 1"
+    assert files.read(Folder(tmp_path), "a.yaml").text == "a: 1"
 
 
 def test_a_file_that_does_not_exist(tmp_path: Path) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from archgen.timing.chains import chains, data_age
-from archgen.timing.loops import rings
 from archgen.timing.network import Network
+from archgen.timing.rings import rings
 from archgen.timing.rounds import rounds
 from tests.timing.made import analysis, arc, architecture, event, ms, periodic
 

@@ -1,0 +1,26 @@
+"""git, read only and at arm's length: which repository, which commit, what its trees and blobs hold.
+
+Objects are all that is read: never the index, never through a filter, hook, textconv, pager, monitor or remote. So a
+repository whose configuration or attributes name a program is read without running it.
+"""
+
+from archgen.git.base import Base, base, fork
+from archgen.git.errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.objects import Blob, Objects
+from archgen.git.repository import Repository, repository, resolve
+
+__all__ = [
+    "Base",
+    "Blob",
+    "GitError",
+    "NoCommitsError",
+    "NoRepositoryError",
+    "Objects",
+    "Repository",
+    "ShallowError",
+    "UnknownRevisionError",
+    "base",
+    "fork",
+    "repository",
+    "resolve",
+]

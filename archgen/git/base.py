@@ -1,0 +1,56 @@
+"""Where a branch left its main line: what a diff compares with where nobody says otherwise."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from archgen.git.call import call
+from archgen.git.errors import GitError, ShallowError
+from archgen.git.repository import UNSHALLOW, Repository, look_up, resolve
+
+_MAIN_LINES = ("main", "master", "origin/main", "origin/master")
+"""Tried in this order, after what the remote says its main line is."""
+
+
+class Base(NamedTuple):
+    """A commit, and how to name it to a person."""
+
+    commit: str
+    name: str
+
+
+def base(found: Repository) -> Base:
+    """Give the commit at which HEAD left the main line; HEAD itself where it is on it, or where there is no other line.
+
+    Raises `NoCommitsError`, `ShallowError` where the clone does not reach that far back, `GitError` for unrelated lines.
+    """
+    head = resolve(found, "HEAD")
+    main = _main_line(found)
+    branch = call(found.top, "symbolic-ref", "--quiet", "--short", "HEAD").text.strip()
+    if branch and main in {branch, f"origin/{branch}"}:
+        return Base(head, "HEAD")
+    if not main and found.shallow:
+        msg = f"this shallow clone holds no main line to compare with: {UNSHALLOW}"
+        raise ShallowError(msg)
+    commit = fork(found, main, "HEAD").commit if main else head
+    return Base(commit, "HEAD" if commit == head else f"where this branch left {main}")
+
+
+def fork(found: Repository, left: str, right: str) -> Base:
+    """Give the newest commit that two revisions have in common."""
+    done = call(found.top, "merge-base", "--end-of-options", resolve(found, left), resolve(found, right))
+    commit = done.text.split("\n")[0]
+    if commit:
+        return Base(commit, f"where {right} left {left}")
+    if found.shallow:
+        msg = f"the commit at which `{right}` left `{left}` is not in this shallow clone: {UNSHALLOW}"
+        raise ShallowError(msg)
+    msg = f"`{left}` and `{right}` have no commit in common: name the revision to compare with"
+    raise GitError(msg)
+
+
+def _main_line(found: Repository) -> str:
+    """Name the main line, empty where none is known."""
+    remote = call(found.top, "symbolic-ref", "--quiet", "--short", "refs/remotes/origin/HEAD").text.strip()
+    names = (remote, *_MAIN_LINES) if remote else _MAIN_LINES
+    return next((name for name in names if look_up(found, name)), "")

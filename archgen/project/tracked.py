@@ -1,0 +1,72 @@
+"""A project in the history of its repository: the same project at any commit."""
+
+from __future__ import annotations
+
+import posixpath
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen.git import NoRepositoryError, Objects, repository, resolve
+from archgen.project.find import MARKER, ProjectNotFoundError, find
+from archgen.project.loaded import Loaded, load_from
+from archgen.syntax.committed import committed
+
+
+class NotAtRevisionError(ProjectNotFoundError):
+    """The project does not exist in a commit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tracked:
+    """A project's place in its repository. `places` are the folders (from the repository's root) and the files read first
+    that it may be, in the order in which they are tried: more than one where the disk holds no such project (any more).
+    """
+
+    objects: Objects
+    places: tuple[tuple[str, str], ...]
+
+    def commit(self, revision: str) -> str:
+        """Give the full hash of a revision's commit. Raises what `git.resolve` raises."""
+        return resolve(self.objects.repository, revision)
+
+
+def tracked(path: Path | None = None) -> Tracked:
+    """Find the repository of the project at a path (None: around the current folder), be it on disk or in commits only.
+
+    Raises `git.NoRepositoryError`, and `ProjectNotFoundError` where neither a project nor a repository is there.
+    """
+    try:
+        root, first = find(path)
+    except ProjectNotFoundError as nothing:
+        return _only_committed(path, nothing)
+    found = repository(root)
+    return Tracked(Objects(found), ((found.prefix, first),))
+
+
+def _only_committed(path: Path | None, nothing: ProjectNotFoundError) -> Tracked:
+    try:
+        found = repository(path or Path.cwd())
+    except (NoRepositoryError, OSError):
+        raise nothing from None
+    prefix = found.prefix
+    if path is not None:
+        return Tracked(Objects(found), ((prefix, MARKER), (posixpath.dirname(prefix), posixpath.basename(prefix))))
+    folders = [prefix]
+    while folders[-1]:
+        folders.append(posixpath.dirname(folders[-1]))
+    return Tracked(Objects(found), tuple((folder, MARKER) for folder in folders))
+
+
+def load_at(project: Tracked, revision: str) -> Loaded:
+    """Read a project as a revision holds it, from git's objects.
+
+    Raises `NotAtRevisionError` where it does not exist there, and what `git.resolve` raises.
+    """
+    commit = project.commit(revision)
+    for folder, first in project.places:
+        files = committed(project.objects, commit, folder)
+        if first and files is not None and files.exists(first):
+            return load_from(files, first)
+    folder, first = project.places[0]
+    msg = f"the project `{posixpath.join(folder, first)}` does not exist in `{revision}`"
+    raise NotAtRevisionError(msg)

@@ -1,0 +1,76 @@
+"""The two sides of a comparison, as users type them: revisions, folders, single or packed files, the working tree."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen import git, pipeline, project
+from archgen.pipeline import Checked
+
+_AS_PATHS = ("./", "../", "/", "~")
+WORKING_TREE = "the working tree"
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """A project, and what to call it."""
+
+    name: str
+    checked: Checked
+
+    @property
+    def commit(self) -> str:
+        """Give the full hash of the commit that it was read from, empty for files on disk."""
+        return self.checked.loaded.files.commit
+
+
+def sides(first: str | None, second: str | None, path: Path | None = None) -> tuple[Side, Side]:
+    """Give both sides. `path` is the project as for `pipeline.check`.
+
+    Without `second` it is the working tree, without `first` the commit at which the branch left its main line. `A..B` and
+    `A...B` mean what they mean to git. Raises `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    if first is not None and second is None and ".." in first and not _is_path(first):
+        left, dots, right = first.partition("..." if "..." in first else "..")
+        if dots == "...":
+            return _side_at(_fork(left or "HEAD", right or "HEAD", path), path), side(right or "HEAD", path)
+        return side(left or "HEAD", path), side(right or "HEAD", path)
+    before = left_main_line(path) if first is None else side(first, path)
+    return before, side(second, path)
+
+
+def side(words: str | None, path: Path | None = None) -> Side:
+    """Give one side: nothing or `.` is the working tree; what could be both a revision and a path is the revision.
+
+    Raises `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    if words in {None, "", "."}:
+        return Side(WORKING_TREE, pipeline.check(path))
+    if not _is_path(words):
+        try:
+            return Side(words, pipeline.check_at(path, words))
+        except project.NotAtRevisionError:
+            raise
+        except (git.GitError, project.ProjectNotFoundError):
+            if not os.path.lexists(words):
+                raise
+    return Side(words, pipeline.check(Path(words)))
+
+
+def left_main_line(path: Path | None = None) -> Side:
+    """Give the project as it was where the branch left its main line."""
+    return _side_at(git.base(project.tracked(path).objects.repository), path)
+
+
+def _side_at(base: git.Base, path: Path | None) -> Side:
+    return Side(base.name, pipeline.check_at(path, base.commit))
+
+
+def _fork(left: str, right: str, path: Path | None) -> git.Base:
+    return git.fork(project.tracked(path).objects.repository, left, right)
+
+
+def _is_path(words: str) -> bool:
+    return words.startswith(_AS_PATHS) or words in {".", ".."} or os.path.isabs(words)  # noqa: PTH117 - Windows' drives

@@ -1,0 +1,82 @@
+"""How often an activity works by itself, for its inputs, or for those that call it: rate and largest gap."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.timing.analysis import Reason
+from archgen.timing.fired import fired
+from archgen.timing.pacing import Beat, Paces, trigger_place
+from archgen.timing.propagate import State
+from archgen.timing.sums import NEVER, UNBOUNDED, times, total, unknown
+from archgen.timing.system import Activity, Arc
+from archgen.timing.ticks import SECOND
+from archgen.timing.value import ZERO, Value
+from archgen.timing.wording import duration, told
+
+
+def beat_of(found: Paces, activity: Activity) -> tuple[Beat, Value | None, list[Reason]]:
+    """Give rate and gap of what an activity does by itself or for its inputs, and the rate of the calls that it answers."""
+    state = found.state
+    if activity.behaviour not in {"event", "on_demand"}:
+        beat, reason = _by_itself(found, activity)
+        return beat, None, [reason]
+    calls = state.triggers.requests[activity.id]
+    asked = total(_call(found, arc) for arc in calls) if calls else None
+    reasons = [_called(found, arc) for arc in calls]
+    if activity.id in state.triggers.never:
+        return (NEVER, UNBOUNDED), asked, [Reason("what it waits for never comes", trigger_place(activity))]
+    if activity.id in state.triggers.unknown:
+        return _in_ring(state, activity), asked, [Reason("it lies in a ring of triggers", trigger_place(activity))]
+    if activity.behaviour == "on_demand":
+        reasons = reasons or [Reason("on demand, and nobody is known to call it", activity.at)]
+        return (asked or unknown(activity.id), unknown(activity.id)), asked, reasons
+    beat, more = fired(found, activity)
+    return beat, asked, more + reasons
+
+
+def _by_itself(found: Paces, activity: Activity) -> tuple[Beat, Reason]:
+    if activity.behaviour == "periodic":
+        return periodic(found, activity), periodic_reason(found, activity)
+    if activity.behaviour == "once":
+        return (ZERO, UNBOUNDED), Reason("published once, at the start", activity.at)
+    return (unknown(activity.id), unknown(activity.id)), Reason("nothing says when it runs", activity.at)
+
+
+def _in_ring(state: State, activity: Activity) -> Beat:
+    endless = any(activity.id in ring for ring in state.triggers.endless)
+    value = UNBOUNDED if endless else replace(unknown(activity.id), assumptions=("a ring of triggers",))
+    return value, unknown(activity.id)
+
+
+def periodic(found: Paces, activity: Activity) -> Beat:
+    """Give the beat that an activity states itself."""
+    if activity.period is None:
+        return unknown(activity.id), unknown(activity.id)
+    tick = found.state.system.tick
+    return Value(SECOND / (activity.period * tick)), Value((activity.period + activity.jitter) * tick)
+
+
+def periodic_reason(found: Paces, activity: Activity) -> Reason:
+    """Say what an activity states itself, and where."""
+    if activity.period is None:
+        return Reason("periodic, but neither a period nor a rate is written", activity.at)
+    tick = found.state.system.tick
+    later = f", up to {duration(activity.jitter * tick)} later" if activity.jitter else ""
+    place = activity.places.get("period", activity.places.get("rate", activity.at))
+    return Reason(f"every {duration(activity.period * tick)}{later}, as written", place)
+
+
+def _call(found: Paces, arc: Arc) -> Value:
+    calls = found.state.system.activities[arc.source].calls.get(arc.output, Fraction(1))
+    caller = found.of.get(arc.source)
+    return times(caller.rate, calls) if caller else unknown(arc.source)
+
+
+def _called(found: Paces, arc: Arc) -> Reason:
+    caller = found.state.system.activities[arc.source]
+    calls = caller.calls.get(arc.output, Fraction(1))
+    each = "once" if calls == 1 else f"{float(calls):g} times"
+    place = caller.places.get("calls", arc.at) if arc.output in caller.calls else arc.at
+    return Reason(f"called by {arc.source}, {each} for each activation: {told(_call(found, arc), 'Hz')}", place)

@@ -1,0 +1,31 @@
+"""The paces found so far: what each further one rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from archgen.source import Span
+from archgen.timing.analysis import Pace, Response
+from archgen.timing.propagate import State
+from archgen.timing.system import Activity
+from archgen.timing.value import Value
+
+Beat = tuple[Value, Value]
+"""A rate and the largest gap."""
+
+
+@dataclass(slots=True)
+class Paces:
+    """The paces found so far."""
+
+    state: State
+    responses: Mapping[str, Response]
+    of: dict[str, Pace] = field(default_factory=dict)
+    outputs: dict[tuple[str, str], Pace] = field(default_factory=dict)
+    derived: dict[str, Pace] = field(default_factory=dict)
+
+
+def trigger_place(activity: Activity) -> Span:
+    """Say where it is written what fires an activity."""
+    return activity.places.get("trigger", activity.at)

@@ -1,0 +1,52 @@
+"""Real git repositories in temporary folders."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+
+def git(folder: Path, *words: str, stdin: bytes | None = None) -> str:
+    """Run git as a user who has no settings of his own."""
+    person = {
+        f"GIT_{who}_{what}": f"{what.lower()}@x.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
+    }
+    environment = {**os.environ, **person, "GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    done = subprocess.run(  # noqa: S603 - a fixed program
+        ["git", *words],  # noqa: S607 - the same that archgen calls
+        cwd=folder,
+        env=environment,
+        input=stdin,
+        capture_output=True,
+        check=True,
+    )
+    return done.stdout.decode().strip()
+
+
+def repository(folder: Path, files: dict[str, str | bytes] | None = None, *options: str) -> Path:
+    """Make a repository on branch `main`, with one commit if there are files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    git(folder, "init", "-q", "-b", "main", *options)
+    if files is not None:
+        commit(folder, files)
+    return folder
+
+
+def commit(folder: Path, files: dict[str, str | bytes]) -> str:
+    """Write files, commit everything, and give the hash."""
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    git(folder, "add", "-A")
+    git(folder, "commit", "-q", "--allow-empty", "-m", "x")
+    return git(folder, "rev-parse", "HEAD")
+
+
+def trap(folder: Path) -> tuple[Path, Path]:
+    """Make a program that leaves a mark when it is run; give the program and the mark."""
+    mark, program = folder / "ran", folder / "trap.sh"
+    program.write_text(f"#!/bin/sh\ntouch {mark}\ncat\n", encoding="utf-8")
+    program.chmod(0o755)
+    return program, mark
