@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.simulation.firing import fire, passes, set_off
+from archgen.simulation.firing import fire, hold, passes
 from archgen.simulation.plan import ANY, SAMPLED
 from archgen.simulation.run import SEVERAL, Run
 
@@ -26,28 +26,32 @@ def deliver(run: Run, now: int, wire: int, sample: int) -> None:
             fire(run, now, at, wire, sample)
         elif steps.gated[at] and not passes(run, now, at):
             wires.newest[wire] = sample
+        elif steps.jitter[at]:
+            hold(run, now, at, wire, sample)
         else:
-            queue = wires.queue[wire]
-            if wires.waiting[queue] == wires.depth[wire] > 0:
-                _drop(run, at, queue)
-            wires.waiting[queue] += 1
-            set_off(run, now, at, wire, sample)
+            enqueue(run, now, wire, sample)
     else:
         _fill(run, now, wire, slot, sample)
+
+
+def enqueue(run: Run, now: int, wire: int, sample: int) -> None:
+    """Put a sample into the queue of a reader that it fires; from a full one the oldest goes."""
+    wires, at, queue = run.wires, run.wires.target[wire], run.wires.queue[wire]
+    if wires.waiting[queue] == wires.depth[wire] > 0:
+        _drop(run, at, queue)
+    wires.waiting[queue] += 1
+    fire(run, now, at, wire, sample)
 
 
 def _drop(run: Run, at: int, queue: int) -> None:
     """Throw away the oldest sample of a queue."""
     pending, wires = run.steps.pending[at], run.wires
-    held = run.steps.held[at]
-    stands = [wire for _, wire, _ in pending] + [wire for wire, _ in held]
-    place = next(place for place, wire in enumerate(stands) if wire >= 0 and wires.queue[wire] == queue)
-    if place < len(pending):
-        del pending[place]
-    else:
-        del held[place - len(pending)]
-    wires.waiting[queue] -= 1
-    wires.drops[queue] += 1
+    for place, (_, wire, _) in enumerate(pending):
+        if wire >= 0 and wires.queue[wire] == queue:
+            del pending[place]
+            wires.waiting[queue] -= 1
+            wires.drops[queue] += 1
+            return
 
 
 def _fill(run: Run, now: int, wire: int, slot: int, sample: int) -> None:
@@ -61,4 +65,5 @@ def _fill(run: Run, now: int, wire: int, slot: int, sample: int) -> None:
     if steps.mask[at] == (1 << step.slots) - 1:
         steps.mask[at] = sum(1 << kept for kept in step.kept)
         if not steps.gated[at] or passes(run, now, at):
-            set_off(run, now, at, SEVERAL, tuple([wires.arrived[e] for e in step.captured]))
+            go_on = hold if steps.jitter[at] else fire
+            go_on(run, now, at, SEVERAL, tuple([wires.arrived[e] for e in step.captured]))

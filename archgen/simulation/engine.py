@@ -7,14 +7,28 @@ inner loop is written for speed: it works on lists by small integers and makes n
 from __future__ import annotations
 
 from collections.abc import Collection
+from fractions import Fraction
 from heapq import heapify, heappop, heappush
 
-from archgen.simulation.arriving import deliver
+from archgen.simulation.arriving import deliver, enqueue
 from archgen.simulation.cores import dispatch
 from archgen.simulation.ending import ended, keep_promise
 from archgen.simulation.firing import fire, passes
 from archgen.simulation.plan import KEPT, PERIODIC, Plan
-from archgen.simulation.run import ARRIVAL, HELD, LATE, NOBODY, RELEASE, TICK, Run
+from archgen.simulation.run import ARRIVAL, HELD, LATE, NOBODY, RELEASE, SEVERAL, TICK, Run
+
+MOST_WAITING = 2_000_000
+"""Events that may wait: far more than any system that comes to rest has."""
+MOST_ROUNDS = 100_000
+"""Jobs of one thread, one after the other, that may take no time at all."""
+
+
+class FloodError(Exception):
+    """Each event makes more than one other: the simulation would never end. `at` is when it was given up, in ns."""
+
+    def __init__(self, at: Fraction) -> None:
+        super().__init__(at)
+        self.at = at
 
 
 def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logged: Collection[int] = ()) -> Run:
@@ -22,16 +36,20 @@ def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logge
     run = Run(plan, seed, watched, logged)
     _begin(run)
     heap = run.heap
-    now = popped = 0
+    now = popped = rounds = 0
     while heap:
         key = heap[0][0]
         if key >> 2 > now:
             if run.awake or run.touched:
                 dispatch(run, now)
+                rounds += 1
                 continue
             now = key >> 2
             if now > horizon:
                 break
+            rounds = 0
+        if rounds > MOST_ROUNDS or len(heap) > MOST_WAITING:
+            raise FloodError(now * plan.unit)
         _, what, which = heappop(heap)
         popped += 1
         order = key & 3
@@ -63,8 +81,11 @@ def _release(run: Run, now: int, at: int, what: int) -> None:
     """Let a clock tick, or let through what was held back by jitter."""
     steps = run.steps
     if what == HELD:
-        if steps.held[at]:  # else a full queue has thrown it away
-            fire(run, now, at, *steps.held[at].popleft())
+        wire, sample = steps.held[at].popleft()
+        if wire == SEVERAL:
+            fire(run, now, at, wire, sample)
+        else:
+            enqueue(run, now, wire, sample)
         return
     if what == TICK:
         heappush(run.heap, (now + steps.period[at] << 2 | RELEASE, at, TICK))

@@ -19,14 +19,10 @@ def passes(run: Run, now: int, at: int) -> bool:
     return not (step.throttle and steps.fired[at] >= 0 and now - steps.fired[at] < step.throttle)
 
 
-def set_off(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Fire a step by data: later by its jitter, in order."""
+def hold(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Hold back what is to fire a step by its jitter, in order."""
     steps = run.steps
-    jitter = steps.jitter[at]
-    if not jitter:
-        fire(run, now, at, wire, sample)
-        return
-    there = max(now + run.between(at, 0, jitter), steps.held_until[at])
+    there = max(now + run.between(at, 0, steps.jitter[at]), steps.held_until[at])
     steps.held_until[at] = there
     steps.held[at].append((wire, sample))
     heappush(run.heap, (there << 2 | RELEASE, at, HELD))

@@ -77,10 +77,13 @@ class Steps:
         gap = self.arrivals.sent_gap(arc)
         if not self.arrivals.fires(arc):
             return gap
+        late = self.arrivals.time(reader.jitter) if arc.role == "data" else ZERO
         if self.arrivals.waits_for_all(reader):
             options = [value for value in (gap, self.arrivals.others(reader, arc)) if known(value)]
-            return min(options, key=lambda value: value.value or Fraction(0)) if options else gap
-        return ZERO if self.arrivals.sole(arc) else gap
+            waited = min(options, key=lambda value: value.value or Fraction(0)) if options else gap
+        else:
+            waited = ZERO if self.arrivals.sole(arc) else gap
+        return waited if late is ZERO else bounded((waited, late))
 
     def response(self, name: str, *, worst: bool = True) -> Value:
         """Give R, the largest response time, or the smallest."""

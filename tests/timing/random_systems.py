@@ -155,7 +155,10 @@ class _Maker:
         calls: Tree = {}
         for key in ("ask", "beg"):
             if servers and self.chance((0.5 if kind != "server" else 0.2) if key == "ask" else 0.2):
-                inputs[key] = f"{self.dice.choice(servers)}.serve"
+                chosen = self.dice.choice(servers)
+                if self.reaches(chosen, set(self.sources(inputs))):
+                    continue
+                inputs[key] = f"{chosen}.serve"
                 if self.chance(0.4):
                     calls[key] = self.dice.choice((0.5, 2, 1.5))
         if calls:
@@ -174,19 +177,46 @@ class _Maker:
             for place, writer in enumerate(self.dice.sample(writers, min(len(writers), self.dice.randint(0, 2)))):
                 inputs[f"s{place}"] = f"{writer}.out"
 
+    def sources(self, inputs: Tree) -> list[str]:
+        """Name the components that feed a component's inputs."""
+        return [
+            str(one).split(".", maxsplit=1)[0]
+            for some in inputs.values()
+            if not isinstance(some, dict)
+            for one in (some if isinstance(some, list) else [some])
+        ]
+
+    def reaches(self, server: str, fired_by: set[str]) -> bool:
+        """Say whether what a server does fires one of several components in the end: a call to it would close a ring."""
+        seen, waiting = set[str](), [server]
+        while waiting:
+            name = waiting.pop()
+            if name in fired_by:
+                return True
+            if name not in seen:
+                seen.add(name)
+                waiting += [other for other in self.components if name in self.fired_by(other)]
+                waiting += [
+                    source
+                    for key in ("ask", "beg")
+                    if key in self.inputs(name)
+                    for source in self.sources({key: self.inputs(name)[key]})
+                ]
+        return False
+
+    def fired_by(self, name: str) -> list[str]:
+        return self.sources({key: source for key, source in self.inputs(name).items() if key.startswith("i")})
+
+    def inputs(self, name: str) -> Tree:
+        inputs = self.components[name]["inputs"]
+        assert isinstance(inputs, dict)
+        return inputs
+
     def walk(self) -> list[str]:
         """Walk along inputs, backwards from anywhere."""
         way = [self.dice.choice(list(self.components))]
         for _ in range(self.dice.randint(1, 4)):
-            inputs = self.components[way[0]]["inputs"]
-            assert isinstance(inputs, dict)
-            sources = [
-                str(one).split(".", maxsplit=1)[0]
-                for some in inputs.values()
-                if not isinstance(some, dict)
-                for one in (some if isinstance(some, list) else [some])
-            ]
-            fresh = [source for source in sources if source not in way]
+            fresh = [source for source in self.sources(self.inputs(way[0])) if source not in way]
             if not fresh:
                 break
             way.insert(0, self.dice.choice(fresh))
