@@ -19,7 +19,7 @@ from archgen.simulation.plan import (
     Step,
     Wire,
 )
-from archgen.timing.system import Activity, Arc, System
+from archgen.timing.system import Activity, Arc, System, selective
 
 _SECOND = 10**9
 Pauses = Mapping[tuple[str, str], Fraction]
@@ -31,13 +31,9 @@ def flatten(system: System, pauses: Pauses | None = None) -> Plan:
     made = _Flat(system, pauses or {})
     wires = tuple(made.wire(arc) for arc in system.arcs)
     steps = tuple(made.step(activity) for activity in system.activities.values())
-    answers = {
-        e: back
-        for e, arc in enumerate(system.arcs)
-        if arc.role == "request"
-        for back, other in enumerate(system.arcs)
-        if other.role == "answer" and (other.source, other.target, other.topic) == (arc.target, arc.source, arc.topic)
-    }
+    back = {(arc.target, arc.source, arc.topic): e for e, arc in enumerate(system.arcs) if arc.role == "answer"}
+    asked = ((e, (arc.source, arc.target, arc.topic)) for e, arc in enumerate(system.arcs) if arc.role == "request")
+    answers = {e: back[key] for e, key in asked if key in back}
     return Plan(
         system.tick / made.scale,
         steps,
@@ -78,6 +74,11 @@ class _Flat:
         self.pool_of_thread: list[int] = []
         self.affinity: list[int] = []
         self.pinned: dict[str, list[int]] = {}
+        self.into: dict[str, list[tuple[int, Arc]]] = {}
+        self.out_of: dict[str, list[tuple[int, Arc]]] = {}
+        for e, arc in enumerate(system.arcs):
+            self.into.setdefault(arc.target, []).append((e, arc))
+            self.out_of.setdefault(arc.source, []).append((e, arc))
         for activity in system.activities.values():
             if activity.host is not None and activity.core is not None:
                 cores = self.pinned.setdefault(activity.host, [])
@@ -118,18 +119,8 @@ class _Flat:
             transmission=transmission,
             limit=None if arc.worst is None else worst,
             request=request,
-            selective=self.selective(arc),
+            selective=selective(self.system, arc),
         )
-
-    def selective(self, arc: Arc) -> bool:
-        """Tell whether a job of the source may send nothing on an arc, with no promise of when one does."""
-        source = self.system.activities[arc.source]
-        if arc.role == "request":
-            return source.calls.get(arc.output, 1) < 1
-        if arc.role == "answer":
-            into = self.system.into.get(arc.source, ())
-            return any(other.role == "data" or other.source != arc.target for other in into)
-        return arc.output in source.conditional and arc.output not in source.max_gaps
 
     def step(self, activity: Activity) -> Step:
         kind = self.kind(activity)
@@ -137,7 +128,7 @@ class _Flat:
         if activity.wcet is None and (activity.response is not None or kind == KEPT):
             self.unknown.pop(f"execution time of {activity.id}", None)
         fixed = activity.mode == "all"
-        into = [(e, arc) for e, arc in enumerate(self.system.arcs) if arc.target == activity.id]
+        into = self.into.get(activity.id, [])
         return Step(
             activity.id,
             kind,
@@ -161,11 +152,8 @@ class _Flat:
 
     def cores(self) -> dict[str, int]:
         """Give the cores of each host that something runs on."""
-        found: dict[str, int] = {}
-        for processor in self.processors:
-            if processor.host is not None:
-                found[processor.host] = found.get(processor.host, 0) + processor.cores
-        return found
+        used = dict.fromkeys(processor.host for processor in self.processors if processor.host is not None)
+        return {host: self.system.cores.get(host) or 1 for host in used}
 
     def kind(self, activity: Activity) -> int:
         if activity.behaviour == "once":
@@ -192,23 +180,17 @@ class _Flat:
         )
 
     def kept(self, activity: Activity) -> tuple[int, ...]:
-        once = {
-            arc.input
-            for arc in self.system.arcs
-            if arc.target == activity.id and self.system.activities[arc.source].behaviour == "once"
-        }
+        into = self.into.get(activity.id, [])
+        once = {arc.input for _, arc in into if self.system.activities[arc.source].behaviour == "once"}
         return tuple(slot for slot, key in enumerate(activity.triggers) if key in once)
 
     def outputs(self, activity: Activity) -> tuple[str, ...]:
-        carried = [arc.output for arc in self.system.arcs if arc.source == activity.id and arc.role == "data"]
+        carried = [arc.output for _, arc in self.out_of.get(activity.id, []) if arc.role == "data"]
         return tuple(dict.fromkeys((*carried, *(key for key in activity.outputs if key in activity.conditional))))
 
     def output(self, activity: Activity, key: str) -> Output:
-        wires = tuple(
-            e
-            for e, arc in enumerate(self.system.arcs)
-            if arc.source == activity.id and arc.output == key and arc.role == "data"
-        )
+        sent = self.out_of.get(activity.id, [])
+        wires = tuple(e for e, arc in sent if arc.output == key and arc.role == "data")
         largest = activity.max_gaps.get(key)
         pause = self.pauses.get((activity.id, key))
         patience = None
@@ -218,8 +200,8 @@ class _Flat:
 
     def calls(self, activity: Activity) -> list[tuple[Fraction, tuple[int, ...]]]:
         found: dict[str, list[int]] = {}
-        for e, arc in enumerate(self.system.arcs):
-            if arc.source == activity.id and arc.role == "request":
+        for e, arc in self.out_of.get(activity.id, []):
+            if arc.role == "request":
                 found.setdefault(arc.output, []).append(e)
         return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
 

@@ -15,8 +15,15 @@ from archgen.timing import wording
 from archgen.timing.analysis import Analysis
 from archgen.timing.arrivals import Arrivals
 from archgen.timing.sums import UNBOUNDED, bounded, known, nameless
-from archgen.timing.system import Activity, Arc
+from archgen.timing.system import Activity, Arc, selective
 from archgen.timing.value import UNKNOWN, ZERO, Value
+
+_SENT = {
+    "data": "{0} publishes {1} for this very input",
+    "request": "{0} calls {1} in this very activation",
+    "answer": "{0} answers {2} on {1} in this very activation",
+}
+"""What is assumed of an activity that does not send at each activation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,17 +142,13 @@ class Steps:
 
     def _condition(self, arc: Arc) -> Value:
         """Give what an output adds that is not published each time: its promised gap, or the assumption that it is."""
-        source = self.analysis.system.activities[arc.source]
-        if arc.role == "request":
-            if source.calls.get(arc.output, 1) >= 1:
-                return ZERO
-            return Value(Fraction(0), assumptions=(f"{arc.source} calls {arc.topic} in this very activation",))
-        if arc.output not in source.conditional:
+        system = self.analysis.system
+        if selective(system, arc):
+            return Value(Fraction(0), assumptions=(_SENT[arc.role].format(arc.source, arc.topic, arc.target),))
+        source = system.activities[arc.source]
+        if arc.role != "data" or arc.output not in source.conditional:
             return ZERO
-        promised = source.max_gaps.get(arc.output)
-        if promised is not None:
-            return self.arrivals.time(promised)
-        return Value(Fraction(0), assumptions=(f"{arc.source} publishes {arc.topic} for this very input",))
+        return self.arrivals.time(source.max_gaps[arc.output])
 
 
 def _strange(activity: Activity) -> Delay:
