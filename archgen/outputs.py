@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -43,6 +43,8 @@ class Ask:
     revision: str | None = None
     progress: Progress | None = None
     warn: Callable[[str], None] = lambda _text: None
+    allowed: Collection[str] | None = None
+    """The only ones of the project's own backends that may run; None for all."""
 
 
 def select(checked: Checked, words: str) -> tuple[Selection, tuple[Problem, ...]]:
@@ -109,7 +111,7 @@ def build(
     checked: Checked, ask: Ask, target: Path, template: Path | None = None, extra: Sequence[str] = ()
 ) -> Iterator[Path]:
     """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths."""
-    chosen = _backends(checked, extra)
+    chosen = _backends(checked, extra, ask.allowed)
     made = _make(checked, ask)
     pictures = _draw(made, ask, ("svg", "png", "svg_outlines"))
     tree.write_file(target / "report.docx", _docx(checked, made, pictures, ask, template))
@@ -126,7 +128,7 @@ def build(
         yield target / backend.id
 
 
-def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
+def _backends(checked: Checked, names: Sequence[str], allowed: Collection[str] | None) -> list[Backend]:
     """Find the further backends that the user asks for, before any long work."""
     if not names:
         return []
@@ -140,6 +142,9 @@ def _backends(checked: Checked, names: Sequence[str]) -> list[Backend]:
             known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
             msg = f"there is no text backend `{name}`"
             raise tree.OutputError(msg, f"there are {known}")
+        if found[name].own and allowed is not None and name not in allowed:
+            msg = f"the project's own backend `{name}` is not run here: the revision that is trusted does not name it"
+            raise tree.OutputError(msg, "add it to `review.backends` there, in a change of its own")
     return [found[name] for name in names]
 
 

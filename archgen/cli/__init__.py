@@ -20,6 +20,7 @@ VERBS = {
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project.",
+    "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
 """Every verb with its line in the help; each is a module of this package with a command of the same name."""

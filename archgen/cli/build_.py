@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 @options.level
 @options.revision
 @options.keep_going
+@click.option(
+    "--trust",
+    metavar="REV",
+    help="Run the project's own backends only if `review.backends` of its files at this git revision names them.",
+)
 def command(  # noqa: PLR0913 - one for each option
     *,
     project: Path | None,
@@ -41,12 +46,14 @@ def command(  # noqa: PLR0913 - one for each option
     level: Level | None,
     revision: str | None,
     keep_going: bool,
+    trust: str | None,
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
     from archgen import outputs
 
     checked = run.ready(project, keep_going=keep_going)
-    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn)
+    allowed = run.trusted(project, trust)
+    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn, allowed)
     target = output or checked.out
     with run.phrased():
         for path in outputs.build(checked, ask, target, template, backend):

@@ -33,6 +33,21 @@ def check(project: Path | None) -> Checked:
         raise click.UsageError(str(error)) from None
 
 
+def trusted(project: Path | None, revision: str | None) -> tuple[str, ...] | None:
+    """Name the project's own backends that a revision allows to run in a review; None where no revision is asked."""
+    from archgen import git, pipeline
+    from archgen.project import NotAtRevisionError
+
+    if not revision:
+        return None
+    try:
+        return pipeline.check_at(project, revision).architecture.review.backends
+    except NotAtRevisionError:
+        return ()
+    except git.GitError as error:
+        raise click.UsageError(str(error)) from None
+
+
 def report(checked: Checked, *, least: Severity = Severity.WARNING) -> None:
     """Print findings and their count to the error stream; notes only where they are asked for."""
     order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
@@ -54,6 +54,8 @@ class Backend:
     options: Mapping[str, Any]
     folder: Path
     name: str
+    own: bool = False
+    """Whether it is the project's, and no shipped one."""
 
 
 class _ManifestError(Exception):
@@ -99,7 +101,7 @@ def _own(folder: Path, known: Mapping[str, Backend]) -> Backend:
         _refuse(
             name, f"there is a backend `{backend.id}` already", "give it another `id`, and its folder the same name"
         )
-    return backend
+    return replace(backend, own=True)
 
 
 def _read(folder: Path, name: str) -> Backend:

@@ -70,6 +70,7 @@ def link(  # noqa: PLR0913 - all by name
         chains=declare_rest.chains(table, references),
         views=declare_rest.views(table),
         policies=declare_rest.policies(table),
+        review=declare_rest.review(table),
         interfaces=interfaces,
         partial=partial,
         lost=lost,

@@ -1,13 +1,15 @@
-"""What stands around groups and nodes: partners, requirements, hosts, links, chains, views, policies, the project."""
+"""What stands around groups and nodes: partners, requirements, hosts, links, chains, views, policies, reviews, the project."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.diagnostic import Severity
 from archgen.link import reading, sense
 from archgen.link.references import References
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
+from archgen.model.review import Accepted, Review
 from archgen.syntax.tree import Table
 
 _WAY = ("node", "component", "output")
@@ -147,6 +149,22 @@ def views(root: Table) -> dict[str, View]:
             show_at=reading.place(below, "show"),
         )
     return found
+
+
+def review(root: Table) -> Review:
+    """Declare how changes are judged; merging has reported what is accepted without a reason."""
+    below = reading.table(root, "review")
+    breaking = reading.text(below, "breaking")
+    return Review(
+        main=reading.text(below, "main"),
+        breaking=None if breaking is None else Severity(breaking),
+        accepted={
+            name: Accepted(name, reading.text(entry, "reason") or "", reading.text(entry, "key"), at.at)
+            for name, at, entry in reading.elements(below, "accepted")
+            if reading.text(entry, "reason")
+        },
+        backends=reading.texts(below, "backends"),
+    )
 
 
 def policies(root: Table) -> dict[str, Policy]:

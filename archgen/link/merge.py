@@ -149,30 +149,39 @@ def _without(groups: Table, lost: frozenset[Path]) -> Table:
     return Table(kept, groups.at)
 
 
-_NEEDED = {"views": (("show",),), "policies": (("forbid", "from"), ("forbid", "to"))}
+_NEEDED: dict[Path, tuple[Path, ...]] = {
+    ("views",): (("show",),),
+    ("policies",): (("forbid", "from"), ("forbid", "to")),
+    ("review", "accepted"): (("reason",),),
+}
 
 
 def _incomplete(root: Table) -> Iterator[Diagnostic]:
     """Find elements that mean nothing without a key that no slice writes."""
     for section, needed in _NEEDED.items():
-        table = root.get(section)
+        table = _below(root, section)
         for entry in table if isinstance(table, Table) else ():
             for path in needed:
                 if not _has(entry.value, path):
                     message = f"`{entry.key}` lacks `{'.'.join(path)}`"
-                    yield Diagnostic("missing-key", message, entry.at, help=_HELP[section], element=entry.key)
+                    yield Diagnostic("missing-key", message, entry.at, help=_HELP[section[-1]], element=entry.key)
 
 
 _HELP = {
     "views": 'say what the view shows: `show: "tag:safety"`',
     "policies": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
+    "accepted": "say why the change is right: `camera.image: the tracker moved to depth images`",
 }
 
 
-def _has(value: Value | None, path: Path) -> bool:
+def _has(value: Value, path: Path) -> bool:
+    return _below(value, path) is not None
+
+
+def _below(value: Value | None, path: Path) -> Value | None:
     for key in path:
         value = value.get(key) if isinstance(value, Table) else None
-    return value is not None
+    return value
 
 
 RULES: tuple[Rule, ...] = (

@@ -12,6 +12,7 @@ from archgen.model.interfaces import Interfaces
 from archgen.model.mapping import Type
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.quantity import Quantity
+from archgen.model.review import Review
 from archgen.source import NOWHERE, Span
 
 
@@ -150,6 +151,7 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
+    review: Review = field(default_factory=Review)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     interfaces: Interfaces = field(default_factory=Interfaces)

@@ -69,7 +69,8 @@ _ROOT = Form(
         "chains": Form(("through",), frozenset({"through"})),
         "views": Form(("show",)),
         "policies": _PLAIN,
-    }
+    },
+    parts={"review": Form(lists=frozenset({"backends"}), keyed={"accepted": Form(("reason",))})},
 )
 
 

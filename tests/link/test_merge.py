@@ -130,3 +130,11 @@ def test_documents_stay_as_they_are() -> None:
 
 def test_nothing() -> None:
     assert merged() == ({}, [])
+
+
+def test_what_is_accepted_has_a_reason() -> None:
+    _, found = merged("review: {accepted: {a.b: agreed, a.c: , a.d: {key: qos}}}")
+    assert [line.split(" |")[0] for line in found] == [
+        "a:1:34 missing-key: `a.c` lacks `reason`",
+        "a:1:41 missing-key: `a.d` lacks `reason`",
+    ]

@@ -1,0 +1,26 @@
+"""Where pull requests live: put one comment on a pull request of GitHub or a merge request of GitLab, and keep it current."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from archgen.forge import github, gitlab
+from archgen.forge.http import ForgeError
+from archgen.forge.post import Posted, put
+
+__all__ = ["ForgeError", "Posted", "comment"]
+
+
+def comment(text: str, key: str, environment: Mapping[str, str] = os.environ) -> Posted:
+    """Put a text on the pull request that a CI job runs for, in place of the one that was put there under this key.
+
+    The job's environment says where: GitHub's or GitLab's own variables, and a token that may write comments. Raises
+    `ForgeError` where there is no pull request or the forge refuses.
+    """
+    if environment.get("GITLAB_CI"):
+        return put(gitlab.request(environment), text, key)
+    if environment.get("GITHUB_ACTIONS"):
+        return put(github.request(environment), text, key)
+    msg = "this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set"
+    raise ForgeError(msg)

@@ -1,0 +1,53 @@
+"""A pull request of GitHub, from the variables of an Actions job."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from archgen.forge.http import Api, ForgeError
+from archgen.forge.post import Request
+
+BOT = "github-actions[bot]"
+MOST = 65_536
+
+
+def request(environment: Mapping[str, str]) -> Request:
+    """Find the pull request that the job runs for. GITHUB_TOKEN needs the permission `pull-requests: write`."""
+    token = environment.get("GITHUB_TOKEN") or environment.get("GH_TOKEN")
+    repository = environment.get("GITHUB_REPOSITORY", "")
+    if not token:
+        msg = "GITHUB_TOKEN is not set: pass `${{ github.token }}` to this step"
+        raise ForgeError(msg)
+    if not re.fullmatch(r"[\w.-]+/[\w.-]+", repository):
+        msg = "GITHUB_REPOSITORY names no repository"
+        raise ForgeError(msg)
+    headers = {"Authorization": f"Bearer {token}", "X-GitHub-Api-Version": "2022-11-28"}
+    api = Api(environment.get("GITHUB_API_URL", "https://api.github.com"), headers)
+    issues = f"/repos/{repository}/issues"
+    comments = f"{issues}/{_number(environment)}/comments"
+    return Request(api, comments, f"{issues}/comments", "PATCH", ("user", "login", _author(api)), MOST)
+
+
+def _number(environment: Mapping[str, str]) -> int:
+    """Read the pull request's number from the event that started the job."""
+    try:
+        event = json.loads(Path(environment["GITHUB_EVENT_PATH"]).read_bytes())
+        return int(event["pull_request"]["number"])
+    except (KeyError, OSError, ValueError, TypeError):
+        msg = "the event that started this job is no pull request"
+        raise ForgeError(msg) from None
+
+
+def _author(api: Api) -> object:
+    """Name whose comments are ours: the token's user; a job's own token has none, and writes as the bot of Actions."""
+    try:
+        return api.ask("GET", "/user")["login"]
+    except ForgeError as error:
+        if error.status in {401, 403, 404}:
+            return BOT
+        raise
+    except (KeyError, TypeError):
+        return BOT

@@ -1,0 +1,64 @@
+"""Ask a forge's API: JSON over HTTPS, to the one host that the job names, with a time limit and no redirects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http.client import HTTPException
+from typing import Any
+from urllib.error import HTTPError, URLError
+from urllib.parse import urlsplit
+from urllib.request import HTTPRedirectHandler, Request, build_opener
+
+_SECONDS = 30
+_MOST_BYTES = 64 * 1024 * 1024
+_LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
+
+
+class ForgeError(Exception):
+    """The forge did not do what was asked. The text says why; `status` is HTTP's, 0 where there was no answer."""
+
+    def __init__(self, message: str, status: int = 0) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+class _Stay(HTTPRedirectHandler):
+    """A token is for one host: an answer that leads elsewhere is an error."""
+
+    def redirect_request(self, *_: Any, **__: Any) -> None:  # noqa: ANN401 - whatever urllib passes
+        """Follow nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Api:
+    """A forge's API: its address and what proves who asks."""
+
+    url: str
+    headers: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Refuse to send a token over a line that anybody can read."""
+        parts = urlsplit(self.url)
+        if parts.scheme != "https" and not (parts.scheme == "http" and parts.hostname in _LOOPBACK):
+            msg = f"the API's address {self.url!r} does not begin with https://"
+            raise ForgeError(msg)
+
+    def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401 - JSON
+        """Send one request and give its answer as plain data."""
+        data = json.dumps(body).encode() if body is not None else None
+        headers = {"Accept": "application/json", "Content-Type": "application/json", "User-Agent": "archgen"}
+        request = Request(f"{self.url}{path}", data, {**headers, **self.headers}, method=method)  # noqa: S310 - see above
+        try:
+            with build_opener(_Stay).open(request, timeout=_SECONDS) as answer:
+                return json.loads(answer.read(_MOST_BYTES))
+        except HTTPError as error:
+            msg = f"{method} {path} was answered with {error.code} {error.reason}"
+            raise ForgeError(msg, error.code) from None
+        except (URLError, TimeoutError, HTTPException) as error:
+            msg = f"{method} {path} got no answer: {getattr(error, 'reason', error)}"
+            raise ForgeError(msg) from None
+        except ValueError:
+            msg = f"{method} {path} was answered with something that is no JSON"
+            raise ForgeError(msg) from None

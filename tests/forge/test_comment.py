@@ -1,0 +1,209 @@
+"""One comment on a pull request: made, changed, left alone; against a server that plays the forge."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+from click.testing import CliRunner
+
+from archgen.cli import main
+from archgen.forge import ForgeError, comment
+from archgen.forge.http import Api
+
+
+@dataclass
+class Forge:
+    """What the server holds, and what it was asked."""
+
+    comments: list[dict[str, Any]] = field(default_factory=list)
+    user: dict[str, Any] | None = None
+    refuse: int = 0
+    asked: list[tuple[str, str]] = field(default_factory=list)
+    tokens: set[str] = field(default_factory=set)
+    url: str = ""
+
+
+@pytest.fixture
+def forge() -> Iterator[Forge]:
+    held = Forge()
+
+    class Handler(BaseHTTPRequestHandler):
+        def answer(self) -> None:
+            parts = urlsplit(self.path)
+            held.asked.append((self.command, parts.path))
+            held.tokens.update(self.headers.get_all("Authorization", []) + self.headers.get_all("PRIVATE-TOKEN", []))
+            body = json.loads(self.rfile.read(int(self.headers.get("Content-Length", 0))) or "null")
+            status, data = reply(self.command, parts.path, parse_qs(parts.query), body)
+            self.send_response(status)
+            if status == 302:
+                self.send_header("Location", "http://127.0.0.1:1/")
+            self.end_headers()
+            self.wfile.write(data if isinstance(data, bytes) else json.dumps(data).encode())
+
+        do_GET = do_POST = do_PATCH = do_PUT = answer  # noqa: N815 - the server's names
+
+        def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the server's name
+            pass
+
+    def reply(method: str, path: str, query: dict[str, list[str]], body: Any) -> tuple[int, object]:  # noqa: ANN401
+        if path == "/user":
+            return (200, held.user) if held.user else (403, {})
+        if held.refuse and method != "GET":
+            return held.refuse, {}
+        if method == "GET":
+            size, page = int(query["per_page"][0]), int(query["page"][0])
+            return 200, held.comments[size * (page - 1) : size * page]
+        if method == "POST":
+            held.comments.append({"id": len(held.comments) + 1, "user": held.user or bot, "author": held.user, **body})
+            return 201, {}
+        wanted = int(path.rsplit("/", 1)[1])
+        next(one for one in held.comments if one["id"] == wanted).update(body)
+        return 200, {}
+
+    bot = {"login": "github-actions[bot]"}
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+    thread.start()
+    held.url = f"http://127.0.0.1:{server.server_port}"
+    yield held
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def github(forge: Forge, tmp_path: Path, event: object = None) -> dict[str, str]:
+    file = tmp_path / "event.json"
+    file.write_text(json.dumps({"pull_request": {"number": 7}} if event is None else event))
+    return {
+        "GITHUB_ACTIONS": "true",
+        "GITHUB_TOKEN": "secret",
+        "GITHUB_REPOSITORY": "robots/rover",
+        "GITHUB_API_URL": forge.url,
+        "GITHUB_EVENT_PATH": str(file),
+    }
+
+
+def gitlab(forge: Forge) -> dict[str, str]:
+    return {
+        "GITLAB_CI": "true",
+        "ARCHGEN_TOKEN": "secret",
+        "CI_API_V4_URL": forge.url,
+        "CI_PROJECT_ID": "12",
+        "CI_MERGE_REQUEST_IID": "3",
+    }
+
+
+def test_a_comment_of_github_is_made_once_and_then_kept_current(forge: Forge, tmp_path: Path) -> None:
+    job = github(forge, tmp_path)
+    assert comment("first", "diff", job) == "created"
+    assert comment("second\n\n", "diff", job) == "updated"
+    assert comment("second", "diff", job) == "unchanged"
+    assert [one["body"] for one in forge.comments] == ["<!-- archgen: diff -->\nsecond\n"]
+    assert ("POST", "/repos/robots/rover/issues/7/comments") in forge.asked
+    assert ("PATCH", "/repos/robots/rover/issues/comments/1") in forge.asked
+    assert forge.tokens == {"Bearer secret"}
+
+
+def test_a_note_of_gitlab_is_made_once_and_then_kept_current(forge: Forge) -> None:
+    forge.user = {"id": 5}
+    job = gitlab(forge)
+    assert comment("first", "diff", job) == "created"
+    assert comment("second", "diff", job) == "updated"
+    assert [one["body"] for one in forge.comments] == ["<!-- archgen: diff -->\nsecond\n"]
+    assert ("PUT", "/projects/12/merge_requests/3/notes/1") in forge.asked
+
+
+def test_two_keys_are_two_comments(forge: Forge, tmp_path: Path) -> None:
+    job = github(forge, tmp_path)
+    comment("arm", "robots/arm", job)
+    comment("leg", "robots/leg", job)
+    assert comment("leg now", "robots/leg", job) == "updated"
+    assert [one["body"].split("\n")[1] for one in forge.comments] == ["arm", "leg now"]
+
+
+def test_a_copied_mark_in_a_strangers_comment_is_left_alone(forge: Forge, tmp_path: Path) -> None:
+    strange = "<!-- archgen: diff -->\nmine"
+    forge.comments.append({"id": 1, "user": {"login": "mallory"}, "body": strange})
+    assert comment("text", "diff", github(forge, tmp_path)) == "created"
+    assert forge.comments[0]["body"] == strange
+
+
+def test_ours_is_found_on_a_later_page_also_with_windows_line_ends(forge: Forge, tmp_path: Path) -> None:
+    ours = {"login": "rover-bot"}
+    forge.user = ours
+    forge.comments = [{"id": number, "user": None, "body": "hello"} for number in range(250)]
+    forge.comments.append({"id": 999, "user": ours, "body": "<!-- archgen: diff -->\r\ntext\r\n"})
+    assert comment("text", "diff", github(forge, tmp_path)) == "unchanged"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"GITHUB_ACTIONS": ""}, "this is no job of GitHub Actions or GitLab CI"),
+        ({"GITHUB_TOKEN": ""}, "GITHUB_TOKEN is not set"),
+        ({"GITHUB_REPOSITORY": "a/b/../c"}, "GITHUB_REPOSITORY names no repository"),
+        ({"GITHUB_API_URL": "http://example.org"}, "does not begin with https://"),
+        ({"GITHUB_API_URL": "file:///etc/passwd"}, "does not begin with https://"),
+        ({"GITHUB_EVENT_PATH": "/nowhere"}, "the event that started this job is no pull request"),
+    ],
+)
+def test_a_job_that_cannot_comment_says_why(forge: Forge, tmp_path: Path, change: dict[str, str], said: str) -> None:
+    with pytest.raises(ForgeError, match=said):
+        comment("text", "diff", github(forge, tmp_path) | change)
+    assert not forge.comments
+
+
+def test_a_push_has_no_pull_request(forge: Forge, tmp_path: Path) -> None:
+    with pytest.raises(ForgeError, match="no pull request"):
+        comment("text", "diff", github(forge, tmp_path, {"ref": "refs/heads/main"}))
+
+
+@pytest.mark.parametrize("change", [{"ARCHGEN_TOKEN": ""}, {"CI_MERGE_REQUEST_IID": ""}, {"CI_PROJECT_ID": "../1"}])
+def test_a_gitlab_job_that_cannot_comment_says_why(forge: Forge, change: dict[str, str]) -> None:
+    with pytest.raises(ForgeError, match=r"ARCHGEN_TOKEN is not set|no merge request"):
+        comment("text", "diff", gitlab(forge) | change)
+    assert not forge.asked
+
+
+def test_too_long_a_text_and_a_key_that_would_break_out_of_the_mark_are_refused(forge: Forge, tmp_path: Path) -> None:
+    job = github(forge, tmp_path)
+    with pytest.raises(ForgeError, match="the text has 65,561 characters, a comment takes 65,536"):
+        comment("x" * 65_537, "diff", job)
+    with pytest.raises(ForgeError, match="the key"):
+        comment("text", "a --> b", job)
+
+
+def test_a_token_is_not_carried_to_another_address(forge: Forge) -> None:
+    forge.refuse = 302
+    with pytest.raises(ForgeError, match="302"):
+        Api(forge.url, {}).ask("POST", "/x", {})
+
+
+def test_where_a_fork_may_not_comment_the_text_goes_to_the_summary(forge: Forge, tmp_path: Path) -> None:
+    forge.refuse = 403
+    text, summary = tmp_path / "diff.md", tmp_path / "summary.md"
+    text.write_text("what changed\n")
+    job = {**github(forge, tmp_path), "GITHUB_STEP_SUMMARY": str(summary), "GITLAB_CI": ""}
+    done = CliRunner().invoke(main, ["comment", str(text)], env=job)
+    assert done.exit_code == 0
+    assert "was answered with 403" in done.stderr
+    assert "the text is in the job's summary instead" in done.stderr
+    assert summary.read_text() == "what changed\n"
+
+
+def test_the_verb_says_what_it_did(forge: Forge, tmp_path: Path) -> None:
+    text = tmp_path / "diff.md"
+    text.write_text("what changed\n")
+    job = {**github(forge, tmp_path), "GITLAB_CI": ""}
+    assert CliRunner().invoke(main, ["comment", str(text)], env=job).output == "comment created\n"
+    assert CliRunner().invoke(main, ["comment", str(text)], env=job).output == "comment unchanged\n"
+    done = CliRunner().invoke(main, ["comment", str(text)], env={**job, "GITHUB_TOKEN": ""})
+    assert (done.exit_code, done.stderr.startswith("Error: GITHUB_TOKEN is not set")) == (1, True)
