@@ -34,6 +34,12 @@ class FloodError(Exception):
 def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logged: Collection[int] = ()) -> Run:
     """Run a plan by a seed until a moment; note the jobs of the watched steps, and what they read on the logged wires."""
     run = Run(plan, seed, watched, logged)
+    play(run, horizon)
+    return run
+
+
+def play(run: Run, horizon: int) -> None:
+    """Play what was drawn until a moment."""
     _begin(run)
     heap = run.heap
     now = popped = rounds = 0
@@ -49,7 +55,7 @@ def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logge
                 break
             rounds = 0
         if rounds > MOST_ROUNDS or len(heap) > MOST_WAITING:
-            raise FloodError(now * plan.unit)
+            raise FloodError(now * run.plan.unit)
         _, what, which = heappop(heap)
         popped += 1
         order = key & 3
@@ -62,7 +68,6 @@ def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logge
         else:
             keep_promise(run, now, -1 - what)
     run.events = popped + sum(run.steps.started) + run.wires.sent
-    return run
 
 
 def _begin(run: Run) -> None:
