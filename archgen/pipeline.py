@@ -79,6 +79,11 @@ class Checked:
         """Say whether there are errors."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
 
+    @property
+    def unsound(self) -> tuple[Diagnostic, ...]:
+        """Give the errors of reading and linking: what they speak of is not in the architecture."""
+        return tuple(d for d in self.findings if d.severity is Severity.ERROR and _BY_NAME[d.rule].fixed)
+
     def packed(self) -> Packed:
         """Give the whole project as one mapping, with what stands in other files put in."""
         texts, _ = definitions(self.loaded)

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
+from archgen.compare import Comparison, Version, compare
 from archgen.pipeline import Checked
+from archgen.syntax.tree import Table
 
 _AS_PATHS = ("./", "../", "/", "~")
 WORKING_TREE = "the working tree"
@@ -74,3 +76,26 @@ def _fork(left: str, right: str, path: Path | None) -> git.Base:
 
 def _is_path(words: str) -> bool:
     return words.startswith(_AS_PATHS) or words in {".", ".."} or os.path.isabs(words)  # noqa: PTH117 - Windows' drives
+
+
+def compared(before: Side, after: Side) -> Comparison:
+    """Compare two sides."""
+    return compare(version(before.checked), version(after.checked))
+
+
+def version(checked: Checked) -> Version:
+    """Give what a comparison looks at."""
+    return Version(
+        architecture=checked.architecture,
+        findings=checked.findings,
+        rules={rule: str(severity) for rule, severity in checked.loaded.rules.items()},
+        chapters={path: chapter.text for path, chapter in checked.chapters.texts.items()},
+        order=checked.chapters.order,
+        unnamed=frozenset({"id", "title"} - _written(checked)),
+    )
+
+
+def _written(checked: Checked) -> set[str]:
+    """Give the keys that the project says of itself."""
+    section = checked.merged.get("project")
+    return {entry.key for entry in section} if isinstance(section, Table) else set()

@@ -13,6 +13,7 @@ VERBS = {
     "site": "Write the static web site.",
     "diagram": "Draw the diagrams.",
     "pack": "Write one validated YAML file that holds the whole project.",
+    "diff": "Compare two revisions, folders or files: what changed, and what it means.",
     "stats": "Show size and progress.",
     "timing": "Show rates, latency of chains, load; why, what if, what decides.",
     "show": "Show an element: ports, readers, nodes, place in the files.",

@@ -10,6 +10,7 @@ from functools import lru_cache
 from archgen.model import quantity
 from archgen.model.component import Layout
 from archgen.model.mapping import full_message
+from archgen.model.names import made_title
 from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE, Span
 from archgen.syntax.tree import Entry, Listing, Scalar, Table
@@ -105,7 +106,7 @@ def layout(of: Table) -> Layout:
 def title(of: Table, name: str) -> str:
     """Give an element's title, made from its id where it has none: `object_recognition` is "Object Recognition"."""
     written = text(of, "title")
-    return written if written is not None else " ".join(w[:1].upper() + w[1:] for w in name.split("_") if w)
+    return written if written is not None else made_title(name)
 
 
 @lru_cache(4096)

@@ -15,6 +15,11 @@ LISTED = 8
 """How many candidates are given by name; there may be ten thousand."""
 
 
+def made_title(name: str) -> str:
+    """Make the title of an element that has none from its id: `object_recognition` is "Object Recognition"."""
+    return " ".join(word[:1].upper() + word[1:] for word in name.split("_") if word)
+
+
 class Named(NamedTuple):
     """An element: its kind (`group`, `component`, `output`, ...) and its complete id."""
 

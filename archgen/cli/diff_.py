@@ -1,0 +1,109 @@
+"""`archgen diff`: compare two versions of an architecture."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import options
+
+if TYPE_CHECKING:
+    from archgen.compare import Comparison
+    from archgen.sides import Side
+
+Write = Callable[["Comparison", "Side", "Side"], str]
+
+
+def _sides(before: str | None, after: str | None, project: Path | None) -> tuple[Side, Side]:
+    """Read both sides; what cannot be found is wrong usage."""
+    from archgen.findings.escape import visible
+    from archgen.git import GitError
+    from archgen.project import ProjectNotFoundError
+    from archgen.sides import sides
+
+    try:
+        return sides(before, after, project)
+    except (GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(visible(str(error))) from None
+
+
+def _selected(found: Comparison, old: Side, new: Side, words: str | None) -> Comparison:
+    """Keep what touches the selected part of either side. What only one side knows is selected there alone."""
+    from archgen import outputs
+    from archgen.compare.selected import selected
+    from archgen.findings.escape import visible
+    from archgen.model.selector import Selection
+
+    if words is None:
+        return found
+    (one, wrong), (other, wrong_too) = (outputs.select(side.checked, words) for side in (old, new))
+    problems = [problem for problem in wrong_too if problem.message in {each.message for each in wrong}]
+    for problem in problems:
+        click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
+        if problem.help:
+            click.echo(visible(f"  = help: {problem.help}"), err=True)
+    if any(problem.severity == "error" for problem in problems):
+        msg = f"the selector '{visible(words)}' cannot be used"
+        raise click.UsageError(msg)
+    return selected(found, one or Selection(), other or Selection())
+
+
+def _text(found: Comparison, old: Side, new: Side) -> str:
+    from archgen.findings import diff_text
+    from archgen.findings.text import wants_colour
+
+    colour = wants_colour(sys.stdout, os.environ)
+    lines = [*_broken(old), *_broken(new), *diff_text.render(found, colour=colour)]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _broken(side: Side) -> list[str]:
+    """Say what of a side could not be read."""
+    from archgen.findings import text
+    from archgen.findings.escape import visible
+
+    errors = side.checked.unsound
+    if not errors:
+        return []
+    colour = text.wants_colour(sys.stdout, os.environ)
+    heading = visible(f"{side.name} is not sound; what could not be read there is left out of the comparison:")
+    return [heading, "", *text.render(errors, side.checked.sources, colour=colour), ""]
+
+
+def _json(found: Comparison, old: Side, new: Side) -> str:
+    from archgen.findings import diff_json
+
+    return diff_json.render(found, (old.checked.unsound, new.checked.unsound))
+
+
+FORMATS: Mapping[str, Write] = {"text": _text, "json": _json}
+"""How a comparison is written, by the name of the format."""
+
+
+@click.command("diff")
+@click.argument("before", required=False, metavar="[A]")
+@click.argument("after", required=False, metavar="[B]")
+@click.option("--format", "form", type=click.Choice(list(FORMATS)), default="text", show_default=True)
+@click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
+@options.select
+@options.project_option
+def command(  # noqa: PLR0913 - the options of the verb, each by its name
+    before: str | None, after: str | None, form: str, *, exit_code: bool, select: str | None, project: Path | None
+) -> None:
+    """Compare two versions of the architecture: models, not lines.
+
+    A and B are revisions of git (`main`, `v1.2`, `HEAD~3`), folders, or single or packed files. B left out is the working
+    tree; A left out is the commit at which the branch left its main line. `A..B` and `A...B` mean what they mean to git.
+    Order, comments, formatting and moves between files are no changes.
+    """
+    from archgen import sides
+
+    old, new = _sides(before, after, project)
+    found = _selected(sides.compared(old, new), old, new, select)
+    sys.stdout.write(FORMATS[form](found, old, new))
+    sys.exit(1 if exit_code and not found.empty else 0)

@@ -1,0 +1,72 @@
+"""What a comparison takes and gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from archgen.compare.names import Names
+from archgen.compare.told import Told
+from archgen.compare.version import Version
+from archgen.diagnostic import Diagnostic
+from archgen.timing.analysis import ChainResult
+from archgen.timing.value import Value
+
+Kind = Literal["added", "removed", "changed", "renamed", "moved"]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change. `element` is its complete id, as it was where it is removed; `was` is the id before a rename or a move.
+
+    `key` is what changed of an element, `before` and `after` its values as plain data (None: not written). `confidence`
+    is below 1 where a rename or a move was only recognised. `breaks` are partners, other than the owner, who lose
+    something. `parts` are what came or went with an element, and what follows from the change.
+    """
+
+    kind: Kind
+    sort: str
+    element: str
+    was: str | None = None
+    key: str | None = None
+    before: object = None
+    after: object = None
+    confidence: float = 1.0
+    breaks: tuple[str, ...] = ()
+    text: str = ""
+    parts: tuple[Change, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ChainChange:
+    """A chain of which the bound or the deadline changed, by its id (before, where it is gone). None: it is not there."""
+
+    id: str
+    before: ChainResult | None
+    after: ChainResult | None
+
+    @property
+    def deadline(self) -> Value | None:
+        """Give the deadline that counts now."""
+        there = self.after or self.before
+        return there.deadline if there else None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """All that differs. `cured` findings speak of the first version, `new` ones of the second."""
+
+    before: Version
+    after: Version
+    names: Names
+    told: Told
+    changes: tuple[Change, ...]
+    new: tuple[Diagnostic, ...]
+    cured: tuple[Diagnostic, ...]
+    chains: tuple[ChainChange, ...]
+    owners: tuple[str, ...]
+
+    @property
+    def empty(self) -> bool:
+        """Say whether nothing differs."""
+        return not (self.changes or self.new or self.cured or self.chains)

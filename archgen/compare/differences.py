@@ -1,0 +1,182 @@
+"""What differs between two versions: whole elements, their keys, their connections; what belongs together in one change."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from archgen.compare import keys, sentences
+from archgen.compare.change import Change
+from archgen.compare.elements import Element, Key
+from archgen.compare.names import Names
+from archgen.compare.told import Told
+from archgen.compare.wiring import Rewired, Wires, rewired
+
+RANKS = {
+    sort: rank
+    for rank, sort in enumerate(
+        (
+            *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
+            *("connection", "type", "message", "node", "port", "host", "container", "link", "chain", "policy", "view"),
+        )
+    )
+}
+"""The sorts of elements, in the order in which changes are told."""
+
+
+@dataclass(slots=True)
+class Differences:
+    """Both versions, and the changes that were found. `hanging` are those that belong to an element that came or went."""
+
+    before: Mapping[Key, Element]
+    after: Mapping[Key, Element]
+    names: Names
+    told: Told
+    _sharing: frozenset[Key] = frozenset()
+    """Nodes that, in both versions, share their components with others, and so say which ports they carry."""
+    top: list[Change] = field(default_factory=list)
+    hanging: dict[Key, list[Change]] = field(default_factory=lambda: defaultdict(list))
+
+    def all(self, old: Wires, new: Wires) -> tuple[Change, ...]:
+        """Give all changes, in the order in which they are told."""
+        carriers = (
+            {e.parent for e in side.values() if e.parent and "carried" in e.values}
+            for side in (self.before, self.after)
+        )
+        self._sharing = frozenset.intersection(*map(frozenset, carriers))
+        self._connections(old, new)
+        self._renames()
+        for key, element in self.after.items():
+            if key in self.before:
+                self._keys(self.before[key], element)
+            elif element.sort == "port":
+                self._port(None, element)
+        for key, element in self.before.items():
+            if key not in self.after and element.sort == "port":
+                self._port(element, None)
+        self._whole()
+        return tuple(sorted(self.top, key=rank))
+
+    def _whole(self) -> None:
+        """Tell what came and went, the parts below the whole."""
+        for kind, here, there in (("removed", self.before, self.after), ("added", self.after, self.before)):
+            below: dict[Key, list[Element]] = defaultdict(list)
+            roots = []
+            for key, element in here.items():
+                if key in there or not element.stated or element.sort == "port" or self.told.unknown(key):
+                    continue
+                if element.parent is not None and element.parent in here and element.parent not in there:
+                    below[element.parent].append(element)
+                else:
+                    roots.append(element)
+            self.top += (self._one(kind, element, below) for element in roots)
+
+    def _one(self, kind: str, element: Element, below: Mapping[Key, list[Element]]) -> Change:
+        key = (element.sort, element.id)
+        parts = [self._one(kind, part, below) for part in below.get(key, ())] + self.hanging.pop(key, [])
+        change = Change("added" if kind == "added" else "removed", element.sort, element.own)
+        change = replace(change, parts=tuple(sorted(parts, key=rank)))
+        return replace(change, text=sentences.whole(change, element, self.told))
+
+    def _renames(self) -> None:
+        for (sort, name), confidence in self.names.confidence.items():
+            old = self.names.back[sort][name]
+            there = self.after.get((sort, name))
+            if there is None or (sort, name) not in self.before:
+                continue
+            moved = sort == "component" and self._home(old) != there.parent
+            change = Change("moved" if moved else "renamed", sort, name, was=old, confidence=confidence)
+            self.top.append(replace(change, text=sentences.renamed(change)))
+
+    def _home(self, component: str) -> Key:
+        return "group", self.names.to("group", component.partition(".")[0])
+
+    def _keys(self, old: Element, new: Element) -> None:
+        if old.values == new.values:
+            return
+        for key, before, after in keys.changed(old, new, self.before, self.after):
+            unread = self.told.lost[0] if before is None else self.told.lost[1] if after is None else frozenset()
+            if unread.isdisjoint(new.id.split(".")):
+                self.top.append(self._changed(new, key, before, after))
+
+    def _changed(self, element: Element, key: str, before: object, after: object) -> Change:
+        change = Change("changed", element.sort, element.id, key=key, before=before, after=after)
+        return replace(change, text=sentences.changed(change, self.told))
+
+    def _port(self, old: Element | None, new: Element | None) -> None:
+        """Tell what a node says of a port in one version only: with the port, with the node, or as a change of its own."""
+        there = new or old
+        if there is None or there.parent is None:
+            return
+        nothing = replace(there, values={})
+        port = self._came_or_went(there.refs[0]) if there.refs else None
+        node = there.parent if (there.parent in self.before) != (there.parent in self.after) else None
+        home = node or port
+        if home or ("carried" in there.values and there.parent in self._sharing):
+            kind = "added" if new else "removed"
+            change = Change("added" if new else "removed", "port", there.own)
+            change = replace(change, text=sentences.port(kind, there))
+            (self.hanging[home] if home else self.top).append(change)
+        else:
+            self._keys(old or nothing, new or nothing)
+
+    def _came_or_went(self, port: str) -> Key | None:
+        """Give the outermost element with which a port came or went, if it did."""
+        keys_of = (("output", port), ("input", port))
+        key = next((key for key in keys_of if (key in self.before) != (key in self.after)), None)
+        return self._outermost(key) if key else None
+
+    def _outermost(self, key: Key) -> Key:
+        """Give the component of a port, if it came or went too."""
+        parent = (self.before.get(key) or self.after[key]).parent
+        gone = parent is not None and (parent in self.before) != (parent in self.after)
+        return parent if gone and parent is not None else key
+
+    def _connections(self, old: Wires, new: Wires) -> None:
+        for each in rewired(old, new):
+            if self._unread(each):
+                continue
+            home = self._cause(each)
+            before, after = sorted(each.before), sorted(each.after)
+            kind = "changed" if before and after else "added" if after else "removed"
+            own = self._own(each.input) if kind == "removed" else each.input
+            change = Change(kind, "connection", own, before=self._owns(before), after=after)  # type: ignore[arg-type]
+            change = replace(change, text=sentences.connection(each, self.told))
+            (self.hanging[home] if home else self.top).append(change)
+
+    def _unread(self, each: Rewired) -> bool:
+        """Say whether a connection only seems to have come or gone, because one of its ends could not be read."""
+        before, after = self.told.lost
+        if not (before or after):
+            return False
+        words = {part for output in each.lost for part in (*output.split("."), *each.input.split("."))}
+        came = {part for output in each.gained for part in (*output.split("."), *each.input.split("."))}
+        return not (after.isdisjoint(words) and before.isdisjoint(came))
+
+    def _cause(self, each: Rewired) -> Key | None:
+        """Give the element that came or went and took the connection along: the input's, or that of the sources."""
+        key = ("input", each.input)
+        if (key in self.before) != (key in self.after):
+            return self._outermost(key)
+        if each.lost and each.gained:
+            return None
+        here, there = (self.before, self.after) if each.lost else (self.after, self.before)
+        moved = [("output", name) for name in sorted(each.lost or each.gained)]
+        if all(output in here and output not in there for output in moved):
+            return self._outermost(moved[0])
+        return None
+
+    def _own(self, name: str) -> str:
+        element = self.before.get(("input", name))
+        return element.own if element else name
+
+    def _owns(self, outputs: list[str]) -> list[str]:
+        """Give outputs of the first version by the names that they had."""
+        return sorted(self.before[key].own if (key := ("output", name)) in self.before else name for name in outputs)
+
+
+def rank(change: Change) -> tuple[int, str, int, str]:
+    """Order changes: by sort, element, what happened, key."""
+    kinds = ("renamed", "moved", "removed", "added", "changed")
+    return RANKS[change.sort], change.element, kinds.index(change.kind), change.key or ""

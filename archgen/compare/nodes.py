@@ -1,0 +1,169 @@
+"""Nodes in normal form: what they say of themselves, of their ports, and of time."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.compare.names import Names
+from archgen.compare.values import known, leaves, prose, title, words
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.node import Node, PortUse, Qos
+from archgen.model.quantity import Quantity
+from archgen.model.timing import Timing
+from archgen.timing.wording import rate as hertz
+from archgen.transform import ros_names
+
+Row = tuple[str, str, str, Mapping[str, object], tuple[str, str] | None, str | None, bool, tuple[str, ...]]
+"""What an element is made of."""
+QOS = ("reliability", "durability", "history", "depth", "deadline", "lifespan", "liveliness", "lease_duration")
+_DEFAULT = Qos()
+_SECOND = 10**9
+
+
+def nodes(found: Architecture, names: Names) -> Iterator[Row]:
+    """List the nodes that somebody wrote, and what they say of their ports."""
+    alone = _alone(found)
+    for node in found.nodes.values():
+        if not node.written:
+            continue
+        name = names.to("node", node.id)
+        owner = names.to("partner", node.owner) if node.owner else None
+        components = tuple(names.to("component", component) for component in node.implements)
+        yield "node", name, node.id, known(_node(found, node, names, alone)), None, owner, True, components
+        for use in node.uses:
+            values = known(_use(use, node, stated=use.internal or not _whole(use, alone)))
+            if values:
+                key, own = _port_id(use, node, names)
+                yield (
+                    "port",
+                    f"{name}.{key}",
+                    f"{node.id}.{own}",
+                    values,
+                    ("node", name),
+                    owner,
+                    True,
+                    _port(use, names),
+                )
+
+
+def _alone(found: Architecture) -> frozenset[str]:
+    """Give the components that have one node: it exposes all their ports, whether or not it says so."""
+    once, twice = set[str](), set[str]()
+    for node in found.nodes.values():
+        for component in node.implements:
+            (twice if component in once else once).add(component)
+    return frozenset(once - twice)
+
+
+def _whole(use: PortUse, alone: frozenset[str]) -> bool:
+    return use.port is not None and use.port.rpartition(".")[0] in alone
+
+
+def _port_id(use: PortUse, node: Node, names: Names) -> tuple[str, str]:
+    """Give a port's id below its node, as it is called in both versions and in this one."""
+    if use.internal:
+        return f"internal.{use.use}.{use.key}", f"internal.{use.use}.{use.key}"
+    if use.port is None:
+        return f"{use.use}.{use.key}", f"{use.use}.{use.key}"
+    common = _port(use, names)[0]
+    parts = 1 if len(node.implements) <= 1 else 2
+    return f"{use.use}.{_end(common, parts)}", f"{use.use}.{_end(use.port, parts)}"
+
+
+def _port(use: PortUse, names: Names) -> tuple[str, ...]:
+    """Give the port of the component behind a use, None of an internal one."""
+    return (names.to("output" if use.use in {"publishes", "serves"} else "input", use.port),) if use.port else ()
+
+
+def _end(path: str, parts: int) -> str:
+    return ".".join(path.split(".")[-parts:])
+
+
+def _node(found: Architecture, node: Node, names: Names, alone: frozenset[str]) -> dict[str, object]:
+    container = names.to("container", node.container) if node.container else None
+    held = found.containers.get(node.container) if node.container else None
+    host = None if held and held.host == node.host else node.host
+    return {
+        "title": title(node.id, node.title),
+        "implements": words(names.to("component", component) for component in node.implements),
+        "description": prose(node.description),
+        "owner": names.to("partner", node.owner) if node.owner else None,
+        "name": None if node.name == node.id else node.name,
+        "namespace": None if node.namespace == "/" else node.namespace,
+        "kind": words(() if node.kinds == ("node",) else node.kinds),
+        "package": node.package,
+        "executable": node.executable,
+        "plugin": node.plugin,
+        "container": container,
+        "host": names.to("host", host) if host else None,
+        "status": node.status,
+        "parameter_files": node.parameter_files,
+        "tags": words(node.tags),
+        **{f"urls.{name}": url for name, url in node.urls.items()},
+        **{key: value for name, below in node.parameters.items() for key, value in leaves(f"parameters.{name}", below)},
+        **_node_timing(node, names, alone),
+    }
+
+
+def _use(use: PortUse, node: Node, *, stated: bool) -> dict[str, object]:
+    values: dict[str, object] = {
+        "carried": True if stated else None,
+        "topic": words(ros_names.absolute(topic, node) for topic in use.topics),
+        "message": use.message,
+    }
+    qos = use.qos or _DEFAULT
+    return values | {f"qos.{key}": getattr(qos, key) for key in QOS if getattr(qos, key) != getattr(_DEFAULT, key)}
+
+
+def default_qos(key: str) -> object:
+    """Give what counts where nobody wrote a key of `qos`."""
+    return getattr(_DEFAULT, key)
+
+
+def behind(found: Architecture) -> Mapping[str, list[Node]]:
+    """Find the nodes of each component, the planned ones too."""
+    made: dict[str, list[Node]] = defaultdict(list)
+    for node in found.nodes.values():
+        for component in node.implements:
+            made[component].append(node)
+    return made
+
+
+def timing_values(component: Component, nodes_of: Sequence[Node], names: Names) -> dict[str, object]:
+    """Give the timing of a component: with one node it is that of both, wherever it is written; with several, its claim."""
+    timing = nodes_of[0].timing.get(component.id) if len(nodes_of) == 1 else component.timing
+    return dict(_timing("timing", timing, names)) if timing else {}
+
+
+def _node_timing(node: Node, names: Names, alone: frozenset[str]) -> dict[str, object]:
+    """Give the timing of what is not told at a component: of parts of components, and of a node without any."""
+    values: dict[str, object] = {}
+    for component, timing in node.timing.items():
+        if component not in alone:
+            below = "" if len(node.implements) <= 1 else f".{names.to('component', component)}"
+            values |= _timing(f"timing{below}", timing, names)
+    return values
+
+
+def _timing(prefix: str, timing: Timing, names: Names) -> Iterator[tuple[str, object]]:
+    """Give what is said about time; a period is told as the rate that it is."""
+    rate = timing.rate
+    if timing.period is not None and timing.period.value:
+        rate = Quantity(Fraction(_SECOND) / timing.period.value, hertz(Fraction(_SECOND) / timing.period.value))
+    yield f"{prefix}.behaviour", timing.behaviour
+    yield f"{prefix}.rate", rate
+    for key in ("jitter", "wcet", "bcet", "every", "throttle", "priority", "core", "response"):
+        yield f"{prefix}.{key}", getattr(timing, key)
+    trigger = timing.trigger
+    if trigger:
+        yield f"{prefix}.trigger", trigger.mode
+        yield f"{prefix}.trigger.inputs", words(names.to("input", port) for port in trigger.inputs or ())
+    for port, told in timing.outputs.items():
+        name = _end(names.to("output", port), 1)
+        yield f"{prefix}.outputs.{name}.conditional", told.conditional or None
+        yield f"{prefix}.outputs.{name}.max_gap", told.max_gap
+    for port, count in timing.calls.items():
+        yield f"{prefix}.calls.{_end(names.to('input', port), 1)}", count

@@ -1,0 +1,137 @@
+"""How each key of an element is told."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.compare.change import Change
+
+_LONGEST = 80
+_PROSE = frozenset({"functionality", "description", "comment", "text", "external"})
+_FLAT = {
+    "owner": "belongs to",
+    "host": "runs on",
+    "container": "runs in",
+    "message": "is",
+    "deadline": "must end within",
+    "role": "is a",
+    "status": "is",
+    "version": "is version",
+}
+"""Keys with a verb of their own: `x` VERB after instead of before."""
+_NAMES = {
+    "timing.rate": "rate",
+    "timing.wcet": "worst case execution time",
+    "timing.bcet": "best case execution time",
+    "timing.response": "stated response time",
+    "use_cases": "use cases",
+    "latency.best": "best latency",
+    "latency.worst": "worst latency",
+    "forbid.from": "forbidden source",
+    "forbid.to": "forbidden target",
+    "show": "selector",
+    "shared_topics": "shared topics",
+    "distro": "ROS distribution",
+    "parameter_files": "parameter files",
+    "execution_time": "execution time",
+}
+_PATHS = frozenset({"component", "input", "output", "connection", "port"})
+"""Sorts whose ids are paths that say enough."""
+_SORTS = {"use_case": "use case", "message": "message", "port": "port"}
+
+
+def changed_key(change: Change) -> str:
+    """Say what a key was and is."""
+    key, before, after = change.key or "", change.before, change.after
+    name = f"`{short(change.element)}`"
+    said = name if "." in change.element and change.sort in _PATHS else f"{_SORTS.get(change.sort, change.sort)} {name}"
+    if change.sort == "project":
+        said = "the project"
+    if key == "qos" and isinstance(before, Mapping) and isinstance(after, Mapping):
+        return f"{said}: QoS {listed([f'{_blank(k)} {shown(before[k])} → {shown(after[k])}' for k in before])}"
+    if key in _PROSE:
+        return f"the {_blank(key)} of {said} {_rewritten(before, after)}"
+    if change.sort in {"input", "output"} and key in {"type", "optional"}:
+        return f"{said} {_of_port(change)}"
+    if key in _FLAT and after is not None and before is not None:
+        return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
+    if isinstance(before, list) or isinstance(after, list):
+        return f"{said}: {_blank(key)} {_sets(before, after)}"
+    return f"{said}: {_values(_name(key), before, after)}"
+
+
+def _of_port(change: Change) -> str:
+    if change.key == "optional":
+        return "is optional now" if change.after else "is no longer optional"
+    verb = "carries" if change.sort == "output" else "expects"
+    return f"now {verb} {_instead(change.before, change.after, 'nothing named')}"
+
+
+def _name(key: str) -> str:
+    if key.startswith("rules."):
+        return f"severity of the rule `{key.removeprefix('rules.')}`"
+    if key.startswith("parameters."):
+        return f"parameter `{short(key.removeprefix('parameters.'))}`"
+    return _NAMES.get(key) or _blank(key.removeprefix("timing.").replace(".", " "))
+
+
+def _blank(key: str) -> str:
+    return short(key).replace("_", " ")
+
+
+def _values(name: str, before: object, after: object) -> str:
+    if before is None:
+        return f"{name} set to {shown(after)}"
+    if after is None:
+        return f"{name} no longer given (it was {shown(before)})"
+    return f"{name} {shown(before)} → {shown(after)}"
+
+
+def _instead(before: object, after: object, nothing: str) -> str:
+    if after is None:
+        return f"{nothing} instead of {shown(before)}"
+    return shown(after) if before is None else f"{shown(after)} instead of {shown(before)}"
+
+
+def _rewritten(before: object, after: object) -> str:
+    if before is None:
+        return "is new"
+    return "is gone" if after is None else "is rewritten"
+
+
+def _sets(before: object, after: object) -> str:
+    old = before if isinstance(before, list) else []
+    new = after if isinstance(after, list) else []
+    if len(old) == len(new) == 1:
+        return f"{shown(old[0])} → {shown(new[0])}"
+    gained = [shown(item) for item in new if item not in old]
+    lost = [shown(item) for item in old if item not in new]
+    words = [f"{verb} {listed(_few(items))}" for verb, items in (("gains", gained), ("loses", lost)) if items]
+    return " and ".join(words) or f"are now {listed([shown(item) for item in new])}, in this order"
+
+
+def _few(items: Sequence[str]) -> list[str]:
+    most = 6
+    return [*items] if len(items) <= most else [*items[:most], f"{len(items) - most} more"]
+
+
+def shown(value: object) -> str:
+    """Give a value as it stands in a sentence."""
+    if value is None:
+        return "unlimited"
+    if isinstance(value, (bool, int, float)):
+        return str(value).lower()
+    if isinstance(value, list):
+        return listed([shown(item) for item in value]) or "none"
+    return f"`{short(str(value))}`"
+
+
+def short(text: str) -> str:
+    """Give a text on one line that a sentence can hold."""
+    line = " ".join(text.replace("`", "'").split())
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
+
+
+def listed(items: Sequence[str]) -> str:
+    """Join items as a sentence does."""
+    return " and ".join((", ".join(items[:-1]), items[-1])) if len(items) > 1 else "".join(items)

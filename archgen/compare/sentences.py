@@ -1,0 +1,203 @@
+"""Changes in words: what happened, and what it means for whoever is at the other end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from archgen.compare.change import Change
+from archgen.compare.elements import Element
+from archgen.compare.phrases import changed_key, listed, short
+from archgen.compare.told import Told
+from archgen.compare.wiring import Rewired
+
+_WORDS = {
+    "use_case": "use case",
+    "message": "message definition",
+    "port": "port",
+}
+_MOST = 3
+"""So many consequences are told in one sentence; all stand in the parts."""
+
+
+def whole(change: Change, element: Element, told: Told) -> str:
+    """Say that an element came or went, and what its connections meant to others."""
+    verb = "is added" if change.kind == "added" else "is removed"
+    sort = _WORDS.get(change.sort, change.sort)
+    said = f"{sort} `{short(change.element)}` {verb}{_with(change)}"
+    effects = list(_effects(change, element, told))
+    return "; ".join((said, *_some(effects)))
+
+
+def _some(effects: Sequence[str]) -> Sequence[str]:
+    more = len(effects) - _MOST
+    return effects if more <= 0 else (*effects[:_MOST], f"and {more} more such effects")
+
+
+def _with(change: Change) -> str:
+    """Count what came or went with it."""
+    counts = {"component": 0, "input": 0, "output": 0}
+    for part in _below(change):
+        if part.sort in counts and part.kind == change.kind:
+            counts[part.sort] += 1
+    words = [f"{n} {sort}{'s' if n > 1 else ''}" for sort, n in counts.items() if n]
+    return f" with {listed(words)}" if words else ""
+
+
+def _below(change: Change) -> Iterator[Change]:
+    for part in change.parts:
+        yield part
+        yield from _below(part)
+
+
+def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
+    """Say who lost the last reader or source, or gained the first, and which requirements nothing serves any more."""
+    inside = {(part.sort, part.element) for part in (change, *_below(change))}
+    names = {name for sort, name in inside if sort == "connection"}
+    here, there = (told.old, told.new) if change.kind == "removed" else (told.new, told.old)
+    for reader in sorted(names):
+        name = _common(reader, told)
+        for source in sorted(here.sources.get(name, frozenset()) - there.sources.get(name, frozenset())):
+            if ("output", _shown("output", source, told)) not in inside and not there.readers.get(source):
+                yield _end_of(source, "read", change.kind)
+        if ("input", reader) not in inside and not there.sources.get(name):
+            yield _end_of(name, "fed", change.kind)
+        elif ("input", reader) not in inside:
+            yield f"`{name}` {'loses one of its sources' if change.kind == 'removed' else 'gets another source'}"
+    yield from _unserved(element, told)
+
+
+def _common(own: str, told: Told) -> str:
+    """Give the common name of an input that may be told by the name that it had."""
+    if ("input", own) in told.before or ("input", own) in told.after:
+        return own
+    return next((name for (sort, name), e in told.before.items() if sort == "input" and e.own == own), own)
+
+
+def _shown(sort: str, name: str, told: Told) -> str:
+    element = None if (sort, name) in told.after else told.before.get((sort, name))
+    return element.own if element else name
+
+
+def _end_of(name: str, done: str, kind: str) -> str:
+    if kind == "removed":
+        return f"`{name}` is no longer read by anybody" if done == "read" else f"`{name}` has no source any more"
+    return f"`{name}` is read for the first time" if done == "read" else f"`{name}` gets its first source"
+
+
+def _unserved(element: Element, told: Told) -> Iterator[str]:
+    if element.sort not in {"component", "group"}:
+        return
+    before, after = told.serving
+    for requirement in sorted(before):
+        if requirement not in after and ("requirement", requirement) in told.after:
+            lost = before[requirement]
+            if element.id in lost or any(name.startswith(f"{element.id}.") for name in lost):
+                yield f"no component serves `{requirement}` any more"
+
+
+def renamed(change: Change) -> str:
+    """Say that an element has another id or stands in another group."""
+    sort = _WORDS.get(change.sort, change.sort)
+    was = change.was or ""
+    if change.kind == "moved":
+        old, new = was.rpartition("."), change.element.rpartition(".")
+        called = "" if old[2] == new[2] else f" and is called `{new[2]}` now"
+        said = f"{sort} `{was}` moved to the group `{new[0]}`{called}"
+    elif change.sort in {"component", "input", "output"}:
+        said = f"{sort} `{was}` is called `{change.element.rpartition('.')[2]}` now"
+    else:
+        said = f"{sort} `{short(was)}` is called `{short(change.element)}` now"
+    sure = "" if change.confidence >= 0.9 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
+    return said + sure
+
+
+def connection(each: Rewired, told: Told) -> str:
+    """Say what an input reads now, and what that leaves behind."""
+    reader = f"`{_shown('input', each.input, told)}`"
+    lost = [_shown("output", name, told) for name in sorted(each.lost)]
+    gained = sorted(each.gained)
+    if told.gone("input", each.input):
+        return _reader_went(each, reader, told)
+    if lost and gained:
+        said = f"{reader} now reads {_ticked(gained)} instead of {_ticked(lost)}"
+    elif lost:
+        said = f"{reader} no longer reads {_ticked(lost)}"
+        removed = [name for name in sorted(each.lost) if told.gone("output", name)]
+        if len(removed) == len(lost):
+            said += ", which was removed" if len(lost) == 1 else ", which were removed"
+        if not each.after:
+            said += "; it has no source any more"
+    else:
+        said = (
+            f"{reader} reads {_ticked(gained)}"
+            if told.come("input", each.input)
+            else f"{reader} now reads {_ticked(gained)}"
+        )
+        if not each.before and not told.come("input", each.input):
+            said += ", its first source" if len(gained) == 1 else ", its first sources"
+    unread = [n for n in sorted(each.lost) if ("output", n) in told.after and not told.new.readers.get(n)]
+    first = [n for n in gained if ("output", n) in told.before and not told.old.readers.get(n)]
+    if unread:
+        said += f"; nobody reads {_ticked(unread)} any more"
+    if first:
+        said += f"; nobody read {_ticked(first)} before"
+    return said
+
+
+def _reader_went(each: Rewired, reader: str, told: Told) -> str:
+    """Say what the removal of a reader means to each of its sources."""
+    said = []
+    for source in sorted(each.lost):
+        if told.gone("output", source) or told.new.readers.get(source):
+            continue
+        others = len(told.old.readers[source]) - 1
+        why = (
+            f"its only reader {reader} was removed"
+            if not others
+            else f"{reader} was removed, and nobody else reads it now"
+        )
+        said.append(f"`{source}` is no longer read by anybody: {why}")
+    return (
+        "; ".join(_some(said))
+        or f"{reader}, which read {_ticked(_shown('output', s, told) for s in sorted(each.lost))}, was removed"
+    )
+
+
+def port(kind: str, element: Element) -> str:
+    """Say that a node carries a port, or no longer does."""
+    node, _, name = element.own.partition(".")
+    named = ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
+    on = f" on {named}" if named else ""
+    verb = "now has" if kind == "added" else "no longer has"
+    return f"node `{node}` {verb} `{name}`{on}"
+
+
+def changed(change: Change, told: Told) -> str:
+    """Say what one key of an element was and is, and whom that concerns."""
+    said = changed_key(change)
+    if change.sort == "output" and change.key == "type":
+        readers = sorted(told.new.readers.get(change.element, frozenset()))
+        said += f"; it is read by {_ticked(readers)}" if readers else ""
+    if change.sort == "type" and change.key in {"message", "size"}:
+        outputs = [
+            name
+            for (sort, name), e in told.after.items()
+            if sort == "output" and e.values.get("type") == change.element
+        ]
+        said += f"; {_ticked(sorted(outputs))} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+    if change.sort == "component" and change.key == "requirements":
+        before, after = told.serving
+        unserved = [
+            r
+            for r in sorted(before)
+            if r not in after and change.element in before[r] and ("requirement", r) in told.after
+        ]
+        said += f"; no component serves {_ticked(unserved)} any more" if unserved else ""
+    return said
+
+
+def _ticked(names: Iterable[str]) -> str:
+    """Name some elements, and count the rest."""
+    every = [f"`{short(name)}`" for name in names]
+    most = 2 * _MOST
+    return listed(every) if len(every) <= most else listed([*every[: most - 1], f"{len(every) - most + 1} more"])

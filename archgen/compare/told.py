@@ -1,0 +1,39 @@
+"""What sentences and judgements look up of both versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from archgen.compare.elements import Element, Key
+from archgen.compare.wiring import Wires
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """The elements and wires of both versions, by their common names (those of the second version, where it has them)."""
+
+    old: Wires
+    new: Wires
+    before: Mapping[Key, Element]
+    after: Mapping[Key, Element]
+    serving: tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]
+    """The components that name a requirement, before and after."""
+
+    lost: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """The keys of what could not be read, before and after: nobody knows whether that came or went."""
+
+    def unknown(self, key: Key) -> bool:
+        """Say whether what is missing in one version may stand in a part of it that could not be read."""
+        lost = self.lost[0 if key in self.after else 1]
+        return bool(lost) and not lost.isdisjoint(
+            word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
+        )
+
+    def gone(self, sort: str, name: str) -> bool:
+        """Say whether an element was removed."""
+        return (sort, name) in self.before and (sort, name) not in self.after
+
+    def come(self, sort: str, name: str) -> bool:
+        """Say whether an element was added."""
+        return (sort, name) in self.after and (sort, name) not in self.before

@@ -1,0 +1,46 @@
+"""Two short texts, compared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.compare import Change, Comparison, compare
+from archgen.sides import version
+
+Compared = Callable[[str, str], Comparison]
+Told = Callable[[str, str], list[str]]
+
+
+@pytest.fixture
+def compared(tmp_path: Path) -> Compared:
+    """Compare two one-file projects."""
+
+    def run(before: str, after: str) -> Comparison:
+        sides = []
+        for name, text in (("before", before), ("after", after)):
+            folder = tmp_path / name
+            folder.mkdir(exist_ok=True)
+            (folder / "robot.yaml").write_text(text, encoding="utf-8")
+            sides.append(version(pipeline.check(folder / "robot.yaml")))
+        return compare(*sides)
+
+    return run
+
+
+@pytest.fixture
+def told(compared: Compared) -> Told:
+    """Give all changes as `kind sort element: text`, parts indented below."""
+
+    def tell(before: str, after: str) -> list[str]:
+        return [line for change in compared(before, after).changes for line in _lines(change, "")]
+
+    return tell
+
+
+def _lines(change: Change, indent: str) -> list[str]:
+    line = f"{indent}{change.kind} {change.sort} {change.element}: {change.text}"
+    return [line, *(below for part in change.parts for below in _lines(part, f"{indent}  "))]

@@ -1,0 +1,223 @@
+"""What is no change: another form, order or file; and what holds for any two versions."""
+
+from __future__ import annotations
+
+import random
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+
+from archgen import pipeline
+from archgen.compare import Change, Comparison, Version, compare
+from archgen.emit import yaml as writer
+from archgen.sides import version
+from tests.running import RAMCIP
+
+
+def read(path: Path) -> Version:
+    return version(pipeline.check(path))
+
+
+@pytest.fixture(scope="module")
+def ramcip() -> Version:
+    return read(RAMCIP)
+
+
+@pytest.fixture(scope="module")
+def packed() -> dict[str, object]:
+    data: dict[str, object] = pipeline.check(RAMCIP).packed().data
+    return data
+
+
+def assert_same(one: Version, other: Version) -> None:
+    for found in (compare(one, other), compare(other, one)):
+        assert [change.text for change in found.changes] == []
+        assert [f"{d.rule} {d.message}" for d in (*found.new, *found.cured)] == []
+        assert found.empty
+        assert (found.owners, found.chains) == ((), ())
+
+
+def test_a_version_is_itself(ramcip: Version) -> None:
+    assert_same(ramcip, ramcip)
+
+
+def test_the_packed_project_is_the_same(ramcip: Version, packed: dict[str, object], tmp_path: Path) -> None:
+    (tmp_path / "packed.yaml").write_text(writer.write(packed), encoding="utf-8")
+    assert_same(ramcip, read(tmp_path / "packed.yaml"))
+
+
+def test_order_and_indentation_are_no_change(packed: dict[str, object], ramcip: Version, tmp_path: Path) -> None:
+    shuffled = _shuffled(packed, random.Random(7))  # noqa: S311 - any order
+    text = yaml.safe_dump(shuffled, sort_keys=False, indent=5, width=60, allow_unicode=True)
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    assert_same(ramcip, read(tmp_path / "robot.yaml"))
+
+
+_ORDERED = frozenset(
+    {"implements", "chapters", "through", "parameters", "parameter_files", "definitions", "texts", "pictures"}
+)
+
+
+def _shuffled(value: object, chance: random.Random) -> object:
+    """Change the order of all keys, and of the lists of which the order says nothing (the first component that a node
+    implements gives it its owner).
+    """
+    if isinstance(value, dict):
+        entries = list(value.items())
+        chance.shuffle(entries)
+        return {key: below if key in _ORDERED else _shuffled(below, chance) for key, below in entries}
+    if isinstance(value, list):
+        items = list(value)
+        chance.shuffle(items)
+        return items
+    return value
+
+
+def test_moving_elements_between_files_is_no_change(packed: dict[str, object], ramcip: Version, tmp_path: Path) -> None:
+    """Each section, and of the groups each component, in a file of its own."""
+    groups = packed["groups"]
+    assert isinstance(groups, dict)
+    rest = {key: value for key, value in packed.items() if key != "groups"}
+    (tmp_path / "archgen.yaml").write_text(writer.write(rest), encoding="utf-8")
+    for group, below in groups.items():
+        for name, component in below["components"].items():
+            piece = {"groups": {group: {"components": {name: component}}}}
+            (tmp_path / f"{group}-{name}.yaml").write_text(writer.write(piece), encoding="utf-8")
+        own = {"groups": {group: {key: value for key, value in below.items() if key != "components"}}}
+        (tmp_path / f"{group}.yaml").write_text(writer.write(own), encoding="utf-8")
+    assert_same(ramcip, read(tmp_path))
+
+
+def test_comments_and_line_ends_are_no_change(ramcip: Version, tmp_path: Path) -> None:
+    target = tmp_path / "robot"
+    shutil.copytree(RAMCIP, target, ignore=shutil.ignore_patterns("archgen-out"))
+    for file in (*target.rglob("*.yaml"), *target.rglob("*.md"), *target.rglob("*.msg")):
+        data = file.read_bytes()
+        mark = b"# a comment\n" if file.suffix == ".yaml" else b""
+        file.write_bytes(b"\xef\xbb\xbf" + (mark + data).replace(b"\n", b"\r\n"))
+    assert_same(ramcip, read(target))
+
+
+SHORT = """\
+groups:
+  g:
+    title: Group
+    components:
+      a: {title: A, outputs: {x: T}, timing: {period: 100 ms}}
+      b: {title: B, inputs: {x: a.x, y: [a.x]}, performance: {accuracy: 90 %}}
+types: {T: sensor_msgs/Image}
+nodes:
+  na: {implements: a, namespace: /ns, publishes: {x: topic}}
+  nb: b
+containers: {c: pc}
+hosts: {pc: PC}
+links: {l: [pc, pc2]}
+"""
+LONG = """\
+groups:
+  g:
+    title: "Group"
+    components:
+      a:
+        title: A
+        outputs: {x: {type: T}}
+      b:
+        title: B
+        inputs: {x: {from: [g.a.x]}, y: {from: g.a.x, optional: false}}
+        performance: {overall: {accuracy: 90 %}}
+types: {T: {message: sensor_msgs/msg/Image}}
+nodes:
+  na:
+    implements: [g.a]
+    namespace: ns
+    kind: node
+    publishes: {a.x: {topic: /ns/topic, qos: {profile: default}}}
+    timing: {rate: 10 Hz}
+  nb: {implements: [b], subscribes: {x: {}, y: {}}}
+containers: {c: {host: pc}}
+hosts: {pc: {title: PC}}
+links: {l: {connects: [pc2, pc]}}
+"""
+
+
+def test_short_and_long_forms_are_the_same(tmp_path: Path) -> None:
+    for name, text in (("short", SHORT), ("long", LONG)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "robot.yaml").write_text(text, encoding="utf-8")
+    one, other = (read(tmp_path / name / "robot.yaml") for name in ("short", "long"))
+    assert_same(replace(one, findings=()), replace(other, findings=()))
+
+
+Edit = Callable[[str], str]
+EDITS: tuple[Edit, ...] = (
+    lambda text: text.replace("camera", "kamera"),
+    lambda text: text.replace("Colour image", "Kolor image"),
+    lambda text: text.replace("cores: 6", "cores: 3"),
+    lambda text: text.replace("period: 200 ms", "period: 100 ms"),
+    lambda text: text.replace("robot_lan", "lan"),
+    lambda text: text.replace("sensor_data", "default"),
+    lambda text: text.replace("owner: certh", "owner: sssa"),
+    lambda text: text.replace("semantic_map.rooms", "semantic_map"),
+)
+
+
+@pytest.mark.parametrize("number", range(len(EDITS) + 2))
+def test_the_way_back_is_the_mirror_image(number: int, ramcip: Version, tmp_path: Path) -> None:
+    """Each edit alone, and some of them together."""
+    chosen = EDITS[number : number + 1] or random.Random(number).sample(EDITS, 4)  # noqa: S311 - any four
+    target = tmp_path / "robot"
+    shutil.copytree(RAMCIP, target, ignore=shutil.ignore_patterns("archgen-out"))
+    for file in target.rglob("*.yaml"):
+        text = file.read_text(encoding="utf-8")
+        for edit in chosen:
+            text = edit(text)
+        file.write_text(text, encoding="utf-8")
+    other = read(target)
+    there, back = compare(ramcip, other), compare(other, ramcip)
+    assert there.changes
+    assert _facts(there) == {_turned(fact) for fact in _facts(back)}
+    assert (there.new, there.cured, there.owners) == (back.cured, back.new, back.owners)
+    assert {(c.before, c.after) for c in there.chains} == {(c.after, c.before) for c in back.chains}
+    assert_once(there)
+
+
+Fact = tuple[str, str, str, str | None, str, str, float]
+
+
+def _facts(found: Comparison) -> set[Fact]:
+    """Give what was told, with the names before and after, in no order; keys by the element's name before."""
+    facts = set[Fact]()
+    for change in _all(found.changes):
+        if change.kind in {"renamed", "moved", "added", "removed"} and change.sort != "connection":
+            was = change.was if change.kind in {"renamed", "moved"} else None
+            facts.add((change.kind, change.sort, change.element, was, "", "", change.confidence))
+        elif change.sort not in {"connection", "port"} and change.key != "qos":
+            facts.add((change.kind, change.sort, "", change.key, str(change.before), str(change.after), 1.0))
+    return facts
+
+
+def _turned(fact: Fact) -> Fact:
+    kind, sort, element, key, before, after, sure = fact
+    turned = {"added": "removed", "removed": "added"}.get(kind, kind)
+    if kind in {"renamed", "moved"}:
+        return kind, sort, key or "", element, "", "", sure
+    return turned, sort, element, key, after, before, sure
+
+
+def _all(changes: tuple[Change, ...]) -> list[Change]:
+    return [each for change in changes for each in (change, *_all(change.parts))]
+
+
+def assert_once(found: Comparison) -> None:
+    """Nothing is both renamed and removed or added, and nothing is told twice."""
+    listed = [(c.kind, c.sort, c.element, c.key) for c in _all(found.changes)]
+    assert len(listed) == len(set(listed))
+    renamed = {(c.sort, name) for c in _all(found.changes) if c.was for name in (c.element, c.was)}
+    whole = {
+        (c.sort, c.element) for c in _all(found.changes) if c.kind in {"added", "removed"} and c.sort != "connection"
+    }
+    assert renamed.isdisjoint(whole)
