@@ -19,7 +19,8 @@ from archgen.simulation.plan import (
     Step,
     Wire,
 )
-from archgen.timing.system import Activity, Arc, System, selective
+from archgen.timing.selective import selective
+from archgen.timing.system import Activity, Arc, System
 
 _SECOND = 10**9
 Pauses = Mapping[tuple[str, str], Fraction]

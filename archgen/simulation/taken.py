@@ -8,7 +8,8 @@ from itertools import pairwise
 
 from archgen.simulation.result import Result
 from archgen.timing.analysis import Analysis
-from archgen.timing.system import Activity, System, selective
+from archgen.timing.selective import selective
+from archgen.timing.system import Activity, System
 from archgen.timing.wording import duration
 
 NOT_SIMULATED = (

@@ -14,8 +14,9 @@ from archgen.source import Span
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis
 from archgen.timing.arrivals import Arrivals
+from archgen.timing.selective import selective
 from archgen.timing.sums import UNBOUNDED, bounded, known, nameless
-from archgen.timing.system import Activity, Arc, selective
+from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
 
 _SENT = {
