@@ -16,7 +16,11 @@ def passes(run: Run, now: int, at: int) -> bool:
         steps.turn[at] = (steps.turn[at] + 1) % step.every
         if steps.turn[at]:
             return False
-    return not (step.throttle and steps.fired[at] >= 0 and now - steps.fired[at] < step.throttle)
+    before = steps.let_through[at]
+    if step.throttle and before >= 0 and now - before < step.throttle:
+        return False
+    steps.let_through[at] = now
+    return True
 
 
 def hold(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job

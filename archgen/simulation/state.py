@@ -40,6 +40,8 @@ class Steps:
         self.turn = [dice.randrange(step.every) for step in steps]
         self.fired = [-1] * count
         """When it was fired last."""
+        self.let_through = [-1] * count
+        """When data fired it last, jitter not counted."""
         self.mask = [sum(1 << slot for slot in step.kept) for step in steps]
         self.pending: list[deque[Job]] = [deque() for _ in steps]
         self.started = [0] * count

@@ -75,7 +75,10 @@ def _work(system: System, name: str, events: Events, known: Mapping[str, Found])
 
 @dataclass(frozen=True, slots=True)
 class _Thread:
-    """A unit with its work: `low` and `high` are the least and greatest priority of its members, None for ordinary ones."""
+    """A unit with its work: `low` and `high` are the least and greatest priority of its members, None for ordinary ones.
+
+    Where the container has fewer threads than members, `low` is the least of all of these.
+    """
 
     unit: Unit
     works: tuple[Work, ...]
@@ -90,20 +93,42 @@ _Threads = tuple[Sequence[_Thread], Sequence[_Thread]]
 """Those of a resource, and the foreign ones."""
 
 
-def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> _Thread:
+def _lows(system: System, units: Iterable[Unit], events: Events) -> dict[str, int | None]:
+    """Give the least priority in each container with fewer threads than members: who waits for a thread waits for it too."""
+    members: dict[str, list[str]] = {}
+    for unit in units:
+        container = system.activities[unit[0]].container
+        if container is not None and (system.threads.get(container) or 1) > 1:
+            members.setdefault(container, []).extend(name for name in unit if events[name] != ())
+    return {
+        container: _least(system, names)
+        for container, names in members.items()
+        if len(names) > (system.threads[container] or len(names))
+    }
+
+
+def _least(system: System, names: Iterable[str]) -> int | None:
+    priorities = [system.activities[name].priority for name in names]
+    written = [one for one in priorities if one is not None]
+    return min(written) if len(written) == len(priorities) else None
+
+
+def _thread(
+    system: System, unit: Unit, events: Events, known: Mapping[str, Found], lows: Mapping[str, int | None]
+) -> _Thread:
     found = [_work(system, name, events, known) for name in unit]
     causes = [one for one in found if isinstance(one, Cause)]
     works = tuple(one for one in found if isinstance(one, Work))
-    priorities = [system.activities[name].priority for name in unit]
-    written = [one for one in priorities if one is not None]
+    container = system.activities[unit[0]].container
+    written = [one for name in unit if (one := system.activities[name].priority) is not None]
     return _Thread(
         unit,
         works,
         united(causes) if causes else None,
-        min(written) if len(written) == len(priorities) else None,
+        lows[container] if container is not None and container in lows else _least(system, unit),
         max(written, default=None),
         sum((utilisation(work.cost, work.streams) for work in works), Fraction(0)),
-        system.activities[unit[0]].container,
+        container,
     )
 
 
@@ -119,8 +144,9 @@ def responses(
     What has a higher priority than all that is stale is left out.
     """
     budget, stale = effort
-    threads = [_thread(system, unit, events, known) for unit in resource.units]
-    foreign = [_thread(system, unit, events, known) for unit in resource.foreign]
+    lows = _lows(system, (*resource.units, *resource.foreign), events)
+    threads = [_thread(system, unit, events, known, lows) for unit in resource.units]
+    foreign = [_thread(system, unit, events, known, lows) for unit in resource.foreign]
     if stale is not None and resource.cores == 1:
         touched = max(
             (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1
