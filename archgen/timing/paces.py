@@ -69,6 +69,8 @@ def _output(found: Paces, activity: Activity, key: str, beat: Beat, asked: Value
     pace = found.of[activity.id]
     serves = found.state.system.served
     rate, gap = (asked or unknown(activity.id), unknown(activity.id)) if (activity.id, key) in serves else beat
+    if asked is not None and activity.behaviour == "event" and (activity.id, key) not in serves:
+        rate = total((rate, asked))  # whoever asks activates it as well
     if key in activity.conditional:
         return _conditional(found, activity, key, pace, rate)
     spread = _spread(found.responses[activity.id])
