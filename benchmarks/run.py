@@ -2,7 +2,7 @@
 
 A ratio holds where seconds do not: machines differ, and so do their moods. Each figure is the median of several whole
 processes, after one that is not counted; one that fails ends the run. Usage: python benchmarks/run.py [NAME ...], to run
-only some of `example`, `check1000`, `check10000`, `build1000`. README.md has the figures of one machine.
+only some of `example`, `check1000`, `since1000`, `check10000`, `build1000`. README.md has the figures of one machine.
 """
 
 from __future__ import annotations
@@ -97,11 +97,32 @@ def scale(verb: str, components: int) -> None:
         row(f"{verb}, {components} components", taken, base, f"largest process so far {memory} MB")
 
 
+def since(components: int) -> None:
+    """Measure the comparison with a revision, as a ratio to a check in the same run: it reads the project twice."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "project"
+        generate(components, folder)
+        person = ("-c", "user.name=bench", "-c", "user.email=bench@example.org", "-c", "commit.gpgsign=false")
+        for words in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "as it was"]):
+            subprocess.run(["git", *person, *words], cwd=folder, check=True)
+        changed = max(folder.rglob("*.yaml"))
+        changed.write_text(f"# changed\n{changed.read_text(encoding='utf-8')}", encoding="utf-8")
+        check = seconds(archgen("check", folder))
+        row(f"check, {components} components", check, check, "(of itself)")
+        row(
+            "check --changed-since HEAD",
+            seconds(archgen("check", folder, "--changed-since", "HEAD")),
+            check,
+            "of a check",
+        )
+
+
 def main() -> None:
     """Run the benchmarks that the command line names, or all of them."""
     parts: dict[str, Callable[[], None]] = {
         "example": example,
         "check1000": lambda: scale("check", 1_000),
+        "since1000": lambda: since(1_000),
         "check10000": lambda: scale("check", 10_000),
         "build1000": lambda: scale("build", 1_000),
     }

@@ -24,6 +24,7 @@ from archgen.cli import main as verbs
 from archgen.cli.list_ import SORTS
 from tests import hostile
 from tests.emit.docx import inspection, judges
+from tests.findings import judges as servers
 from tests.running import archgen, contents, made_once
 
 WORDS = ("markup", "formula", "terminal", "odd", "long")
@@ -89,6 +90,17 @@ def test_github_s_commands_are_one_a_line_and_ours(project: Path) -> None:
 def test_json(project: Path) -> None:
     assert json.loads(said(project, "check", "--format", "json"))["version"] == 1
     assert json.loads(said(project, "stats", "--format", "json"))["version"] == 1
+
+
+def test_documents_for_servers(project: Path) -> None:
+    assert servers.sarif_schema(said(project, "check", "--format", "sarif")) == []
+    assert servers.junit(said(project, "check", "--format", "junit", "--strict", status=1)) == []
+
+
+def test_a_baseline_holds_the_texts(project: Path, tmp_path: Path) -> None:
+    file = tmp_path / "baseline.yaml"
+    said(project, "check", "--update-baseline", "--baseline", str(file))
+    assert json.loads(said(project, "check", "--format", "json", "--baseline", str(file)))["diagnostics"] == []
 
 
 @pytest.mark.parametrize("sort", SORTS)
@@ -233,7 +245,7 @@ def test_ids_references_and_names_are_refused_in_words(kind: str, tmp_path: Path
     data["rules"] = {text: text}
     data[text] = text
     (tmp_path / "archgen.yaml").write_text(hostile.written(data), encoding="utf-8")
-    for form in ("text", "github", "json"):
+    for form in ("text", "github", "json", "sarif", "junit"):
         assert (form == "github") == bool(re.search(r"(?m)^::", said(tmp_path, "check", "--format", form, status=1)))
     done = archgen("build", "--keep-going", "--backend", "wiki", cwd=tmp_path, status=1)
     assert hostile.controls((done.stdout + done.stderr).decode()) == []

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Severity
 from archgen.findings.escape import visible
+from archgen.findings.place import in_repository
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -26,11 +27,10 @@ def render(diagnostics: Iterable[Diagnostic], *, folder: str = "") -> Iterator[s
 def _place(diagnostic: Diagnostic, folder: str) -> dict[str, str | int]:
     """Give file and lines; GitHub takes columns only where the span stands on one line."""
     span = diagnostic.span
-    if not span.file:
+    file = in_repository(span.file, folder)
+    if file is None:
         return {}
-    prefix = folder.strip("/")
-    place: dict[str, str | int] = {"file": f"{prefix}/{span.file}" if prefix not in {"", "."} else span.file}
-    place |= {"line": span.line, "endLine": span.end_line}
+    place: dict[str, str | int] = {"file": file, "line": span.line, "endLine": span.end_line}
     if span.line == span.end_line:
         place |= {"col": span.column, "endColumn": span.end_column}
     return place

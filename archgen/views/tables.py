@@ -205,7 +205,7 @@ def open_points(findings: Iterable[Diagnostic], anchor: str = "table:open_points
 
 
 def _finding(finding: Diagnostic) -> list[Inlines]:
-    return [words.text(finding.message), *([words.text(Text(finding.help, muted=True))] if finding.help else [])]
+    return [words.spoken(said, muted=muted) for said, muted in ((finding.message, False), (finding.help, True)) if said]
 
 
 def hosts(view: Index) -> Table | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from itertools import chain
 
@@ -26,6 +27,15 @@ UNKNOWN: Inlines = (Text("not known yet", muted=True),)
 def text(*parts: str | Text) -> Inlines:
     """Make a run of text of strings and ready parts."""
     return tuple(Text(part) if isinstance(part, str) else part for part in parts)
+
+
+def spoken(message: str, *, muted: bool = False) -> Inlines:
+    """Write what a finding says: what it names in backticks is code."""
+    parts = _NAMED.split(message)
+    return tuple(Text(part, code=place % 2 == 1, muted=muted) for place, part in enumerate(parts) if part)
+
+
+_NAMED = re.compile(r"`([^`]+)`")
 
 
 def maybe(value: str | None) -> Inlines:

@@ -51,3 +51,14 @@ def test_closed_streams(broken: Path, verb: str) -> None:
 def test_a_full_disk(broken: Path, verb: str) -> None:
     ran = _shell(f"$archgen {verb} > /dev/full", broken)
     assert (ran.returncode, ran.stderr) == (2, "archgen: failed: No space left on device\n")
+
+
+def test_a_stream_that_is_not_utf_8(broken: Path) -> None:
+    """Documents are UTF-8 all the same; text for people has question marks rather than no end."""
+    file = broken / "archgen.yaml"
+    file.write_text(file.read_text("utf-8").replace("Colour image", "Colour image ☃"), encoding="utf-8")
+    script = "for f in text github json sarif junit; do $archgen check $project --format $f > $f; echo $?; done"
+    ran = _shell(f"cd $project; {script}", broken, PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    assert (ran.stdout.splitlines(), ran.stderr) == (["1"] * 5, "")
+    assert "Colour image ?" in (broken / "text").read_text("ascii")
+    assert "Colour image ☃" in (broken / "junit").read_text("utf-8")

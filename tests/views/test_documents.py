@@ -13,7 +13,7 @@ import pytest
 from archgen import pipeline, resources
 from archgen.outputs import Ask, select, view
 from archgen.pipeline import Checked
-from archgen.views import card, listed, pages, record, report, statistics
+from archgen.views import card, listed, pages, record, report, statistics, words
 from archgen.views.graphs import all_graphs
 from archgen.views.index import Index
 from archgen.views.report import Edition
@@ -183,3 +183,15 @@ def test_empty_projects_have_all_documents(tmp_path: Path) -> None:
     assert report.report(index, edition).title
     assert next(page.path for page in pages.pages(index, edition)) == "index.html"
     assert record.record(index)["components"] == {}
+
+
+def test_what_a_finding_names_is_code() -> None:
+    said = words.spoken("nobody reads `x` of `g.c`, or `it")
+    assert [(run.text, run.code) for run in said] == [
+        ("nobody reads ", False),
+        ("x", True),
+        (" of ", False),
+        ("g.c", True),
+        (", or `it", False),
+    ]
+    assert words.spoken("take `x` out", muted=True)[1] == Text("x", code=True, muted=True)
