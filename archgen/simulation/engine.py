@@ -49,13 +49,15 @@ def play(run: Run, horizon: int) -> None:
             if run.awake or run.touched:
                 dispatch(run, now)
                 rounds += 1
+                if rounds > MOST_ROUNDS:
+                    raise FloodError(now * run.plan.unit)
                 continue
             now = key >> 2
             if now > horizon:
                 break
             rounds = 0
-        if rounds > MOST_ROUNDS or len(heap) > MOST_WAITING:
-            raise FloodError(now * run.plan.unit)
+            if len(heap) > MOST_WAITING:
+                raise FloodError(now * run.plan.unit)
         _, what, which = heappop(heap)
         popped += 1
         order = key & 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from archgen.simulation.places import Places
 from archgen.simulation.plan import (
     ANY,
     FINEST,
@@ -15,7 +16,6 @@ from archgen.simulation.plan import (
     TRIGGERED,
     Output,
     Plan,
-    Processor,
     Step,
     Wire,
 )
@@ -40,15 +40,15 @@ def flatten(system: System, pauses: Pauses | None = None) -> Plan:
         steps,
         wires,
         system.arcs,
-        tuple(made.processor_of_thread),
-        tuple(map(tuple, made.members)),
-        tuple(made.affinity),
-        tuple(made.pool_of_thread),
-        tuple(made.pools),
-        tuple(made.processors),
+        tuple(made.places.processor_of_thread),
+        tuple(map(tuple, made.places.members)),
+        tuple(made.places.affinity),
+        tuple(made.places.pool_of_thread),
+        tuple(made.places.pools),
+        tuple(made.places.processors),
         tuple(made.links),
         tuple(made.queues),
-        made.cores(),
+        made.places.cores(),
         answers,
         tuple(made.unknown),
     )
@@ -62,28 +62,15 @@ class _Flat:
         self.pauses = pauses
         self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * FINEST)))
         self.number = {key: at for at, key in enumerate(system.activities)}
+        self.places = Places(system, self.number)
         self.links: dict[str, int] = {}
         self.queues: dict[tuple[str, str, str], int] = {}
         self.unknown: dict[str, None] = {}
-        self.processors: list[Processor] = []
-        self.places: dict[tuple[str, int | None], int] = {}
-        self.processor_of_thread: list[int] = []
-        self.members: list[list[int]] = []
-        self.executors: dict[str, int] = {}
-        self.pools: list[int] = []
-        self.pool_numbers: dict[str, int] = {}
-        self.pool_of_thread: list[int] = []
-        self.affinity: list[int] = []
-        self.pinned: dict[str, list[int]] = {}
         self.into: dict[str, list[tuple[int, Arc]]] = {}
         self.out_of: dict[str, list[tuple[int, Arc]]] = {}
         for e, arc in enumerate(system.arcs):
             self.into.setdefault(arc.target, []).append((e, arc))
             self.out_of.setdefault(arc.source, []).append((e, arc))
-        for activity in system.activities.values():
-            if activity.host is not None and activity.core is not None:
-                cores = self.pinned.setdefault(activity.host, [])
-                cores += [activity.core] if activity.core not in cores else []
 
     def units(self, ticks: int) -> int:
         return ticks * self.scale
@@ -146,15 +133,10 @@ class _Flat:
             tuple(e for e, _ in into),
             tuple(self.output(activity, key) for key in self.outputs(activity)),
             tuple(self.calls(activity)),
-            self.thread(activity),
+            self.places.thread(activity),
             activity.priority,
             activity.behaviour == "periodic",
         )
-
-    def cores(self) -> dict[str, int]:
-        """Give the cores of each host that something runs on."""
-        used = dict.fromkeys(processor.host for processor in self.processors if processor.host is not None)
-        return {host: self.system.cores.get(host) or 1 for host in used}
 
     def kind(self, activity: Activity) -> int:
         if activity.behaviour == "once":
@@ -205,59 +187,6 @@ class _Flat:
             if arc.role == "request":
                 found.setdefault(arc.output, []).append(e)
         return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
-
-    def thread(self, activity: Activity) -> int:
-        """Give the thread: one of its own, or that of its container."""
-        container = activity.container
-        threads = self.system.threads.get(container) if container is not None else None
-        if container is not None and threads == 1:
-            if container not in self.executors:
-                together = [a for a in self.system.activities.values() if a.container == container]
-                self.executors[container] = self.new_thread(together, -1)
-            return self.executors[container]
-        pool = -1
-        if container is not None and threads is not None:
-            if container not in self.pool_numbers:
-                self.pool_numbers[container] = len(self.pools)
-                self.pools.append(threads)
-            pool = self.pool_numbers[container]
-        return self.new_thread([activity], pool)
-
-    def new_thread(self, members: list[Activity], pool: int) -> int:
-        self.members.append([self.number[activity.id] for activity in members])
-        core = next((a.core for a in members if a.core is not None), None)
-        self.processor_of_thread.append(self.processor(members[0], core))
-        self.affinity.append(self.pin(members[0].host, core))
-        self.pool_of_thread.append(pool)
-        return len(self.members) - 1
-
-    def processor(self, activity: Activity, core: int | None) -> int:
-        """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
-        host = activity.host
-        if host is None:
-            self.processors.append(Processor(activity.id, None, 1))
-            return len(self.processors) - 1
-        cores = self.system.cores.get(host) or 1
-        if cores == 1 or self.mixed(host):
-            core = None
-        if (host, core) not in self.places:
-            self.places[host, core] = len(self.processors)
-            free = max(cores - len(self.pinned.get(host, ())), 1) if cores > 1 and not self.mixed(host) else cores
-            name = host if core is None else f"{host} core {core}"
-            self.processors.append(Processor(name, host, free if core is None else 1))
-        return self.places[host, core]
-
-    def mixed(self, host: str) -> bool:
-        """Tell whether no core is left for what is not pinned: then it runs anywhere, between what is."""
-        cores = self.system.cores.get(host) or 1
-        loose = any(a.host == host and a.core is None for a in self.system.activities.values())
-        return 1 < cores <= len(self.pinned.get(host, ())) and loose
-
-    def pin(self, host: str | None, core: int | None) -> int:
-        """Give the core that a thread must have, among the shared ones of a host where no core is left."""
-        if host is None or core is None or not self.mixed(host):
-            return -1
-        return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)
 
 
 def _slot(reader: Activity, arc: Arc) -> int:
