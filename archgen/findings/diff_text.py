@@ -39,7 +39,8 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     if found.empty:
         yield "no changes"
         return
-    for heading, changes in _sections(found):
+    yield from _breaking(found, colour=colour)
+    for heading, changes in _sections([change for change in found.changes if not change.breaks], found):
         yield _paint(visible(heading), "1", colour=colour)
         for change in changes:
             yield from _change(change, colour=colour)
@@ -65,11 +66,26 @@ def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def _sections(found: Comparison) -> Iterator[tuple[str, Sequence[Change]]]:
+def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
+    """Give the changes that break a partner, with the reasons."""
+    breaking = [change for change in found.changes if change.breaks]
+    if not breaking:
+        return
+    yield _paint("Breaking changes", "1", colour=colour)
+    for change in breaking:
+        yield from _change(change, colour=colour)
+        for why in dict.fromkeys(each.why for each in change.breaks):
+            yield visible(f"      {why}")
+        if change.accepted is not None:
+            yield visible(f"      accepted: {change.accepted}")
+    yield ""
+
+
+def _sections(every: Sequence[Change], found: Comparison) -> Iterator[tuple[str, Sequence[Change]]]:
     """Put changes under the group that they stand in, then those that stand in none by sort."""
     groups = {**found.before.architecture.groups, **found.after.architecture.groups}
     held: dict[str, list[Change]] = {}
-    for change in found.changes:
+    for change in every:
         held.setdefault(_section(change), []).append(change)
     for name in ("", *_SECTIONS.values()):
         if name == "":
@@ -86,7 +102,7 @@ def _section(change: Change) -> str:
 
 def _change(change: Change, *, colour: bool) -> Iterator[str]:
     sign = _paint(_SIGNS[change.kind], _COLOURS[change.kind], colour=colour)
-    breaks = _paint(f"breaks {visible(', '.join(change.breaks))}: ", "1;31", colour=colour) if change.breaks else ""
+    breaks = _paint(f"breaks {visible(', '.join(change.broken))}: ", "1;31", colour=colour) if change.breaks else ""
     yield f"  {sign} {breaks}{visible(change.text)}"
 
 

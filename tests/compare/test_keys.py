@@ -37,7 +37,7 @@ project: {id: robot, title: Robot}
         ("wcet: 2 ms", "wcet: 3 ms", "component g.a", "timing.wcet", "2 ms", "3 ms", None),
         ("host: pc\n    p", "host: arm\n    p", "node na", "host", "pc", "arm", "node `na` now runs on `arm` instead of `pc`"),
         ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` now belongs to `sssa` instead of `certh`"),
-        ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "the functionality of `g.b` is rewritten"),
+        ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "`g.b`: functionality `Does it.` → `Does that.`"),
         ("cores: 4", "cores: 2", "host pc", "cores", 4, 2, "host `pc`: cores 4 → 2"),
         ("threads: 1", "threads: 2", "container box", "threads", 1, 2, "container `box`: threads 1 → 2"),
         ("latency: 1 ms", "latency: {best: 1 ms, worst: 2 ms}", "link lan", "latency.worst", "1 ms", "2 ms", "link `lan`: worst latency `1 ms` → `2 ms`"),
