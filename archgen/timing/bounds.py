@@ -69,7 +69,8 @@ def host_loads(
     """Give the utilisation of every host, place by place."""
     by_host: dict[str, list[Resource]] = {host: [] for host in system.cores}
     for resource in resources:
-        by_host.setdefault(resource.host, []).append(resource)
+        if resource.host is not None:
+            by_host.setdefault(resource.host, []).append(resource)
     return {host: _host(system, host, several, paces, found) for host, several in by_host.items()}
 
 
