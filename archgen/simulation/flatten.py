@@ -83,30 +83,29 @@ class _Flat:
 
     def wire(self, arc: Arc) -> Wire:
         reader = self.system.activities[arc.target]
-        worst = self.units(arc.worst or 0)
+        best = self.units(arc.best or 0)
+        promised = None if arc.worst is None or arc.link in self.system.queued else self.units(arc.worst)
         if arc.worst is None:
             self.unknown[f"latency from {arc.source} to {arc.target}"] = None
         link, transmission = -1, 0
         bandwidth = self.system.bandwidths.get(arc.link or "")
-        if arc.role == "data" and arc.link is not None and arc.size is not None and bandwidth:
+        if arc.link is not None and arc.size is not None and bandwidth:
             link = self.links.setdefault(arc.link, len(self.links))
             transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
         queue = -1
         if arc.role == "data":
             queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
-        best = min(self.units(arc.best or 0), worst)
-        request = arc.role == "request"
         return Wire(
             target=self.number[arc.target],
             slot=_slot(reader, arc),
-            best=best,
-            worst=worst,
+            best=best if promised is None else min(best, promised),
+            worst=best if promised is None else promised,
             queue=queue,
             depth=arc.depth or 0,
             link=link,
             transmission=transmission,
-            limit=None if arc.worst is None else worst,
-            request=request,
+            limit=promised,
+            request=arc.role == "request",
             selective=selective(self.system, arc),
         )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.simulation.plan import Processor
+from archgen.timing.placement import pins
 from archgen.timing.system import Activity, System
 
 
@@ -24,11 +25,15 @@ class Places:
         self.pool_of_thread: list[int] = []
         self.affinity: list[int] = []
         self.pinned: dict[str, list[int]] = {}
-        for activity in system.activities.values():
-            if activity.host is not None and activity.core is not None:
-                cores = self.pinned.setdefault(activity.host, [])
-                cores += [activity.core] if activity.core not in cores else []
-        self.loose = {a.host for a in system.activities.values() if a.core is None}
+        self.core: dict[str, int | None] = {}
+        self.loose: set[str] = set()
+        for host in dict.fromkeys(a.host for a in system.activities.values() if a.host is not None):
+            for unit, core in pins(system, [a for a in system.activities.values() if a.host == host]).items():
+                self.core |= dict.fromkeys(unit, core)
+                if core is None:
+                    self.loose.add(host)
+                elif core not in self.pinned.setdefault(host, []):
+                    self.pinned[host].append(core)
 
     def cores(self) -> dict[str, int]:
         """Give the cores of each host that something runs on."""
@@ -55,7 +60,7 @@ class Places:
     def new_thread(self, members: list[Activity], pool: int) -> int:
         """Add a thread, on the cores where its members run."""
         self.members.append([self.number[activity.id] for activity in members])
-        core = next((a.core for a in members if a.core is not None), None)
+        core = self.core.get(members[0].id)
         self.processor_of_thread.append(self.processor(members[0], core))
         self.affinity.append(self.pin(members[0].host, core))
         self.pool_of_thread.append(pool)

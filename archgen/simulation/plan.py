@@ -39,7 +39,8 @@ class Wire:
     link: int
     transmission: int
     limit: int | None
-    """What the link's declared latency promises, queueing included; None where nothing is declared."""
+    """What the link's declared latency promises, queueing included. None where nothing is declared: then `best` (and `worst`,
+    the same) is what a sample needs beside its turn on the link."""
     request: bool
     selective: bool = False
     """Not every job of its source sends on it, and nothing is promised: a conditional output without `max_gap`, less than

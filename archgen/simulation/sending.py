@@ -30,7 +30,7 @@ def send(run: Run, now: int, wire: int, sample: int) -> None:
 
 
 def _over_link(run: Run, now: int, there: int, wire: int) -> int:
-    """Queue for a link's bandwidth. A declared latency holds with the queueing in it, and is kept in any case."""
+    """Queue for a link's bandwidth. A declared latency has the queueing in it and is kept; else the queueing comes on top."""
     wires = run.wires
     link, transmission = wires.link[wire], wires.transmission[wire]
     free = wires.link_free[link]
@@ -38,7 +38,7 @@ def _over_link(run: Run, now: int, there: int, wire: int) -> int:
     wires.link_free[link] = sent
     wires.link_busy[link] += transmission
     wires.link_wait[link] = max(wires.link_wait[link], sent - now)
-    if sent <= there:
-        return there
     limit = wires.limit[wire]
-    return sent if limit is None or sent <= now + limit else now + limit
+    if limit is None:
+        return there + sent - now
+    return max(there, min(sent, now + limit))

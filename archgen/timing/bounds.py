@@ -43,9 +43,16 @@ def all_responses(state: State, resources: Iterable[Resource]) -> dict[str, Resp
 def _response(state: State, name: str, found: Found, resource: Resource | None) -> Response:
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
-    words = _WORDS[found.tier].format(where=resource.id if resource else "", cores=resource.cores if resource else 1)
+    words = _WORDS[found.tier].format(where=_where(resource), cores=resource.cores if resource else 1)
     place = activity.places.get("response" if found.tier == "declared" else "wcet", activity.at)
     return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(words, place),))
+
+
+def _where(resource: Resource | None) -> str:
+    """Name the cores whose work is counted."""
+    if resource is None or not resource.joined:
+        return resource.id if resource else ""
+    return f"{resource.id} and on those that wait with it for a container's threads (one of them works while any waits)"
 
 
 def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource | None) -> Value:

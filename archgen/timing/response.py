@@ -87,18 +87,21 @@ def responses(
     made = [thread_of(system, unit, events, known) for unit in (*resource.units, *resource.foreign)]
     made = crowded(system, made, events)
     threads, foreign = made[: len(resource.units)], made[len(resource.units) :]
-    if stale is not None and resource.cores == 1:
+    one_core = resource.cores == 1 or resource.joined
+    if stale is not None and one_core:
         touched = max(
             (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1
         )
         wanted = [thread for thread in threads if thread.low is None or thread.low <= touched]
     else:
         wanted = threads
-    solve = _one_core if resource.cores == 1 else _several
+    solve = _one_core if one_core else _several
     found: dict[str, Found] = {}
     for thread, response in solve(system, resource, (threads, foreign), wanted, budget):
         for name in thread.unit:
             declared = system.activities[name].response
+            if resource.joined and response.cause == OVERLOAD:  # too much for one of the cores, not for all of them
+                response = response._replace(cause=UNBOUNDED)
             found[name] = response if declared is None else Found(declared, "declared")
             if declared is None and system.activities[name].wcet is None:
                 found[name] = Found(None, "unknown", united((Cause((name,)), response.cause)))

@@ -28,17 +28,23 @@ class Places:
             f"h{at}": {} if self.chance(0.1) else {"cores": self.dice.choice((1, 1, 2, 3))}
             for at in range(self.dice.choice((1, 2, 2, 3)))
         }
-        self.place(hosts)
-        containers = {
+        boxes: dict[str, Tree] = {
             name: {
                 "threads": self.dice.choice((1, 1, 2, 3)),
                 **({} if self.chance(0.15) else {"host": self.dice.choice(list(hosts))}),
             }
-            for name in dict.fromkeys(str(node["container"]) for node in self.nodes.values() if "container" in node)
+            for name in ("box_a", "box_b")
         }
+        self.place(hosts, boxes)
+        used = {node.get("container") for node in self.nodes.values()}
+        containers = {name: box for name, box in boxes.items() if name in used}
         links = {
-            "lan": {"connects": list(hosts), "bandwidth": "10 Mbit/s", **self.latency()},
-            "wlan": {"connects": list(hosts)[:2], **self.latency()},
+            "lan": {
+                "connects": list(hosts),
+                "bandwidth": f"{self.dice.choice((10, 10, 30, 100))} Mbit/s",
+                **self.latency(),
+            },
+            "wlan": {"connects": list(hosts)[:2], "bandwidth": "54 Mbit/s", **self.latency()},
         }
         if self.chance(0.7):
             del links["wlan"]
@@ -51,10 +57,12 @@ class Places:
 
     def latency(self) -> Tree:
         """Draw a link's latency."""
-        low, high = sorted((self.dice.randint(0, 20), self.dice.randint(0, 60)))
-        return {} if self.chance(0.1) else {"latency": {"best": f"{low * 100} us", "worst": f"{high * 100} us"}}
+        low, high = (f"{some * 100} us" for some in sorted((self.dice.randint(0, 20), self.dice.randint(0, 60))))
+        if self.chance(0.5):
+            return {"latency": {"best": low, "worst": high}}
+        return {"latency": {"best": low}} if self.chance(0.4) else {}
 
-    def place(self, hosts: Mapping[str, Tree]) -> None:
+    def place(self, hosts: Mapping[str, Tree], boxes: Mapping[str, Tree]) -> None:
         """Make the nodes."""
         ranked, pinned = self.chance(0.4), self.chance(0.3)
         ranks = self.dice.sample(range(1, 90), len(self.components))
@@ -64,13 +72,14 @@ class Places:
             node: Tree = {"implements": [f"g.{name}" for name in names]}
             drawn = self.dice.random()
             if drawn < 0.25:
-                node["container"] = self.dice.choice(("box_a", "box_b"))
+                node["container"] = self.dice.choice(list(boxes))
             elif drawn < 0.85:
                 node["host"] = self.dice.choice(list(hosts))
+            host = node.get("host") or boxes.get(str(node.get("container")), {}).get("host")
             for name in names:
                 timing = self.timings[name]
-                if pinned and "host" in node and self.chance(0.7):
-                    timing["core"] = self.dice.randrange(int(str(hosts[str(node["host"])].get("cores", 1))))
+                if pinned and host and self.chance(0.7):
+                    timing["core"] = self.dice.randrange(int(str(hosts[str(host)].get("cores", 1))))
                 if ranked:
                     timing["priority"] = ranks.pop() if self.chance(0.8) else self.dice.choice((10, 20))
             self.timed(names, node)
