@@ -17,6 +17,8 @@ class Places:
     components: Mapping[str, Tree]
     timings: Mapping[str, Tree]
     nodes: dict[str, Tree] = field(default_factory=dict)
+    crowded: bool = False
+    """Whether many share the two threads of one container, some of them pinned to different cores."""
 
     def chance(self, share: float) -> bool:
         """Say yes so often."""
@@ -28,9 +30,10 @@ class Places:
             f"h{at}": {} if self.chance(0.1) else {"cores": self.dice.choice((1, 1, 2, 3))}
             for at in range(self.dice.choice((1, 2, 2, 3)))
         }
+        self.crowded = self.chance(0.2)
         boxes: dict[str, Tree] = {
             name: {
-                "threads": self.dice.choice((1, 1, 2, 3)),
+                "threads": 2 if self.crowded else self.dice.choice((1, 1, 2, 3)),
                 **({} if self.chance(0.15) else {"host": self.dice.choice(list(hosts))}),
             }
             for name in ("box_a", "box_b")
@@ -41,7 +44,7 @@ class Places:
         links = {
             "lan": {
                 "connects": list(hosts),
-                "bandwidth": f"{self.dice.choice((10, 10, 30, 100))} Mbit/s",
+                "bandwidth": f"{self.dice.choice((10, 30, 100))} Mbit/s",
                 **self.latency(),
             },
             "wlan": {"connects": list(hosts)[:2], "bandwidth": "54 Mbit/s", **self.latency()},
@@ -58,21 +61,21 @@ class Places:
     def latency(self) -> Tree:
         """Draw a link's latency."""
         low, high = (f"{some * 100} us" for some in sorted((self.dice.randint(0, 20), self.dice.randint(0, 60))))
-        if self.chance(0.5):
+        if self.chance(0.35):
             return {"latency": {"best": low, "worst": high}}
         return {"latency": {"best": low}} if self.chance(0.4) else {}
 
     def place(self, hosts: Mapping[str, Tree], boxes: Mapping[str, Tree]) -> None:
         """Make the nodes."""
-        ranked, pinned = self.chance(0.4), self.chance(0.3)
+        ranked, pinned = self.chance(0.4), self.chance(0.3) or self.crowded
         ranks = self.dice.sample(range(1, 90), len(self.components))
         waiting = list(self.components)
         while waiting:
             names = [waiting.pop(0) for _ in range(min(len(waiting), 2 if self.chance(0.15) else 1))]
             node: Tree = {"implements": [f"g.{name}" for name in names]}
             drawn = self.dice.random()
-            if drawn < 0.25:
-                node["container"] = self.dice.choice(list(boxes))
+            if drawn < (0.75 if self.crowded else 0.25):
+                node["container"] = "box_a" if self.crowded else self.dice.choice(list(boxes))
             elif drawn < 0.85:
                 node["host"] = self.dice.choice(list(hosts))
             host = node.get("host") or boxes.get(str(node.get("container")), {}).get("host")
