@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 from tests.simulation.systems import arc, call, event, jobs, system, timed
@@ -142,6 +143,32 @@ def test_messages_queue_for_the_bandwidth() -> None:
     arcs = [arc(name, "r", link="lan", best=None, worst=None, size=1000, depth=5) for name in "abc"]
     found = jobs(system(activities, arcs, bandwidths={"lan": Fraction(500_000)}), 19)
     assert [job[0] for job in found["r"]] == [2, 4, 6]
+
+
+def test_a_latency_of_which_only_the_best_is_known_is_never_shorter() -> None:
+    found = jobs(system([timed("a", 20, 1), event("b", 1, "a")], [arc("a", "b", link="lan", best=3, worst=None)]), 19)
+    assert found["b"] == [(4, 4, 5)]
+
+
+def test_a_computed_latency_is_tried_out_and_not_taken() -> None:
+    # 1000 B at 500 kB/s take 2 ms, and all takes 3 besides; that the analysis allows for 33 slows nothing down.
+    activities = [timed(name, 20, 0) for name in "ab"] + [event("r", 0, "a", "b")]
+    arcs = [arc(name, "r", link="lan", best=3, worst=33, size=1000, depth=5) for name in "ab"]
+    found = jobs(system(activities, arcs, bandwidths={"lan": Fraction(500_000)}, queued=frozenset({"lan"})), 19)
+    assert [job[0] for job in found["r"]] == [5, 7]
+
+
+def test_calls_and_answers_queue_for_the_bandwidth_as_well() -> None:
+    #  link: a's 0-2, the call (of 1) 2-4, the answer (of 5) 5-7, b's (of 6) 7-9
+    activities = [timed("a", 20, 0), timed("b", 20, 6), timed("client", 20, 1), event("r", 0, "a", "b")]
+    way = {"link": "lan", "best": None, "worst": None, "size": 1000}
+    arcs = [*(arc(name, "r", **way) for name in "ab"), *(replace(one, **way) for one in call("client", "server"))]  # type: ignore[arg-type]
+    of = system(
+        [*activities, event("server", 1, behaviour="on_demand")], arcs, bandwidths={"lan": Fraction(500_000)}
+    )
+    found = jobs(of, 19)
+    assert found["server"] == [(4, 4, 5)]
+    assert [job[0] for job in found["r"]] == [2, 9]
 
 
 def test_a_declared_response_is_kept_whatever_the_load() -> None:
