@@ -82,17 +82,40 @@ def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Fo
 
 
 def crowded(system: System, threads: Sequence[Thread], events: Events) -> list[Thread]:
-    """Lower those whose container has fewer threads than members: who waits for one waits for the least urgent member too."""
+    """Lower those who wait for work of less priority than their own.
+
+    Whose container has fewer threads than members waits for the least urgent member too. And whoever is as urgent as some of
+    a container's members must let pass what they were given while its threads were held: that is more than what comes in a
+    busy period of their priority, but no more than what comes in one of the least urgent member's.
+    """
+    lows = _crowded(system, threads, events)
+    lowered = [replace(t, low=lows[t.container]) if t.container and t.container in lows else t for t in threads]
+    spans = {(t.low, t.high) for t in lowered if t.high is not None and t.low != t.high}
+    return [replace(t, low=_level(t.low, spans)) for t in lowered] if spans else lowered
+
+
+def _crowded(system: System, threads: Sequence[Thread], events: Events) -> dict[str, int | None]:
+    """Give the least priority in each container that has fewer threads (but several) than members that ever work."""
     members: dict[str, list[str]] = {}
     for thread in threads:
         if thread.container is not None:
             members.setdefault(thread.container, []).extend(name for name in thread.unit if events[name] != ())
-    lows = {
+    return {
         container: _least(system, names)
         for container, names in members.items()
         if 1 < (system.threads.get(container) or 1) < len(names)
     }
-    return [replace(t, low=lows[t.container]) if t.container and t.container in lows else t for t in threads]
+
+
+def _level(low: int | None, spans: Iterable[tuple[int | None, int | None]]) -> int | None:
+    """Go down to the least priority of all that share threads with what is as urgent."""
+    while low is not None:
+        reached = [least for least, most in spans if most is not None and most >= low]
+        least = None if None in reached else min((low, *(one for one in reached if one is not None)))
+        if least == low:
+            break
+        low = least
+    return low
 
 
 def _least(system: System, names: Iterable[str]) -> int | None:

@@ -1,4 +1,4 @@
-"""Members of one container that are pinned to different cores: they share its threads, and so wait for one another."""
+"""Members of one container share its threads, and so wait for one another: across cores, and across priorities."""
 
 from __future__ import annotations
 
@@ -62,3 +62,26 @@ def test_a_core_that_is_not_there_keeps_nothing_free(derived: Derived) -> None:
     found = analyse(derived(text))
     assert worst(found)["d"] == 7
     assert simulate(found.system, 2, 4).activities["d"].worst == 7 * MS
+
+
+HELD_UP = """
+groups: {g: {components: {low: {}, high: {}, middle: {}, other: {}}}}
+nodes:
+  low: {implements: low, container: box, timing: {period: 1 s, wcet: 1 ms, priority: 1}}
+  high: {implements: high, container: box, timing: {period: 10 ms, wcet: 1 ms, priority: 9}}
+  middle: {implements: middle, host: pc, timing: {period: 1 s, wcet: 100 ms, priority: 5}}
+  other: {implements: other, host: pc, timing: {period: 1 s, wcet: 1 ms, priority: 7}}
+containers: {box: {threads: 1, host: pc}}
+hosts: {pc: {cores: 1}}
+"""
+
+
+def test_what_a_thread_held_back_comes_at_once_and_delays_who_is_less_urgent(derived: Derived) -> None:
+    """low is begun, then middle works for 100 ms: ten jobs of high wait for the thread. When low ends they all come before
+    other, which takes 11 ms then, though in a busy period of its priority only one job of high is activated.
+
+    What bounds it is the busy period of all: 1 + 100 + 1 + 12 of high.
+    """
+    assert worst(analyse(derived(HELD_UP))) == {"low": 114, "high": 114, "middle": 114, "other": 114}
+    alone = HELD_UP.replace("high, container: box", "high, host: pc")
+    assert worst(analyse(derived(alone)))["other"] == 2
