@@ -49,7 +49,10 @@ def drawn(system: System) -> tuple[str, ...]:
         (any(a.period for a in activities), "the phase of each clock (every fourth run starts all at once)"),
         (any(a.jitter for a in activities), "how late a release with jitter is"),
         (any((a.wcet or 0) > (a.bcet or 0) for a in activities), "execution times from bcet to wcet"),
-        (any((a.worst or 0) > (a.best or 0) and a.link not in system.queued for a in arcs), "latencies of links from best to worst"),
+        (
+            any((a.worst or 0) > (a.best or 0) and a.link not in system.queued for a in arcs),
+            "latencies of links from best to worst",
+        ),
         (any(a.conditional for a in activities), "when a conditional output is published"),
         (any(a.every > 1 for a in activities), "where `every` begins to count"),
         (any(a.host and a.priority is None for a in activities), "who comes first among those without a priority"),

@@ -84,9 +84,7 @@ def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable
     return _joined(system, tuple(_shared(system, host, pinned, tuple(loose))))
 
 
-def _shared(
-    system: System, host: str, pinned: Mapping[int, list[Unit]], loose: tuple[Unit, ...]
-) -> Iterable[Resource]:
+def _shared(system: System, host: str, pinned: Mapping[int, list[Unit]], loose: tuple[Unit, ...]) -> Iterable[Resource]:
     cores = system.cores.get(host) or 1
     free = cores - len(pinned)
     foreign = () if free > 0 else loose

@@ -97,15 +97,20 @@ def responses(
         wanted = threads
     solve = _one_core if one_core else _several
     found: dict[str, Found] = {}
-    for thread, response in solve(system, resource, (threads, foreign), wanted, budget):
+    solved = solve(system, resource, (threads, foreign), wanted, budget)
+    for thread, response in map(_of_several, solved) if resource.joined else solved:
         for name in thread.unit:
             declared = system.activities[name].response
-            if resource.joined and response.cause == OVERLOAD:  # too much for one of the cores, not for all of them
-                response = response._replace(cause=UNBOUNDED)
             found[name] = response if declared is None else Found(declared, "declared")
             if declared is None and system.activities[name].wcet is None:
                 found[name] = Found(None, "unknown", united((Cause((name,)), response.cause)))
     return found
+
+
+def _of_several(one: tuple[Thread, Found]) -> tuple[Thread, Found]:
+    """Call what is too much for one of several joined cores no overload: all of them may bear it."""
+    thread, response = one
+    return thread, response._replace(cause=UNBOUNDED) if response.cause == OVERLOAD else response
 
 
 def _high(thread: Thread) -> int:

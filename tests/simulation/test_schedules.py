@@ -163,9 +163,7 @@ def test_calls_and_answers_queue_for_the_bandwidth_as_well() -> None:
     activities = [timed("a", 20, 0), timed("b", 20, 6), timed("client", 20, 1), event("r", 0, "a", "b")]
     way = {"link": "lan", "best": None, "worst": None, "size": 1000}
     arcs = [*(arc(name, "r", **way) for name in "ab"), *(replace(one, **way) for one in call("client", "server"))]  # type: ignore[arg-type]
-    of = system(
-        [*activities, event("server", 1, behaviour="on_demand")], arcs, bandwidths={"lan": Fraction(500_000)}
-    )
+    of = system([*activities, event("server", 1, behaviour="on_demand")], arcs, bandwidths={"lan": Fraction(500_000)})
     found = jobs(of, 19)
     assert found["server"] == [(4, 4, 5)]
     assert [job[0] for job in found["r"]] == [2, 9]

@@ -24,7 +24,7 @@ hosts: {pc: {cores: 4}}
 
 
 def test_who_waits_for_a_thread_waits_for_work_on_other_cores(derived: Derived) -> None:
-    """b and c hold both threads, of which core 1 can run one at a time: then a starts only at 5, though core 0 is idle.
+    """Both threads are held by b and c threads, of which core 1 can run one at a time: then a starts only at 5, though core 0 is idle.
 
     While anyone waits, core 0 or 1 works: 1 + 5 + 5 = 11 ms in all. d shares neither threads nor core with them.
     """
@@ -77,7 +77,7 @@ hosts: {pc: {cores: 1}}
 
 
 def test_what_a_thread_held_back_comes_at_once_and_delays_who_is_less_urgent(derived: Derived) -> None:
-    """low is begun, then middle works for 100 ms: ten jobs of high wait for the thread. When low ends they all come before
+    """While low is begun, middle works for 100 ms: ten jobs of high wait for the thread. When low ends they all come before
     other, which takes 11 ms then, though in a busy period of its priority only one job of high is activated.
 
     What bounds it is the busy period of all: 1 + 100 + 1 + 12 of high.
