@@ -12,6 +12,7 @@ from archgen import project, schema
 from archgen.diagnostic import Rule
 from archgen.link.merge import RULES as MERGING
 from archgen.link.merge import merge
+from archgen.pipeline import ALL_RULES
 
 RULES = (*schema.RULES, *project.RULES, *MERGING)
 
