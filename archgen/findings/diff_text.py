@@ -59,7 +59,9 @@ def summary(found: Comparison) -> str:
     words += [_counted(len(found.new), "new finding")] if found.new else []
     words += [_counted(len(found.cured), "cured finding")] if found.cured else []
     concerns = f"; concerns {', '.join(found.owners)}" if found.owners else ""
-    return visible(", ".join(words) + concerns)
+    broken = sorted({partner for change in found.changes for partner in change.broken})
+    breaks = f"; breaks {', '.join(broken)}" if broken else ""
+    return visible(", ".join(words) + concerns + breaks)
 
 
 def _counted(number: int, what: str) -> str:

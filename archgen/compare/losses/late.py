@@ -1,0 +1,141 @@
+"""Chains that no longer meet their deadlines, and hosts and links that are asked for more than they have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from archgen.compare.change import ChainChange
+from archgen.compare.losses.both import Both, Loss, several
+from archgen.compare.losses.causes import Causes
+from archgen.compare.timed import full
+from archgen.timing.analysis import ChainResult, HostLoad, LinkLoad, Term
+from archgen.timing.value import Value
+from archgen.timing.wording import duration, share
+
+
+def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[Loss]:
+    """Find chains that met their deadline and may not any more, or that are later than they were already."""
+    for each in chains:
+        old, new = each.before, each.after
+        if old is None or new is None or new.deadline is None or not (said := _said(old, new)):
+            continue
+        worse = _worse(causes, old.terms, new.terms)
+        asked = both.about("chain", each.id, "deadline", "through")
+        places = [*asked, *causes.of(worse), *_on_links(both, worse, new.terms, causes)] or causes.any()
+        activities = {term.activity for term in new.terms}
+        for partner, own in sorted(_owned(causes, activities).items()):
+            why = f"makes the chain `{each.id}` {said}; {several(own)} of {{}} {'is' if len(own) == 1 else 'are'} on it"
+            yield from both.losses(dict.fromkeys(places), [partner], why)
+
+
+def _said(old: ChainResult, new: ChainResult) -> str:
+    """Say how much worse a chain is; nothing where it is no worse than it was."""
+    limit = f"its deadline of {_time(new.deadline)}"
+    if old.verdict == "met" and new.verdict == "missed":
+        grown = f" ({_time(old.bound)} → {_time(new.bound)})" if old.bound != new.bound else f" ({_time(new.bound)})"
+        return f"miss {limit}{grown}"
+    if old.verdict == "met" and new.verdict == "open":
+        return f"uncertain: it met {limit} with {_time(old.bound)}, and its bound is not known any more"
+    was, now = old.bound.value, new.bound.value
+    if old.verdict == new.verdict == "missed" and was is not None and (now is None or now > was):
+        return f"miss {limit} by still more ({_time(old.bound)} → {_time(new.bound)})"
+    return ""
+
+
+def _time(value: Value | None) -> str:
+    if value is None or value.value is None:
+        return "no bound"
+    return ("" if value.complete else "at least ") + duration(value.value)
+
+
+def _worse(causes: Causes, old: Iterable[Term], new: Iterable[Term]) -> list[str]:
+    """Name the activities of the terms that grew."""
+    before = {term.activity: term for term in old}
+    found = []
+    for term in new:
+        was = before.get(causes.was(term.activity) or "")
+        pairs = ((getattr(was, key), getattr(term, key)) for key in ("sampling", "response", "link"))
+        if was is None or any(_grew(one, other) for one, other in pairs):
+            found.append(term.activity)
+    return found
+
+
+def _grew(one: Value, other: Value) -> bool:
+    if one.value is None or other.value is None:
+        return one.value is not other.value
+    return other.value > one.value or (one.complete and not other.complete)
+
+
+def _on_links(both: Both, worse: Iterable[str], terms: Iterable[Term], causes: Causes) -> list[int]:
+    """Find the changes of links, and of what is sent, behind terms that grew on the way."""
+    late_on_way = {term.activity for term in terms} & set(worse)
+    found = dict[int, None]()
+    for name in sorted(late_on_way):
+        for arc in causes.timed.after.system.into.get(name, ()):
+            if arc.link is not None:
+                found.update(dict.fromkeys(_of_link(both, arc.link, [arc.topic], causes)))
+    return list(found)
+
+
+def _of_link(both: Both, link: str, topics: Iterable[str], causes: Causes) -> Iterator[int]:
+    names = [("link", link)]
+    for found in filter(None, map(both.after.topics.get, topics)):
+        names += [("type", name) for name in found.types]
+        names += [("message", name) for name in found.messages]
+    for sort, name in names:
+        yield from (place for place, change in both.found(sort, name) if causes.worse(change))
+
+
+def _owned(causes: Causes, activities: Iterable[str]) -> dict[str, list[str]]:
+    """Give what each partner has among some activities."""
+    found: dict[str, list[str]] = {}
+    for name in sorted(activities):
+        if owner := causes.owner(name):
+            found.setdefault(owner, []).append(name)
+    return found
+
+
+def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
+    """Find hosts that can no longer do what they could, and who has something running there, then and now."""
+    for name, load in causes.timed.after.hosts.items():
+        was = _before(both, "host", name, causes)
+        if not isinstance(was, HostLoad) or full(was) or not full(load):
+            continue
+        own = both.about("host", name, "cores")
+        heavier = causes.heavier(part for part, _ in load.parts)
+        places = dict.fromkeys([*own, *causes.of(heavier)] or causes.any())
+        stayed = [part for part, _ in load.parts if _ran(causes, part, was)]
+        used, cores = load.utilisation.value, load.cores
+        grown = f" ({share(used / cores)} of its cores)" if used is not None else ""
+        for partner, parts in sorted(_owned(causes, stayed).items()):
+            run = "runs" if len(parts) == 1 else "run"
+            why = f"overloads the host `{name}`{grown}, where {several(parts)} of {{}} {run}"
+            yield from both.losses(places, [partner], why)
+
+
+def saturated(both: Both, causes: Causes) -> Iterator[Loss]:
+    """Find links that can no longer carry what they could, and who has sent or received something over them."""
+    for name, load in causes.timed.after.links.items():
+        was = _before(both, "link", name, causes)
+        if not isinstance(was, LinkLoad) or full(was) or not full(load):
+            continue
+        before = dict(was.parts)
+        grown = [topic for topic, value in load.parts if topic not in before or _grew(before[topic], value)]
+        crossing = [arc for arc in causes.timed.after.system.arcs if arc.link == name and arc.role == "data"]
+        ends = [end for arc in crossing if arc.topic in grown for end in (arc.source, arc.target)]
+        places = dict.fromkeys([*_of_link(both, name, grown, causes)] or causes.of(ends) or causes.any())
+        users = {end for arc in crossing if arc.topic in before for end in (arc.source, arc.target)}
+        used = share(load.share.value) if load.share.value is not None else ""
+        for partner, parts in sorted(_owned(causes, users).items()):
+            use = "uses" if len(parts) == 1 else "use"
+            why = f"asks the link `{name}` for {used} of its bandwidth; {several(parts)} of {{}} {use} it"
+            yield from both.losses(places, [partner], why)
+
+
+def _before(both: Both, sort: str, name: str, causes: Causes) -> HostLoad | LinkLoad | None:
+    own = both.names.back.get(sort, {}).get(name, name)
+    return (causes.timed.before.hosts if sort == "host" else causes.timed.before.links).get(own)
+
+
+def _ran(causes: Causes, name: str, load: HostLoad) -> bool:
+    return causes.was(name) in {part for part, _ in load.parts}
