@@ -69,4 +69,5 @@ def idle(changes: Sequence[Change], review: Review) -> tuple[Accepted, ...]:
 def only(found: Comparison) -> Comparison:
     """Keep what breaks somebody: neither what else changed, nor chains and findings."""
     changes = tuple(change for change in found.changes if change.breaks)
-    return replace(found, changes=changes, new=(), cured=(), chains=(), owners=owners(changes, found.told))
+    concerned = owners(changes, found.told)
+    return replace(found, changes=changes, new=(), cured=(), chains=(), owners=concerned, narrowed=True)

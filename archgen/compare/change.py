@@ -87,6 +87,8 @@ class Comparison:
     owners: tuple[str, ...]
     breaking: Severity = Severity.WARNING
     idle: tuple[Accepted, ...] = ()
+    narrowed: bool = False
+    """Only what breaks a partner was kept."""
 
     @property
     def failing(self) -> bool:

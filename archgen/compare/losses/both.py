@@ -10,6 +10,7 @@ from functools import cached_property
 from archgen.compare.change import Change
 from archgen.compare.elements import Key
 from archgen.compare.names import Names
+from archgen.compare.phrases import listed, short
 from archgen.compare.told import Told
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
@@ -78,6 +79,15 @@ class Both:
         both = (listed.get(key) for listed in (self.told.before, self.told.after))
         return frozenset(each.owner for each in both if each and each.owner)
 
+    def shared(self, places: Iterable[int], parts: Mapping[str, Sequence[str]], why: str, verb: str) -> Iterator[Loss]:
+        """Give one loss for all partners whose own a change is not: `{}` in `why` names their parts, as `verb` goes with."""
+        for place in places:
+            others = {partner: parts[partner] for partner in sorted(parts) if partner not in self.owners(place)}
+            named = [f"{several(own)} of {partner}" for partner, own in others.items()]
+            plural = sum(map(len, others.values())) != 1
+            said = why.replace("{}", f"{listed(named)} {_verb(verb, plural=plural)}")
+            yield from (Loss(place, partner, said) for partner in others)
+
     def losses(self, places: Iterable[int], partners: Iterable[str | None], why: str) -> Iterator[Loss]:
         """Give a loss for each change and each partner whose own it is not. `{}` in `why` is the partner's id."""
         losers = sorted({partner for partner in partners if partner})
@@ -129,5 +139,10 @@ class Both:
 
 def several(names: Iterable[str]) -> str:
     """Name some elements in a sentence: `a`, `b` and `c`."""
-    ticked = [f"`{name}`" for name in sorted(names)]
-    return " and ".join((", ".join(ticked[:-1]), ticked[-1])) if len(ticked) > 1 else "".join(ticked)
+    return listed([f"`{short(name)}`" for name in sorted(names)])
+
+
+def _verb(verb: str, *, plural: bool) -> str:
+    if not plural:
+        return verb
+    return "are" if verb == "is" else verb.removesuffix("s")

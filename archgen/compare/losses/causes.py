@@ -57,6 +57,31 @@ class Causes:
         component, node = self.part(self.timed.after.system.activities[name])
         return self.both.owner("component", component) or self.both.owner("node", node)
 
+    def owned(self, names: Iterable[str]) -> dict[str, list[str]]:
+        """Give what each partner has among some activities of the second version."""
+        return _grouped((self.owner(name), name) for name in sorted(set(names)))
+
+    def owned_before(self, names: Iterable[str]) -> dict[str, list[str]]:
+        """Give what each partner had among some activities of the first version."""
+        system = self.timed.before.system
+        parts = {name: _part(system.activities[name], self.both.before, self.both.names) for name in names}
+        owner = self.both.owner
+        return _grouped((owner("component", c) or owner("node", n), name) for name, (c, n) in sorted(parts.items()))
+
+    def cut(self, names: Iterable[str]) -> list[int]:
+        """Find what took away some activities of the first version, or what they read."""
+        system, names_of = self.timed.before.system, self.both.names
+        found = list[int]()
+        for activity in map(system.activities.__getitem__, names):
+            component, node = _part(activity, self.both.before, names_of)
+            found += [
+                *self.both.of_kind("component", component, "removed"),
+                *self.both.of_kind("node", node, "removed"),
+            ]
+            inputs = [names_of.to("input", key) for key in activity.inputs]
+            found += [place for key in inputs for place in self.both.of_kind("connection", key, "removed", "changed")]
+        return list(dict.fromkeys(found))
+
     def heavier(self, names: Iterable[str]) -> list[str]:
         """Give those activities that take more of their core than before."""
         found = []
@@ -135,3 +160,11 @@ def _share(found: Analysis, name: str) -> Fraction | None:
 def _number(element: Element | None, key: str) -> Fraction | None:
     value = element.values.get(key) if element else None
     return value.value if isinstance(value, Quantity) else Fraction(value) if isinstance(value, int) else None
+
+
+def _grouped(pairs: Iterable[tuple[str | None, str]]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for owner, name in pairs:
+        if owner:
+            found.setdefault(owner, []).append(name)
+    return found

@@ -41,7 +41,8 @@ def _why(both: Both, output: str, inputs: list[str]) -> str:
     was = f"`{both.own('output', output)}`"
     if ("output", output) in both.told.after:
         return f"takes {was} from {{}}, who still reads it under that name as {as_what}"
-    others = {source for name in inputs for source in both.told.new.sources.get(name, ())}
+    there = {source for name in inputs for source in both.told.new.sources.get(name, ())}
+    others = {source for source in there if ("output", source) in both.told.after}
     gained = others - {source for name in inputs for source in both.told.old.sources.get(name, ())}
     instead = f" (and is to read {several(gained)} instead)" if gained else ""
     return f"takes {was} from {{}}, who reads it as {as_what}{instead}"

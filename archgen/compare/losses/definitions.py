@@ -26,7 +26,9 @@ def retyped(both: Both) -> Iterator[Loss]:
         stay = [r for r in readers & both.told.new.readers.get(output, frozenset()) if both.needs(r)]
         lost = _by_partner(both, stay, both.owner("output", output)) if change else {}
         for partner, inputs in sorted(lost.items()):
-            yield from both.losses(places, [partner], f"gives {{}} {change} as {several(inputs)}")
+            name = both.own("output", output)
+            why = f"gives {{}}, who reads `{name}` as {several(inputs)}, {change}"
+            yield from both.losses(places, [partner], why)
 
 
 def _change(
@@ -34,16 +36,15 @@ def _change(
 ) -> tuple[list[int], str]:
     """Give the changes that retyped an output, and what it gives now instead of what; nothing where it is the same."""
     (one, other), (was, now) = types, messages
-    name = both.own("output", output)
     if one is not None and one != other:
-        same = f"; the message stays {several(now)}" if was and was == now and one not in was else ""
+        same = f" (the message stays {several(now)})" if was and was == now else ""
         what = f"`{other}` instead of `{one}`" if other else f"no type any more instead of `{one}`"
-        return both.about("output", output, "type"), f"{what} from `{name}`{same}"
+        return both.about("output", output, "type"), what + same
     if not was or was == now:
         return [], ""
     nodes = [node for node, port in both.ends[1] if port == output]
     places = [place for node in nodes for place in both.port(node, output, "message")]
-    what = f"{several(now) or 'no message any more'} instead of {several(was)} from `{name}`"
+    what = f"{several(now) or 'no message any more'} instead of {several(was)}"
     return places or (both.about("type", str(other), "message") if other else []), what
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.compare.change import ChainChange
-from archgen.compare.losses.both import Both, Loss, several
+from archgen.compare.losses.both import Both, Loss
 from archgen.compare.losses.causes import Causes
 from archgen.compare.timed import full
 from archgen.timing.analysis import ChainResult, HostLoad, LinkLoad, Term
@@ -19,13 +19,17 @@ def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[
         old, new = each.before, each.after
         if old is None or new is None or new.deadline is None or not (said := _said(old, new)):
             continue
-        worse = _worse(causes, old.terms, new.terms)
-        asked = both.about("chain", each.id, "deadline", "through")
-        places = [*asked, *causes.of(worse), *_on_links(both, worse, new.terms, causes)] or causes.any()
-        activities = {term.activity for term in new.terms}
-        for partner, own in sorted(_owned(causes, activities).items()):
-            why = f"makes the chain `{each.id}` {said}; {several(own)} of {{}} {'is' if len(own) == 1 else 'are'} on it"
-            yield from both.losses(dict.fromkeys(places), [partner], why)
+        lost = not new.terms
+        worse = [] if lost else _worse(causes, old.terms, new.terms)
+        places = both.about("chain", each.id, "deadline")
+        places += causes.of(worse) + _on_links(both, worse, causes)
+        places += [] if places or not lost else causes.cut(term.activity for term in old.terms)
+        own = (
+            causes.owned_before(t.activity for t in old.terms) if lost else causes.owned(t.activity for t in new.terms)
+        )
+        said += "; {} on it"
+        places = places or both.about("chain", each.id, "through") or causes.any()
+        yield from both.shared(dict.fromkeys(places), own, f"makes the chain `{each.id}` {said}", "is")
 
 
 def _said(old: ChainResult, new: ChainResult) -> str:
@@ -35,7 +39,8 @@ def _said(old: ChainResult, new: ChainResult) -> str:
         grown = f" ({_time(old.bound)} → {_time(new.bound)})" if old.bound != new.bound else f" ({_time(new.bound)})"
         return f"miss {limit}{grown}"
     if old.verdict == "met" and new.verdict == "open":
-        return f"uncertain: it met {limit} with {_time(old.bound)}, and its bound is not known any more"
+        why = "no way leads through it any more" if not new.terms else "its bound is not known any more"
+        return f"uncertain: it met {limit} with {_time(old.bound)}, and {why}"
     was, now = old.bound.value, new.bound.value
     if old.verdict == new.verdict == "missed" and was is not None and (now is None or now > was):
         return f"miss {limit} by still more ({_time(old.bound)} → {_time(new.bound)})"
@@ -66,11 +71,10 @@ def _grew(one: Value, other: Value) -> bool:
     return other.value > one.value or (one.complete and not other.complete)
 
 
-def _on_links(both: Both, worse: Iterable[str], terms: Iterable[Term], causes: Causes) -> list[int]:
-    """Find the changes of links, and of what is sent, behind terms that grew on the way."""
-    late_on_way = {term.activity for term in terms} & set(worse)
+def _on_links(both: Both, worse: Iterable[str], causes: Causes) -> list[int]:
+    """Find the changes of links, and of what is sent, before the activities whose terms grew."""
     found = dict[int, None]()
-    for name in sorted(late_on_way):
+    for name in worse:
         for arc in causes.timed.after.system.into.get(name, ()):
             if arc.link is not None:
                 found.update(dict.fromkeys(_of_link(both, arc.link, [arc.topic], causes)))
@@ -86,15 +90,6 @@ def _of_link(both: Both, link: str, topics: Iterable[str], causes: Causes) -> It
         yield from (place for place, change in both.found(sort, name) if causes.worse(change))
 
 
-def _owned(causes: Causes, activities: Iterable[str]) -> dict[str, list[str]]:
-    """Give what each partner has among some activities."""
-    found: dict[str, list[str]] = {}
-    for name in sorted(activities):
-        if owner := causes.owner(name):
-            found.setdefault(owner, []).append(name)
-    return found
-
-
 def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
     """Find hosts that can no longer do what they could, and who has something running there, then and now."""
     for name, load in causes.timed.after.hosts.items():
@@ -106,11 +101,9 @@ def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
         places = dict.fromkeys([*own, *causes.of(heavier)] or causes.any())
         stayed = [part for part, _ in load.parts if _ran(causes, part, was)]
         used, cores = load.utilisation.value, load.cores
-        grown = f" ({share(used / cores)} of its cores)" if used is not None else ""
-        for partner, parts in sorted(_owned(causes, stayed).items()):
-            run = "runs" if len(parts) == 1 else "run"
-            why = f"overloads the host `{name}`{grown}, where {several(parts)} of {{}} {run}"
-            yield from both.losses(places, [partner], why)
+        whole = "its core" if cores == 1 else f"its {cores} cores"
+        grown = f" ({share(used / cores)} of {whole})" if used is not None else ""
+        yield from both.shared(places, causes.owned(stayed), f"overloads the host `{name}`{grown}, where {{}}", "runs")
 
 
 def saturated(both: Both, causes: Causes) -> Iterator[Loss]:
@@ -126,10 +119,8 @@ def saturated(both: Both, causes: Causes) -> Iterator[Loss]:
         places = dict.fromkeys([*_of_link(both, name, grown, causes)] or causes.of(ends) or causes.any())
         users = {end for arc in crossing if arc.topic in before for end in (arc.source, arc.target)}
         used = share(load.share.value) if load.share.value is not None else ""
-        for partner, parts in sorted(_owned(causes, users).items()):
-            use = "uses" if len(parts) == 1 else "use"
-            why = f"asks the link `{name}` for {used} of its bandwidth; {several(parts)} of {{}} {use} it"
-            yield from both.losses(places, [partner], why)
+        why = f"asks the link `{name}` for {used} of its bandwidth; {{}} it"
+        yield from both.shared(places, causes.owned(users), why, "uses")
 
 
 def _before(both: Both, sort: str, name: str, causes: Causes) -> HostLoad | LinkLoad | None:

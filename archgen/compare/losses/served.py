@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.compare.losses.both import Both, Loss
+from archgen.compare.phrases import listed
 
 
 def unserved(both: Both) -> Iterator[Loss]:
@@ -22,9 +23,10 @@ def unserved(both: Both) -> Iterator[Loss]:
         partners = _serving(both, cases if isinstance(cases, frozenset) else frozenset(), after)
         for place in _because(both, requirement, before[requirement]):
             others = partners - both.owners(place)
-            every = others or frozenset(both.after.partners)
-            words = ", who serves the same use case" if others else ""
-            yield from both.losses([place], every, f"leaves `{requirement}` without a component, also for {{}}{words}")
+            every = sorted(others or frozenset(both.after.partners) - both.owners(place))
+            words = f", who serve{'s' if len(others) == 1 else ''} the same use case" if others else ""
+            why = f"leaves `{requirement}` without a component, also for {listed(every)}{words}"
+            yield from both.losses([place], every, why)
 
 
 def _because(both: Both, requirement: str, components: frozenset[str]) -> list[int]:
