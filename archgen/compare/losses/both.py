@@ -73,11 +73,18 @@ class Both:
                 yield from found
 
     def owners(self, place: int) -> frozenset[str]:
-        """Name the partners whose own a change is, before or after; none where nobody owns what changed."""
+        """Name the partner whose own a change is; nobody where nobody owns what changed."""
         change = self.changes[place]
-        key = ("input" if change.sort == "connection" else change.sort, self.common(change))
-        both = (listed.get(key) for listed in (self.told.before, self.told.after))
-        return frozenset(each.owner for each in both if each and each.owner)
+        return self.keepers("input" if change.sort == "connection" else change.sort, self.common(change))
+
+    def keepers(self, sort: str, name: str) -> frozenset[str]:
+        """Name the partner to whom an element belongs in all versions that have it.
+
+        What changes hands is nobody's for as long: else a new owner's name would be all it takes to change it quietly.
+        """
+        both = (listed.get((sort, name)) for listed in (self.told.before, self.told.after))
+        found = {each.owner for each in both if each}
+        return frozenset(owner for owner in found if owner and len(found) == 1)
 
     def shared(self, places: Iterable[int], parts: Mapping[str, Sequence[str]], why: str, verb: str) -> Iterator[Loss]:
         """Give one loss for all partners whose own a change is not: `{}` in `why` names their parts, as `verb` goes with."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -10,6 +10,7 @@ from functools import cached_property
 from archgen.compare.change import Change
 from archgen.compare.elements import Element, Key
 from archgen.compare.losses.both import Both
+from archgen.compare.losses.connections import because
 from archgen.compare.names import Names
 from archgen.compare.timed import Timed, matters
 from archgen.model.architecture import Architecture
@@ -68,19 +69,27 @@ class Causes:
         owner = self.both.owner
         return _grouped((owner("component", c) or owner("node", n), name) for name, (c, n) in sorted(parts.items()))
 
-    def cut(self, names: Iterable[str]) -> list[int]:
-        """Find what took away some activities of the first version, or what they read."""
-        system, names_of = self.timed.before.system, self.both.names
-        found = list[int]()
-        for activity in map(system.activities.__getitem__, names):
-            component, node = _part(activity, self.both.before, names_of)
-            found += [
-                *self.both.of_kind("component", component, "removed"),
-                *self.both.of_kind("node", node, "removed"),
-            ]
-            inputs = [names_of.to("input", key) for key in activity.inputs]
-            found += [place for key in inputs for place in self.both.of_kind("connection", key, "removed", "changed")]
-        return list(dict.fromkeys(found))
+    def cut(self, names: Sequence[str]) -> tuple[list[int], Sequence[str]]:
+        """Find what cut a way of the first version, and the activities behind the first cut: nothing arrives there."""
+        found, behind = list[int](), len(names)
+        for number, name in enumerate(names):
+            places = list(self._cutting(self.timed.before.system.activities[name]))
+            found += places
+            behind = min(behind, number) if places else behind
+        return list(dict.fromkeys(found)), names[behind:]
+
+    def _cutting(self, activity: Activity) -> Iterator[int]:
+        """Find what took away an activity of the first version, or what it read."""
+        component, node = _part(activity, self.both.before, self.both.names)
+        yield from self.both.of_kind("component", component, "removed")
+        yield from self.both.of_kind("node", node, "removed")
+        for key in activity.inputs:
+            reader = self.both.names.to("input", key)
+            told = self.both.told
+            for output in sorted(told.old.sources.get(reader, frozenset()) - told.new.sources.get(reader, frozenset())):
+                own = self.both.of_kind("connection", reader, "removed", "changed")
+                wanted = ("input", reader) in told.after  # else its own partner no longer asks for it
+                yield from (because(self.both, output) if wanted else []) or own
 
     def heavier(self, names: Iterable[str]) -> list[str]:
         """Give those activities that take more of their core than before."""
@@ -131,7 +140,10 @@ class Causes:
         names = [("component", component), ("node", node), ("node", activity.node)]
         names += [("host", activity.host or ""), ("container", activity.container or "")]
         names += [("output", key) for key in activity.outputs]
-        names += [(sort, key) for key in activity.inputs for sort in ("input", "connection")]
+        held = self.both.after.components.get(component)
+        names += [
+            (sort, port.id) for port in (held.inputs.values() if held else ()) for sort in ("input", "connection")
+        ]
         for sort, one in names:
             yield from (place for place, change in self.both.found(sort, one) if self.worse(change))
 

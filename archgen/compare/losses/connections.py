@@ -14,19 +14,19 @@ def connections(both: Both) -> Iterator[Loss]:
         now = both.told.new.readers.get(output, frozenset())
         if readers <= now or ("output", output) not in both.told.before or both.told.unknown(("output", output)):
             continue
-        places = _because(both, output)
+        places = because(both, output)
         if not places:
             continue
         lost: dict[str, list[str]] = defaultdict(list)
         for reader in readers - now:
             partner = both.owner("input", reader)
-            if partner and partner != both.owner("output", output) and both.needs(reader):
+            if partner and partner not in both.keepers("output", output) and both.needs(reader):
                 lost[partner].append(reader)
         for partner, inputs in sorted(lost.items()):
             yield from both.losses(places, [partner], _why(both, output, inputs))
 
 
-def _because(both: Both, output: str) -> list[int]:
+def because(both: Both, output: str) -> list[int]:
     """Find the changes that took an output away, or that gave it another name."""
     if ("output", output) not in both.told.after:
         return both.of_kind("output", output, "removed")

@@ -24,7 +24,7 @@ def retyped(both: Both) -> Iterator[Loss]:
         was, now = old.get(output, frozenset()), new.get(output, frozenset())
         places, change = _change(both, output, (types[0], types[1]), (was, now))
         stay = [r for r in readers & both.told.new.readers.get(output, frozenset()) if both.needs(r)]
-        lost = _by_partner(both, stay, both.owner("output", output)) if change else {}
+        lost = _by_partner(both, stay, both.keepers("output", output)) if change else {}
         for partner, inputs in sorted(lost.items()):
             name = both.own("output", output)
             why = f"gives {{}}, who reads `{name}` as {several(inputs)}, {change}"
@@ -148,10 +148,10 @@ def _fields(old: Interface, new: Interface) -> tuple[set[str], set[str], set[str
     return {name for _, name in one.keys() - two.keys()}, {name for _, name in two.keys() - one.keys()}, changed
 
 
-def _by_partner(both: Both, readers: Iterable[str], owner: str | None) -> Mapping[str, list[str]]:
+def _by_partner(both: Both, readers: Iterable[str], keepers: frozenset[str]) -> Mapping[str, list[str]]:
     found: dict[str, list[str]] = defaultdict(list)
     for reader in readers:
         partner = both.owner("input", reader)
-        if partner and partner != owner:
+        if partner and partner not in keepers:
             found[partner].append(reader)
     return found

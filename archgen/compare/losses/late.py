@@ -19,31 +19,31 @@ def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[
         old, new = each.before, each.after
         if old is None or new is None or new.deadline is None or not (said := _said(old, new)):
             continue
-        lost = not new.terms
-        worse = [] if lost else _worse(causes, old.terms, new.terms)
-        places = both.about("chain", each.id, "deadline")
-        places += causes.of(worse) + _on_links(both, worse, causes)
-        places += [] if places or not lost else causes.cut(term.activity for term in old.terms)
-        own = (
-            causes.owned_before(t.activity for t in old.terms) if lost else causes.owned(t.activity for t in new.terms)
-        )
-        said += "; {} on it"
+        if new.terms:
+            worse = _worse(causes, old.terms, new.terms)
+            places = causes.of(worse) + _on_links(both, worse, causes)
+            own = causes.owned(term.activity for term in new.terms)
+        else:
+            places, behind = causes.cut([term.activity for term in old.terms])
+            own = causes.owned_before(behind)
+        places += both.about("chain", each.id, "deadline")
         places = places or both.about("chain", each.id, "through") or causes.any()
-        yield from both.shared(dict.fromkeys(places), own, f"makes the chain `{each.id}` {said}", "is")
+        said += "; {} on it"
+        yield from both.shared(dict.fromkeys(places), own, said, "is")
 
 
 def _said(old: ChainResult, new: ChainResult) -> str:
     """Say how much worse a chain is; nothing where it is no worse than it was."""
-    limit = f"its deadline of {_time(new.deadline)}"
+    limit, name = f"its deadline of {_time(new.deadline)}", f"the chain `{new.id}`"
     if old.verdict == "met" and new.verdict == "missed":
-        grown = f" ({_time(old.bound)} → {_time(new.bound)})" if old.bound != new.bound else f" ({_time(new.bound)})"
-        return f"miss {limit}{grown}"
+        grown = f"{_time(old.bound)} → {_time(new.bound)}" if old.bound != new.bound else f"it takes {_time(new.bound)}"
+        return f"makes {name} miss {limit} ({grown})"
     if old.verdict == "met" and new.verdict == "open":
-        why = "no way leads through it any more" if not new.terms else "its bound is not known any more"
-        return f"uncertain: it met {limit} with {_time(old.bound)}, and {why}"
+        met = f"{name}, which met {limit} with {_time(old.bound)}"
+        return f"leaves {met}, without a bound" if new.terms else f"cuts {met}"
     was, now = old.bound.value, new.bound.value
     if old.verdict == new.verdict == "missed" and was is not None and (now is None or now > was):
-        return f"miss {limit} by still more ({_time(old.bound)} → {_time(new.bound)})"
+        return f"makes {name} miss {limit} by still more ({_time(old.bound)} → {_time(new.bound)})"
     return ""
 
 
