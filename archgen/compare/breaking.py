@@ -11,7 +11,8 @@ from archgen.compare.losses.both import Both, Loss
 from archgen.compare.losses.causes import Causes
 from archgen.compare.losses.connections import connections
 from archgen.compare.losses.definitions import redefined, retyped
-from archgen.compare.losses.late import late, overloaded, saturated
+from archgen.compare.losses.full import overloaded, saturated
+from archgen.compare.losses.late import late
 from archgen.compare.losses.quality import weaker
 from archgen.compare.losses.served import unserved
 from archgen.compare.losses.topics import renamed_topics

@@ -15,6 +15,9 @@ from archgen.compare.told import Told
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 
+_MOST = 4
+"""So many elements are named in one sentence; the rest is counted."""
+
 
 @dataclass(frozen=True, slots=True)
 class Loss:
@@ -39,7 +42,10 @@ class Both:
     def __post_init__(self) -> None:
         for place, change in enumerate(self.changes):
             for one in self.all_of(change):
-                self._about[one.sort, self.common(one)].append((place, one))
+                name = self.common(one)
+                self._about[one.sort, name].append((place, one))
+                if one.sort == "port":
+                    self._about["ports of", name.partition(".")[0]].append((place, one))
 
     def all_of(self, change: Change) -> Iterator[Change]:
         """Give a change and all below it."""
@@ -65,12 +71,6 @@ class Both:
     def of_kind(self, sort: str, name: str, *kinds: str) -> list[int]:
         """Find the changes of an element by what happened to it."""
         return list(dict.fromkeys(p for p, one in self._about.get((sort, name), ()) if one.kind in kinds))
-
-    def below(self, sort: str, prefix: str) -> Iterator[tuple[int, Change]]:
-        """Find the changes of all elements of a sort whose names begin so."""
-        for (kind, name), found in self._about.items():
-            if kind == sort and name.startswith(prefix):
-                yield from found
 
     def owners(self, place: int) -> frozenset[str]:
         """Name the partner whose own a change is; nobody where nobody owns what changed."""
@@ -134,7 +134,7 @@ class Both:
     def port(self, node: str, port: str, *keys: str) -> list[int]:
         """Find the changes of what a node says of a component's port, or of its internal ones where that is empty."""
         found: list[int] = []
-        for place, change in self.below("port", f"{node}."):
+        for place, change in self.found("ports of", node):
             name = self.common(change)
             element = self.told.after.get(("port", name)) or self.told.before.get(("port", name))
             refs = element.refs if element else ()
@@ -146,7 +146,8 @@ class Both:
 
 def several(names: Iterable[str]) -> str:
     """Name some elements in a sentence: `a`, `b` and `c`."""
-    return listed([f"`{short(name)}`" for name in sorted(names)])
+    ticked = [f"`{short(name)}`" for name in sorted(names)]
+    return listed(ticked if len(ticked) <= _MOST else [*ticked[: _MOST - 1], f"{len(ticked) - _MOST + 1} more"])
 
 
 def _verb(verb: str, *, plural: bool) -> str:

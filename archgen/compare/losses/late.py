@@ -1,4 +1,4 @@
-"""Chains that no longer meet their deadlines, and hosts and links that are asked for more than they have."""
+"""Chains that no longer meet their deadlines."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from archgen.compare.change import ChainChange
 from archgen.compare.losses.both import Both, Loss
 from archgen.compare.losses.causes import Causes
-from archgen.compare.timed import full
-from archgen.timing.analysis import ChainResult, HostLoad, LinkLoad, Term
+from archgen.compare.losses.full import of_link
+from archgen.timing.analysis import ChainResult, Term
 from archgen.timing.value import Value
-from archgen.timing.wording import duration, share
+from archgen.timing.wording import duration
 
 
 def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[Loss]:
@@ -77,56 +77,5 @@ def _on_links(both: Both, worse: Iterable[str], causes: Causes) -> list[int]:
     for name in worse:
         for arc in causes.timed.after.system.into.get(name, ()):
             if arc.link is not None:
-                found.update(dict.fromkeys(_of_link(both, arc.link, [arc.topic], causes)))
+                found.update(dict.fromkeys(of_link(both, arc.link, [arc.topic], causes)))
     return list(found)
-
-
-def _of_link(both: Both, link: str, topics: Iterable[str], causes: Causes) -> Iterator[int]:
-    names = [("link", link)]
-    for found in filter(None, map(both.after.topics.get, topics)):
-        names += [("type", name) for name in found.types]
-        names += [("message", name) for name in found.messages]
-    for sort, name in names:
-        yield from (place for place, change in both.found(sort, name) if causes.worse(change))
-
-
-def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
-    """Find hosts that can no longer do what they could, and who has something running there, then and now."""
-    for name, load in causes.timed.after.hosts.items():
-        was = _before(both, "host", name, causes)
-        if not isinstance(was, HostLoad) or full(was) or not full(load):
-            continue
-        own = both.about("host", name, "cores")
-        heavier = causes.heavier(part for part, _ in load.parts)
-        places = dict.fromkeys([*own, *causes.of(heavier)] or causes.any())
-        stayed = [part for part, _ in load.parts if _ran(causes, part, was)]
-        used, cores = load.utilisation.value, load.cores
-        whole = "its core" if cores == 1 else f"its {cores} cores"
-        grown = f" ({share(used / cores)} of {whole})" if used is not None else ""
-        yield from both.shared(places, causes.owned(stayed), f"overloads the host `{name}`{grown}, where {{}}", "runs")
-
-
-def saturated(both: Both, causes: Causes) -> Iterator[Loss]:
-    """Find links that can no longer carry what they could, and who has sent or received something over them."""
-    for name, load in causes.timed.after.links.items():
-        was = _before(both, "link", name, causes)
-        if not isinstance(was, LinkLoad) or full(was) or not full(load):
-            continue
-        before = dict(was.parts)
-        grown = [topic for topic, value in load.parts if topic not in before or _grew(before[topic], value)]
-        crossing = [arc for arc in causes.timed.after.system.arcs if arc.link == name and arc.role == "data"]
-        ends = [end for arc in crossing if arc.topic in grown for end in (arc.source, arc.target)]
-        places = dict.fromkeys([*_of_link(both, name, grown, causes)] or causes.of(ends) or causes.any())
-        users = {end for arc in crossing if arc.topic in before for end in (arc.source, arc.target)}
-        used = share(load.share.value) if load.share.value is not None else ""
-        why = f"asks the link `{name}` for {used} of its bandwidth; {{}} it"
-        yield from both.shared(places, causes.owned(users), why, "uses")
-
-
-def _before(both: Both, sort: str, name: str, causes: Causes) -> HostLoad | LinkLoad | None:
-    own = both.names.back.get(sort, {}).get(name, name)
-    return (causes.timed.before.hosts if sort == "host" else causes.timed.before.links).get(own)
-
-
-def _ran(causes: Causes, name: str, load: HostLoad) -> bool:
-    return causes.was(name) in {part for part, _ in load.parts}
