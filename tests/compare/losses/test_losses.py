@@ -68,8 +68,8 @@ FUNCTIONS = {
         [],
     ),
     "a renamed output that its reader does not follow": (
-        BASE.replace("image: Colour image", "image: {type: Colour image, description: What is in front of it}"),
-        [("image: {type", "images: {type")],
+        BASE.replace("  tracking:", "      screen: {inputs: {picture: camera.image}}\n  tracking:"),
+        [("image: Colour", "images: Colour"), ("picture: camera.image", "picture: camera.images")],
         [
             "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
         ],
@@ -86,8 +86,10 @@ FUNCTIONS = {
         BASE,
         [("image: Colour image", "image: Grey image")],
         [
-            "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
-            "(the message stays `sensor_msgs/msg/Image`)"
+            (
+                "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
+                "(the message stays `sensor_msgs/msg/Image`)"
+            )
         ],
     ),
     "a conceptual type that nobody reads": (BASE, [("Depth image", "Distances")], []),

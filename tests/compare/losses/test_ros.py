@@ -50,8 +50,10 @@ NAMES = {
         DERIVED,
         [("camera", "colour_camera")],
         [
-            "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; "
-            "it is `/sensing/colour_camera/image` now"
+            (
+                "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; "
+                "it is `/sensing/colour_camera/image` now"
+            )
         ],
     ),
     "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], []),
@@ -73,8 +75,10 @@ NAMES = {
         NODES.replace("subscribes: {image: {qos: {", "subscribes: {image: {qos: {deadline: 60 ms, "),
         [("deadline: 50 ms", "deadline: 80 ms")],
         [
-            "eye.publishes.image/qos sssa: offers one every 80 ms on `/eye/image`, where `mind` of sssa asks for a message every 60 ms: "
-            "it receives nothing any more"
+            (
+                "eye.publishes.image/qos sssa: offers one every 80 ms on `/eye/image`, where `mind` of sssa asks for a message every 60 ms: "
+                "it receives nothing any more"
+            )
         ],
     ),
     "a reader who asks for more": (
@@ -124,8 +128,10 @@ DEFINITIONS = {
         MESSAGES,
         [("uint8 blue", "uint8 blue\n      uint8 green")],
         [
-            "x_msgs/msg/Pixel/fields sssa: adds `green` in `x_msgs/msg/Pixel`, which sssa uses; even a field more makes another message "
-            f"to ROS: {NEW}"
+            (
+                "x_msgs/msg/Pixel/fields sssa: adds `green` in `x_msgs/msg/Pixel`, which sssa uses; even a field more makes another message "
+                f"to ROS: {NEW}"
+            )
         ],
     ),
     "fields in another order": (
