@@ -22,7 +22,7 @@ from archgen import __version__
 from tests.running import REVISION, ROOT, contents, made_once
 
 NAME = f"archgen-{__version__}"
-DATA = ("backends", "schemas", "example_ramcip", "ros_type_mapper.yaml")
+DATA = ("backends", "schemas", "start", "example_ramcip", "ros_type_mapper.yaml")
 LEFT_OUT = {"__pycache__", "archgen-out"}
 
 
@@ -93,6 +93,8 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
         "_data/backends/report/template/word/styles.xml",
         "_data/backends/wiki/templates/home.md.j2",
         "_data/ros_type_mapper.yaml",
+        "_data/start/archgen.yaml.j2",
+        "_data/start/gitattributes",
         "_data/example_ramcip/archgen.yaml",
         "emit/fonts/DejaVuSans.ttf",
         "emit/fonts/LICENSE.DejaVu",
@@ -123,7 +125,19 @@ def test_it_makes_the_case_study_as_the_checkout_does(installed: Path, ramcip: P
     example = run(installed / "python", "-c", where, cwd=tmp_path).strip()
     assert Path(example).is_relative_to(installed.parent)
     run(installed / "archgen", "check", example, cwd=tmp_path)
-    run(installed / "archgen", "build", example, "--backend", "wiki", "--revision", REVISION, "-o", "out", cwd=tmp_path)
+    run(
+        installed / "archgen",
+        "build",
+        example,
+        "--backend",
+        "wiki",
+        "--revision",
+        REVISION,
+        "--no-history",
+        "-o",
+        "out",
+        cwd=tmp_path,
+    )
     made, expected = contents(tmp_path / "out"), contents(ramcip)
     assert sorted(made) == sorted(expected)
     assert [path for path, data in expected.items() if made[path] != data] == []

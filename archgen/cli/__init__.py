@@ -18,9 +18,12 @@ VERBS = {
     "timing": "Show rates, latency of chains, load; why, what if, what decides.",
     "show": "Show an element: ports, readers, nodes, place in the files.",
     "list": "List elements or connections, as text, CSV or JSON.",
+    "interfaces": "Write what flows between two partners, to be signed by both.",
+    "owners": "Show who owns what, or write CODEOWNERS.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
-    "init": "Start a project.",
+    "init": "Start a project, or take one over from a spreadsheet.",
+    "new": "Add a group, a component or a node.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }

@@ -71,4 +71,4 @@ def only(found: Comparison) -> Comparison:
     """Keep what breaks somebody: neither what else changed, nor chains and findings."""
     changes = tuple(change for change in found.changes if change.breaks)
     concerned = owners(changes, found.told)
-    return replace(found, changes=changes, new=(), cured=(), chains=(), owners=concerned, narrowed=True)
+    return replace(found, changes=changes, new=(), cured=(), silenced=(), chains=(), owners=concerned, narrowed=True)

@@ -32,7 +32,7 @@ def compare(before: Version, after: Version) -> Comparison:
     lost = before.architecture.lost, after.architecture.lost
     told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost, _unnamed(after.architecture))
     changes = Differences(*listed, names, told).all(old, new)
-    appeared, cured = findings(before.findings, after.findings, names)
+    judged = findings(before, after, names)
     timing = timed(before.architecture, after.architecture, changes)
     moved = chains(before.architecture, after.architecture, names, timing)
     policy = severity(before.architecture.review, after.architecture.review)
@@ -46,12 +46,13 @@ def compare(before: Version, after: Version) -> Comparison:
         names,
         told,
         changes,
-        appeared,
-        cured,
+        judged.new,
+        judged.cured,
         moved,
         owners(changes, told),
-        policy,
-        unused,
+        judged.silenced,
+        breaking=policy,
+        idle=unused,
     )
 
 

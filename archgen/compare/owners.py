@@ -47,6 +47,11 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
         others = [("input", name) for name in wires.readers.get(element.id, ())]
     elif change.sort in {"type", "requirement"}:
         others = list(_users(element, listed))
+    elif change.sort == "message":
+        types = [
+            other for other in listed.values() if other.sort == "type" and other.values.get("message") == element.id
+        ]
+        others = [key for one in types for key in _users(one, listed)]
     for key in others:
         other = listed.get(key)
         if other and other.owner:

@@ -51,7 +51,8 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
             yield from _change(change, colour=colour)
         yield ""
     yield from _chains(found.chains, colour=colour)
-    for heading, findings in (("New findings", found.new), ("Cured findings", found.cured)):
+    judged = (("New findings", found.new), ("Cured findings", found.cured), ("Silenced findings", found.silenced))
+    for heading, findings in judged:
         yield from _findings(heading, findings, colour=colour)
     yield summary(found)
 
@@ -63,6 +64,7 @@ def summary(found: Comparison) -> str:
     words = [_counted(len(found.changes), "change") + (f" ({counts})" if counts else "")]
     words += [_counted(len(found.new), "new finding")] if found.new else []
     words += [_counted(len(found.cured), "cured finding")] if found.cured else []
+    words += [_counted(len(found.silenced), "silenced finding")] if found.silenced else []
     concerns = f"; concerns {', '.join(found.owners)}" if found.owners else ""
     broken = sorted({partner for change in found.changes for partner in change.broken})
     breaks = f"; breaks {', '.join(broken)}" if broken else ""

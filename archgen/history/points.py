@@ -82,11 +82,11 @@ def _scopes(architecture: Architecture) -> dict[str, frozenset[tuple[str, str]]]
     found: dict[str, frozenset[tuple[str, str]]] = {}
     for group in architecture.groups.values():
         mine = {("group", group.id)}
-        found[group.id] = frozenset(mine | ({("partner", group.owner)} if group.owner else set()))
+        found[group.id] = frozenset(mine | {("partner", owner) for owner in group.owners})
         for component in group.components.values():
-            found[component.id] = frozenset(mine | {("partner", component.owner or "")})
+            found[component.id] = frozenset(mine | {("partner", owner) for owner in component.owners or ("",)})
     for node in architecture.nodes.values():
         below = frozenset[tuple[str, str]]().union(*(found.get(name, frozenset()) for name in node.implements))
-        owned = {("partner", node.owner)} if node.owner else {one for one in below if one[0] == "partner"}
+        owned = {("partner", owner) for owner in node.owners} or {one for one in below if one[0] == "partner"}
         found.setdefault(node.id, frozenset({one for one in below if one[0] == "group"} | owned))
     return found

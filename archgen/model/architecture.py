@@ -33,7 +33,9 @@ class Partner:
     id: str
     title: str
     description: str | None = None
-    urls: Mapping[str, str] = field(default_factory=dict)
+    contact: str | None = None
+    reviewers: tuple[str, ...] = ()
+    """Who reviews its files, as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
@@ -79,6 +81,8 @@ class Chain:
     deadline: Quantity | None = None
     requirements: tuple[str, ...] = ()
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+    unresolved: tuple[str, ...] = ()
+    """What was written in `through` and names nothing: of such a chain nothing can be said."""
 
 
 @dataclass(frozen=True, slots=True)

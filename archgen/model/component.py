@@ -97,7 +97,8 @@ class Component:
     """A functional component. `id` is `group.component`.
 
     `inputs_known` is False while nobody has written `inputs` (unknown), True for `{}` (known to be none); the same for
-    outputs and requirements. `owner` is the group's where the component has none.
+    outputs and requirements. Owners are the group's where the component has
+    none; `owner` is the first of them.
     """
 
     id: str
@@ -107,6 +108,7 @@ class Component:
     functionality: str | None = None
     description: str | None = None
     owner: str | None = None
+    co_owners: tuple[str, ...] = ()
     role: Role | None = None
     requirements: tuple[RequirementUse, ...] = ()
     requirements_known: bool = False
@@ -123,6 +125,11 @@ class Component:
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     role_at: Span = field(default=NOWHERE, compare=False, repr=False)
 
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Give all partners who answer for it, the first one first."""
+        return (self.owner, *self.co_owners) if self.owner else ()
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
@@ -132,8 +139,14 @@ class Group:
     title: str
     description: str | None = None
     owner: str | None = None
+    co_owners: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
     layout: Layout = field(default_factory=Layout)
     components: Mapping[str, Component] = field(default_factory=dict)
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Give all partners who answer for it, the first one first."""
+        return (self.owner, *self.co_owners) if self.owner else ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import chain
 
 from archgen.model.architecture import Architecture
@@ -59,7 +60,7 @@ def lines(items: Iterable[Inlines]) -> Inlines:
 
 
 def _broken(part: Text) -> Text:
-    return Text(part.text, part.ref, part.url, part.strong, part.emphasis, part.code, part.muted, line_break=True)
+    return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group: str) -> Text:
@@ -101,6 +102,11 @@ def partner_link(architecture: Architecture, partner: str | None) -> Inlines:
         return UNKNOWN
     found = architecture.partners.get(partner)
     return (Text(found.title if found else partner, ref=f"partner:{partner}"),)
+
+
+def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
+    """Name who answers for an element, as links; that nobody is known to do is said."""
+    return joined(partner_link(architecture, owner) for owner in owners) or UNKNOWN
 
 
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:

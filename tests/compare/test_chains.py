@@ -30,7 +30,7 @@ MS = 10**6
 
 def bounds(compared: Compared, after: str, before: str = ROBOT) -> list[tuple[str, Fraction | None, Fraction | None]]:
     found = compared(before, after).chains
-    return [(c.id, c.before and c.before.bound.value, c.after and c.after.bound.value) for c in found]
+    return [(c.id, c.before.bound.value if c.before else None, c.after.bound.value if c.after else None) for c in found]
 
 
 def test_a_bound_that_changed(compared: Compared) -> None:
@@ -87,6 +87,21 @@ def test_a_finding_that_moved_or_follows_a_rename_is_the_same(compared: Compared
         .replace("implements: a,", "implements: camera,")
     )
     assert said(compared, unread, renamed.replace("[a, b]", "[camera, b]")) == ([], [])
+
+
+def test_a_finding_that_was_silenced_is_not_cured(compared: Compared) -> None:
+    unread = ROBOT.replace("a: {outputs: {x: sensor_msgs/msg/Image}}", "a: {outputs: {x: sensor_msgs/msg/Image, y: T}}")
+    for quiet in (
+        unread.replace("y: T}}", "y: T}} # archgen: ignore[unread-output] later"),
+        unread + "rules: {unread-output: off}\n",
+    ):
+        found = compared(unread, quiet)
+        assert [d.rule for d in found.silenced] == ["unread-output"]
+        assert (found.new, found.cured) == ((), ())
+        assert not found.empty
+        back = compared(quiet, unread)
+        assert [d.rule for d in back.new] == ["unread-output"]
+        assert (back.cured, back.silenced) == ((), ())
 
 
 def test_a_finding_with_another_figure_is_the_same(compared: Compared) -> None:

@@ -10,7 +10,8 @@
 | host, container, link | plain box, rounded box with list, small plain text |
 
 Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
-that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once.
+that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once, and sharp
+corners where it runs on events of which the rate is not known.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def box(item: Box, link: Link) -> Attributes:
     if item.ports_in or item.ports_out:
         return {**_common(item, link), "shape": "plain", "label": _table(item)}
     frame, fill = colours(item)
-    styles = ["filled", *(["rounded"] if item.style in _ROUNDED else []), *_dashes(item)]
+    styles = ["filled", *(["rounded"] if item.style in _ROUNDED and item.fill != "event" else []), *_dashes(item)]
     return {
         **_common(item, link),
         "shape": _SHAPES.get(item.style, "box"),
@@ -85,7 +86,7 @@ def _margin(item: Box) -> str:
 def _pen(item: Box) -> str:
     if item.emphasis == "subject":
         return "2"
-    if item.fill in {"unknown", "on_demand"}:
+    if item.fill in {"unknown", "on_demand", "event"}:
         return "1.2"
     return "1.2" if item.colour is not None and item.emphasis == "normal" else "0.8"
 

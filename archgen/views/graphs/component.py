@@ -47,7 +47,7 @@ def component(view: Index, name: str) -> Graph:
 
 
 def _subject(view: Index, item: Component) -> Box:
-    said = (item.role or "", boxes.owner(view, item.owner), short_timing(item.timing))
+    said = (item.role or "", boxes.owners(view, item.owners), short_timing(item.timing))
     box = boxes.component(view, item, lines=tuple(x for x in (" · ".join(word for word in said if word),) if x))
     return replace(
         box,
@@ -91,7 +91,9 @@ def _fed(view: Index, item: Component, port: Input, connection: Connection) -> D
         head_port=f"in {port.name}",
         style=style,  # type: ignore[arg-type]
         optional=port.optional,
-        flows=tuple(f"{output.component} · {output.name} → {port.name}" for output in outputs),
+        flows=tuple(
+            f"{architecture.components[output.component].title} · {output.name} → {port.name}" for output in outputs
+        ),
         ref=f"type:{types[0]}" if len(types) == 1 else None,
     )
     return box, _directed(arrow)
