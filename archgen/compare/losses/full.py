@@ -38,6 +38,8 @@ def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
 def _places(found: Analysis, names: Names) -> Iterator[tuple[tuple[str, str], Resource, Fraction]]:
     """Give the cores that some activities share, by host and the rest of their name, and what is asked of them."""
     for resource in resources(found.system):
+        if resource.host is None:  # threads of a container, each with a core that nobody named
+            continue
         parts = dict(found.hosts[resource.host].parts)
         load = sum((parts[name].value or Fraction(0) for name in resource.members), Fraction(0))
         yield (names.to("host", resource.host), resource.id.removeprefix(resource.host)), resource, load
