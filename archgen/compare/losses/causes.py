@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -76,7 +76,13 @@ class Causes:
             places = list(self._cutting(self.timed.before.system.activities[name]))
             found += places
             behind = min(behind, number) if places else behind
-        return list(dict.fromkeys(found)), names[behind:]
+        return list(dict.fromkeys(found or [*self._touching(names)][:1])), names[behind:] if found else names
+
+    def _touching(self, names: Iterable[str]) -> Iterator[int]:
+        """Find what changed of the components and nodes behind some activities of the first version."""
+        for activity in map(self.timed.before.system.activities.__getitem__, names):
+            component, node = _part(activity, self.both.before, self.both.names)
+            yield from self._worse([("component", component), ("node", node)])
 
     def _cutting(self, activity: Activity) -> Iterator[int]:
         """Find what took away an activity of the first version, or what it read."""
@@ -101,8 +107,14 @@ class Causes:
                 found.append(name)
         return found
 
-    def of(self, worse: Iterable[str]) -> list[int]:
-        """Find what made some activities worse: their own changes, else those of what shares their host or feeds them."""
+    def of(self, worse: Sequence[str]) -> list[int]:
+        """Find what made some activities worse: their own figures, else those of what shares their host or feeds them.
+
+        Only where no figure explains it, it is what they read.
+        """
+        return self._followed(worse, self._figures) or self._followed(worse, self._reading)
+
+    def _followed(self, worse: Iterable[str], find: Callable[[str], Iterable[int]]) -> list[int]:
         found: dict[int, None] = {}
         seen, waiting = set[str](), list(worse)
         while waiting:
@@ -110,7 +122,7 @@ class Causes:
             if name in seen:
                 continue
             seen.add(name)
-            own = list(self._own(name))
+            own = list(find(name))
             found.update(dict.fromkeys(own))
             if not own:
                 waiting += self._behind(name)
@@ -134,16 +146,25 @@ class Causes:
             return was is None or now is None or (now < was if less else now > was)
         return key.startswith("timing.")
 
-    def _own(self, name: str) -> Iterator[int]:
+    def _figures(self, name: str) -> Iterator[int]:
+        """Find the changes of an activity's figures, or of where it runs. A node that came with its component says nothing more."""
         activity = self.timed.after.system.activities[name]
         component, node = self.part(activity)
-        names = [("component", component), ("node", node), ("node", activity.node)]
-        names += [("host", activity.host or ""), ("container", activity.container or "")]
-        names += [("output", key) for key in activity.outputs]
-        held = self.both.after.components.get(component)
-        names += [
-            (sort, port.id) for port in (held.inputs.values() if held else ()) for sort in ("input", "connection")
-        ]
+        new = self.both.of_kind("component", component, "added")
+        names = [("component", component), ("host", activity.host or ""), ("container", activity.container or "")]
+        names += [] if new else [("node", node), ("node", activity.node)]
+        yield from new
+        yield from self._worse(names)
+
+    def _reading(self, name: str) -> Iterator[int]:
+        """Find the changes of what an activity reads and writes."""
+        activity = self.timed.after.system.activities[name]
+        held = self.both.after.components.get(self.part(activity)[0])
+        inputs = [port.id for port in held.inputs.values()] if held else []
+        names = [("output", key) for key in activity.outputs]
+        yield from self._worse([*names, *((sort, key) for key in inputs for sort in ("input", "connection"))])
+
+    def _worse(self, names: Iterable[Key]) -> Iterator[int]:
         for sort, one in names:
             yield from (place for place, change in self.both.found(sort, one) if self.worse(change))
 

@@ -109,6 +109,23 @@ TABLE = {
             "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of tum is on it"
         ],
     ),
+    "a step more on the way": (
+        BASE,
+        [
+            (
+                "outputs: {image: Colour image}}",
+                "outputs: {image: Colour image}}\n      mend: {inputs: {image: camera.image}, outputs: {image: Colour image}}",
+            ),
+            ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
+            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 50 ms}, host: pc}\n"),
+        ],
+        both(
+            "sensing.mend",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            "sssa",
+            "tum",
+        ),
+    ),
     "a host that shares its core": (
         BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
         [("wcet: 20 ms", "wcet: 120 ms")],
