@@ -95,13 +95,9 @@ class Both:
             said = why.replace("{}", f"{listed(named)} {_verb(verb, plural=plural)}")
             yield from (Loss(place, partner, said) for partner in others)
 
-    def losses(self, places: Iterable[int], partners: Iterable[str | None], why: str) -> Iterator[Loss]:
-        """Give a loss for each change and each partner whose own it is not. `{}` in `why` is the partner's id."""
-        losers = sorted({partner for partner in partners if partner})
-        for place in places:
-            for partner in losers:
-                if partner not in self.owners(place):
-                    yield Loss(place, partner, why.replace("{}", partner))
+    def losses(self, places: Iterable[int], partner: str, why: str) -> Iterator[Loss]:
+        """Give a loss of a partner for each change, unless that is his own."""
+        yield from (Loss(place, partner, why) for place in places if partner not in self.owners(place))
 
     def owner(self, sort: str, name: str) -> str | None:
         """Name the partner to whom an element belonged before the change; where it is new, to whom it belongs."""
@@ -144,9 +140,14 @@ class Both:
         return list(dict.fromkeys(found))
 
 
+def tick(name: object) -> str:
+    """Name something in a sentence, whatever its name holds."""
+    return f"`{short(str(name))}`"
+
+
 def several(names: Iterable[str]) -> str:
     """Name some elements in a sentence: `a`, `b` and `c`."""
-    ticked = [f"`{short(name)}`" for name in sorted(names)]
+    ticked = [tick(name) for name in sorted(names)]
     return listed(ticked if len(ticked) <= _MOST else [*ticked[: _MOST - 1], f"{len(ticked) - _MOST + 1} more"])
 
 

@@ -23,7 +23,7 @@ def connections(both: Both) -> Iterator[Loss]:
             if partner and partner not in both.keepers("output", output) and both.needs(reader):
                 lost[partner].append(reader)
         for partner, inputs in sorted(lost.items()):
-            yield from both.losses(places, [partner], _why(both, output, inputs))
+            yield from both.losses(places, partner, _why(both, output, inputs, partner))
 
 
 def because(both: Both, output: str) -> list[int]:
@@ -36,13 +36,13 @@ def because(both: Both, output: str) -> list[int]:
     return [place for sort, name in names for place in both.of_kind(sort, name, "renamed", "moved")][:1]
 
 
-def _why(both: Both, output: str, inputs: list[str]) -> str:
+def _why(both: Both, output: str, inputs: list[str], partner: str) -> str:
     as_what = several(inputs)
     was = f"`{both.own('output', output)}`"
     if ("output", output) in both.told.after:
-        return f"takes {was} from {{}}, who still reads it under that name as {as_what}"
+        return f"takes {was} from {partner}, who still reads it under that name as {as_what}"
     there = {source for name in inputs for source in both.told.new.sources.get(name, ())}
     others = {source for source in there if ("output", source) in both.told.after}
     gained = others - {source for name in inputs for source in both.told.old.sources.get(name, ())}
     instead = f" (and is to read {several(gained)} instead)" if gained else ""
-    return f"takes {was} from {{}}, who reads it as {as_what}{instead}"
+    return f"takes {was} from {partner}, who reads it as {as_what}{instead}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.both import Both, Loss, several
+from archgen.compare.losses.both import Both, Loss, several, tick
 from archgen.compare.names import Names
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interface
@@ -27,8 +27,8 @@ def retyped(both: Both) -> Iterator[Loss]:
         lost = _by_partner(both, stay, both.keepers("output", output)) if change else {}
         for partner, inputs in sorted(lost.items()):
             name = both.own("output", output)
-            why = f"gives {{}}, who reads `{name}` as {several(inputs)}, {change}"
-            yield from both.losses(places, [partner], why)
+            why = f"gives {partner}, who reads `{name}` as {several(inputs)}, {change}"
+            yield from both.losses(places, partner, why)
 
 
 def _change(
@@ -38,7 +38,7 @@ def _change(
     (one, other), (was, now) = types, messages
     if one is not None and one != other:
         same = f" (the message stays {several(now)})" if was and was == now else ""
-        what = f"`{other}` instead of `{one}`" if other else f"no type any more instead of `{one}`"
+        what = f"{tick(other) if other else 'no type any more'} instead of {tick(one)}"
         return both.about("output", output, "type"), what + same
     if not was or was == now:
         return [], ""
@@ -74,11 +74,13 @@ def redefined(both: Both) -> Iterator[Loss]:
             partners = _others(
                 [user for message in _holding(both, name) for user in users.get(("message", message), ())]
             )
-            yield from both.losses([place], partners, _built(both, name))
+            for partner in sorted(partners):
+                yield from both.losses([place], partner, _built(both, name, partner))
         elif change.sort == "type" and change.key in _INSIDE and change.before is not None:
             partners = _others(users.get(("type", change.element), ()))
-            why = f"changes the {change.key} of `{change.element}`, which {{}} uses"
-            yield from both.losses([place], partners, why)
+            for partner in sorted(partners):
+                why = f"changes the {change.key} of {tick(change.element)}, which {partner} uses"
+                yield from both.losses([place], partner, why)
 
 
 def _users(both: Both) -> Mapping[tuple[str, str], list[tuple[bool, str]]]:
@@ -124,20 +126,20 @@ def _holding(both: Both, name: str) -> list[str]:
     return list(found)
 
 
-def _built(both: Both, name: str) -> str:
+def _built(both: Both, name: str, partner: str) -> str:
     """Say what is different to whoever was built against a message definition."""
     old = both.before.interfaces.definitions.get(both.names.back.get("message", {}).get(name, name))
     new = both.after.interfaces.definitions.get(name)
-    short = f"`{name}`"
+    short = tick(name)
     if new is None or old is None:
-        return f"takes the definition of {short} from {{}}, who uses it"
+        return f"takes the definition of {short} from {partner}, who uses it"
     removed, added, other = _fields(old, new)
     words = [f"removes {several(removed)}"] if removed else []
     words += [f"changes the type of {several(other)}"] if other else []
     words += [f"adds {several(added)}"] if added else []
     what = " and ".join(words) or "puts fields in another order"
     only = "even a field more makes another message to ROS: " if added and not (removed or other) else ""
-    return f"{what} in {short}, which {{}} uses; {only}what was built before cannot talk to what is built after"
+    return f"{what} in {short}, which {partner} uses; {only}what was built before cannot talk to what is built after"
 
 
 def _fields(old: Interface, new: Interface) -> tuple[set[str], set[str], set[str]]:

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.analyses.qos import Clash, clashes
-from archgen.compare.losses.both import Both, Loss
+from archgen.compare.losses.both import Both, Loss, tick
 from archgen.compare.names import Names
 from archgen.model.architecture import Architecture
 from archgen.model.distro import is_ros_1
@@ -67,10 +67,9 @@ def _lost(both: Both, topic: str, pair: tuple[Endpoint, Endpoint], old: Mapping[
     places = both.port(writer.node, writer.port or "", "qos") or both.about("node", writer.node)
     offered = " and ".join(clash.offered for clash in fallen)
     wanted = " and ".join(clash.requested for clash in fallen)
-    why = (
-        f"offers {offered} on `{topic}`, where `{reader.node}` of {{}} asks for {wanted}: it receives nothing any more"
-    )
-    yield from both.losses(places, [partner], why)
+    if partner:
+        asks = f"where `{reader.node}` of {partner} asks for {wanted}: it receives nothing any more"
+        yield from both.losses(places, partner, f"offers {offered} on {tick(topic)}, {asks}")
 
 
 def _short(writer: Endpoint, reader: Endpoint) -> tuple[Clash, ...]:

@@ -26,7 +26,7 @@ def unserved(both: Both) -> Iterator[Loss]:
             every = sorted(others or frozenset(both.after.partners) - both.owners(place))
             words = f", who serve{'s' if len(others) == 1 else ''} the same use case" if others else ""
             why = f"leaves `{requirement}` without a component, also for {listed(every)}{words}"
-            yield from both.losses([place], every, why)
+            yield from (loss for partner in every for loss in both.losses([place], partner, why))
 
 
 def _because(both: Both, requirement: str, components: frozenset[str]) -> list[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.both import Both, Loss, several
+from archgen.compare.losses.both import Both, Loss, several, tick
 from archgen.model.node import Endpoint, Flow
 
 Place = tuple[str, Flow]
@@ -27,7 +27,7 @@ def renamed_topics(both: Both) -> Iterator[Loss]:
                 end for end in readers.get((name, flow), ()) if not port or not end.sources or _reads(both, end, port)
             ]
             for partner, nodes in _partners(both, users).items():
-                yield from both.losses(places, [partner], _why(name, flow, nodes, instead))
+                yield from both.losses(places, partner, _why((name, flow), partner, nodes, instead))
 
 
 def _readers(both: Both) -> Mapping[Place, list[Endpoint]]:
@@ -73,7 +73,8 @@ def _because(both: Both, node: str, port: str) -> list[int]:
     return next((places for places in tries if places), [])
 
 
-def _why(name: str, flow: Flow, nodes: Iterable[str], instead: list[str]) -> str:
+def _why(place: Place, partner: str, nodes: Iterable[str], instead: list[str]) -> str:
+    name, flow = place
     verb = "subscribes to" if flow == "topic" else "calls"
     now = f"it is {several(instead)} now" if instead else "nobody offers it under that name any more"
-    return f"takes the {flow} `{name}` from {{}}, whose {several(nodes)} {verb} it; {now}"
+    return f"takes the {flow} {tick(name)} from {partner}, whose {several(nodes)} {verb} it; {now}"
