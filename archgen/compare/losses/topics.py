@@ -14,15 +14,19 @@ Place = tuple[str, Flow]
 def renamed_topics(both: Both) -> Iterator[Loss]:
     """Find names that went while other partners' nodes use them: their programs do not follow what the files say."""
     old, new = both.ends
+    there: dict[str, set[Place]] = defaultdict(set)
+    for (_, port), ends in new.items():
+        there[port].update((end.name, end.flow) for end in ends)
     readers = _readers(both)
     for node, port in sorted(old):
-        if (node, port) not in new and (port or ("node", node) not in both.told.after):
-            continue
+        if port and ("output", port) not in both.told.after:
+            continue  # the connection itself is gone
         was = {(end.name, end.flow) for end in old[node, port]}
-        now = {(end.name, end.flow) for end in new.get((node, port), ())}
+        now = there[port]
         places = _because(both, node, port) if was - now else []
         for name, flow in sorted(was - now):
-            instead = sorted(there for there, kind in now - was if kind == flow)
+            ours = {(end.name, end.flow) for end in new.get((node, port), ())}
+            instead = sorted(other for other, kind in (now if port else ours) - was if kind == flow)
             users = [
                 end for end in readers.get((name, flow), ()) if not port or not end.sources or _reads(both, end, port)
             ]
@@ -63,7 +67,7 @@ def _because(both: Both, node: str, port: str) -> list[int]:
     tries = (
         both.port(node, port, "topic"),
         both.about("node", node, "name", "namespace"),
-        both.of_kind("node", node, "renamed"),
+        both.of_kind("node", node, "renamed", "removed"),
         both.of_kind("output", port, "renamed"),
         both.of_kind("component", component, "renamed", "moved"),
         both.of_kind("group", group, "renamed"),

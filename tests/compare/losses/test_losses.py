@@ -179,6 +179,8 @@ def test_hostile_types_stay_inside_their_ticks(compared: Compared) -> None:
     evil = r'"x` {} <b>[y](z)\n- # `"'
     found = broken(compared, BASE, [("image: Colour image", f"image: {evil}")])
     assert found == [
-        "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, "
-        "`x' {} <b>[y](z) - # '` instead of `Colour image`"
+        (
+            "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, "
+            "`x' {} <b>[y](z) - # '` instead of `Colour image`"
+        )
     ]

@@ -58,6 +58,35 @@ NAMES = {
     ),
     "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], []),
     "a node": (NODES, [("  eye: {", "  left_eye: {")], []),
+    "a node that writes what another one reads": (
+        NODES,
+        [(NODES[NODES.index("  eye:") : NODES.index("  mind:")], "")],
+        [
+            (
+                "eye sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; "
+                "nobody offers it under that name any more"
+            )
+        ],
+    ),
+    "a node that takes over": (
+        NODES,
+        [("  eye: {implements: camera, ", "  lens: {implements: camera, package: other, executable: one, ")],
+        [],
+    ),
+    "a topic of no component": (
+        NODES.replace(
+            "eye: {", "eye: {internal: {publishes: {state: {topic: /eye/state, message: std_msgs/msg/String}}}, "
+        ).replace(
+            "mind: {", "mind: {internal: {subscribes: {state: {topic: /eye/state, message: std_msgs/msg/String}}}, "
+        ),
+        [("publishes: {state: {topic: /eye/state", "publishes: {state: {topic: /eye/status")],
+        [
+            (
+                "eye.internal.publishes.state/topic sssa: takes the topic `/eye/state` from sssa, whose `mind` subscribes to it; "
+                "it is `/eye/status` now"
+            )
+        ],
+    ),
     "a service": (
         BASE.replace("Colour image", "std_srvs/srv/Trigger")
         + "nodes:\n  eye: {implements: camera, serves: {image: {topic: /eye/trigger}}}\n  mind: {implements: tracker}\n".replace(
