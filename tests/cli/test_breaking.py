@@ -180,3 +180,28 @@ def test_reasons_from_strangers_move_no_terminal(run: Run, both: Path) -> None:
         assert "\x1b" not in out
         assert "\u202e" not in out
         assert not any(line.lstrip().startswith("::") for line in out.splitlines())
+
+
+def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
+    whole, rest = ROBOT.split("groups:")
+    sensing, display = f"groups:{rest}".split("  display:")
+    files = {
+        "archgen.yaml": whole,
+        "sensing.yaml": sensing,
+        "display.yaml": f"groups:\n  display:{display}",
+        "nodes.yaml": "nodes:\n  eye: {implements: camera, publishes: {image: /eye/image}}\n  screen: {implements: screen}\n",
+    }
+    for name, text in files.items():
+        for side in ("old", "new"):
+            (both / side).mkdir(exist_ok=True)
+            (both / side / name).write_text(text, encoding="utf-8")
+    for broken in ("sensing.yaml", "nodes.yaml"):
+        (both / "new" / broken).write_text(f"{files[broken]}  x: [", encoding="utf-8")
+        ran = run("diff", "old", "new", "--breaking")
+        assert (ran.status, ran.out.splitlines()[0]) == (
+            0,
+            "new is not sound; what could not be read there is left out of the comparison:",
+        )
+        assert ran.out.endswith("\nno change breaks another partner\n")
+        (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")
+    assert "breaks sssa: `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
