@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
 
-from archgen import outputs, pipeline
+from archgen import agreements, outputs, ownership, pipeline, sides
 from archgen.analyses import size as size_analysis
 from archgen.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
@@ -26,6 +26,7 @@ from archgen.timing import chains as timing_chains
 from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.views import record
+from archgen.views.owners import Ownership
 from archgen.views.report import Level
 from archgen.views.shapes import Record
 
@@ -122,9 +123,38 @@ class Project:
         """Write pictures (svg, png, pdf, dot), and give their number."""
         return outputs.diagrams(self.checked, self._ask(select), Path(fspath(folder)), formats, only)
 
+    def write_agreement(
+        self, file: Name, first: str, second: str, *, since: str | None = None, revision: str | None = None
+    ) -> None:
+        """Write what flows between two partners; the file's ending (.docx, .md, .html) says the format.
+
+        `since` marks what changed since a git revision (or a folder or packed file). Raises `agreements.PartnersError`
+        where there can be no agreement, ValueError for another ending, `git.GitError` for a revision that is not there.
+        """
+        target = Path(fspath(file))
+        form = agreements.ENDINGS.get(target.suffix.lower())
+        if form is None:
+            msg = f"the ending of `{target.name}` names no format: .docx, .md or .html"
+            raise ValueError(msg)
+        earlier = sides.side(since, self._path()) if since else None
+        agreements.write(agreements.made(self.checked, first, second, earlier, revision), form, target)
+
+    def ownership(self) -> Ownership:
+        """Give what each partner owns: elements and files."""
+        return ownership.ownership(self.checked)
+
+    def codeowners(self) -> str:
+        """Write CODEOWNERS: who reviews which file."""
+        return ownership.codeowners(self.checked).text
+
     def write_packed(self, file: Name) -> None:
         """Write the whole project as one YAML file."""
         outputs.pack(self.checked, Path(fspath(file)))
+
+    def _path(self) -> Path:
+        """Give what the project was read from: its folder, or its only file."""
+        files = self.checked.files
+        return self.root / files[0] if len(files) == 1 else self.root
 
     def _ask(self, select: str | None, level: Level = "implementation", revision: str | None = None) -> Ask:
         return Ask(self.select(select) if select else None, select or "", level, revision)

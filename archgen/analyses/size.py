@@ -148,7 +148,7 @@ def progress(architecture: Architecture) -> tuple[Progress, ...]:
         for group in architecture.groups.values():
             yield measure("group", group.id, group.title, group.components.values())
         for partner in architecture.partners.values():
-            yield measure("partner", partner.id, partner.title, (c for c in every if c.owner == partner.id))
+            yield measure("partner", partner.id, partner.title, (c for c in every if partner.id in c.owners))
         if architecture.partners and any(c.owner is None for c in every):
             yield measure("partner", "", "(nobody)", (c for c in every if c.owner is None))
 

@@ -18,6 +18,8 @@ VERBS = {
     "timing": "Show rates, latency of chains, load; why, what if, what decides.",
     "show": "Show an element: ports, readers, nodes, place in the files.",
     "list": "List elements or connections, as text, CSV or JSON.",
+    "interfaces": "Write what flows between two partners, to be signed by both.",
+    "owners": "Show who owns what, or write CODEOWNERS.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project.",

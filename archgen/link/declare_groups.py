@@ -33,14 +33,15 @@ class HighLevel:
 
     def _group(self, name: str, entry: Entry) -> Group:
         below = reading.body(entry)
-        owner = self.references.plain(reading.scalar(below, "owner"), "partner", name)
-        components = {part.key: self._component(name, part, owner) for part in reading.table(below, "components")}
+        owners = self.references.owners(below, name, ())
+        components = {part.key: self._component(name, part, owners) for part in reading.table(below, "components")}
         self.components.update((component.id, component) for component in components.values())
         return Group(
             id=name,
             title=reading.title(below, name),
             description=reading.text(below, "description"),
-            owner=owner,
+            owner=next(iter(owners), None),
+            co_owners=owners[1:],
             tags=reading.texts(below, "tags"),
             urls=reading.words(below, "urls"),
             layout=reading.layout(below),
@@ -48,9 +49,9 @@ class HighLevel:
             at=entry.at,
         )
 
-    def _component(self, group: str, entry: Entry, owner: str | None) -> Component:
+    def _component(self, group: str, entry: Entry, inherited: tuple[str, ...]) -> Component:
         below, complete = reading.body(entry), f"{group}.{entry.key}"
-        own = reading.scalar(below, "owner")
+        owners = self.references.owners(below, complete, inherited)
         inputs = self.outline.inputs[complete]
         return Component(
             id=complete,
@@ -59,7 +60,8 @@ class HighLevel:
             title=reading.title(below, entry.key),
             functionality=reading.text(below, "functionality"),
             description=reading.text(below, "description"),
-            owner=self.references.plain(own, "partner", complete) if own else owner,
+            owner=next(iter(owners), None),
+            co_owners=owners[1:],
             role=_role(below),
             requirements=tuple(_requirements(below)),
             requirements_known=below.get("requirements") is not None,

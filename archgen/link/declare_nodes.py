@@ -55,16 +55,16 @@ def _node(name: str, entry: Entry, around: Surroundings, implements: tuple[str, 
     host = references.plain(reading.scalar(below, "host"), "host", name)
     if host and container and around.containers[container].host not in {None, host}:
         references.found.append(_elsewhere(below, name, around.containers[container]))
-    owner = references.plain(reading.scalar(below, "owner"), "partner", name)
-    if reading.scalar(below, "owner") is None and implements:
-        owner = around.components[implements[0]].owner
+    inherited = (owner for component in implements for owner in around.components[component].owners)
+    owners = references.owners(below, name, inherited)
     ports = _ports(name, below, around, implements)
     return Node(
         id=name,
         title=reading.title(below, name),
         implements=implements,
         description=reading.text(below, "description"),
-        owner=owner,
+        owner=next(iter(owners), None),
+        co_owners=owners[1:],
         name=reading.text(below, "name") or name,
         namespace=_namespace(reading.text(below, "namespace")),
         kinds=kinds or ("node",),  # type: ignore[arg-type]

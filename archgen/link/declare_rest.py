@@ -31,7 +31,14 @@ def project(root: Table, default_id: str, default_title: str) -> ProjectInfo:
 def partners(root: Table) -> dict[str, Partner]:
     """Declare the partners."""
     return {
-        name: Partner(name, reading.title(below, name), reading.text(below, "description"), at=entry.at)
+        name: Partner(
+            name,
+            reading.title(below, name),
+            reading.text(below, "description"),
+            reading.text(below, "contact"),
+            reading.texts(below, "reviewers"),
+            at=entry.at,
+        )
         for name, entry, below in reading.elements(root, "partners")
     }
 

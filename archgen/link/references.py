@@ -6,10 +6,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from archgen.diagnostic import Diagnostic, Label
+from archgen.link import reading
 from archgen.model.names import NOTHING, Found, Named, Names
 from archgen.source import NOWHERE, Span
 from archgen.suggest import closest
-from archgen.syntax.tree import Scalar
+from archgen.syntax.tree import Scalar, Table
 
 _DEPTH = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
 _GUESSES = 300_000
@@ -64,6 +65,13 @@ class References:
         guess = self.guess(written.text, known)
         self.found.append(unknown(written, kind, guess, known.get(guess or "", NOWHERE), element))
         return None
+
+    def owners(self, below: Table, element: str, inherited: Iterable[str]) -> tuple[str, ...]:
+        """Give who answers for an element, each once: as written, where nobody wrote it as inherited."""
+        if below.get("owner") is None:
+            return tuple(dict.fromkeys(inherited))
+        found = (self.plain(one, "partner", element) for one in reading.scalars(below, "owner"))
+        return tuple(dict.fromkeys(name for name in found if name))
 
     def is_lost(self, words: str) -> bool:
         """Tell whether a file that could not be read may declare what a path names."""

@@ -32,7 +32,9 @@ class Partner:
     id: str
     title: str
     description: str | None = None
-    urls: Mapping[str, str] = field(default_factory=dict)
+    contact: str | None = None
+    reviewers: tuple[str, ...] = ()
+    """Who reviews its files, as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
 
 

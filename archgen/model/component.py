@@ -96,7 +96,8 @@ class Component:
     """A functional component. `id` is `group.component`.
 
     `inputs_known` is False while nobody has written `inputs` (unknown), True for `{}` (known to be none); the same for
-    outputs and requirements. `owner` is the group's where the component has none.
+    outputs and requirements. Owners are the group's where the component has
+    none; `owner` is the first of them.
     """
 
     id: str
@@ -106,6 +107,7 @@ class Component:
     functionality: str | None = None
     description: str | None = None
     owner: str | None = None
+    co_owners: tuple[str, ...] = ()
     role: Role | None = None
     requirements: tuple[RequirementUse, ...] = ()
     requirements_known: bool = False
@@ -122,6 +124,11 @@ class Component:
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     role_at: Span = field(default=NOWHERE, compare=False, repr=False)
 
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Give all partners who answer for it, the first one first."""
+        return (self.owner, *self.co_owners) if self.owner else ()
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
@@ -131,8 +138,14 @@ class Group:
     title: str
     description: str | None = None
     owner: str | None = None
+    co_owners: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
     layout: Layout = field(default_factory=Layout)
     components: Mapping[str, Component] = field(default_factory=dict)
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Give all partners who answer for it, the first one first."""
+        return (self.owner, *self.co_owners) if self.owner else ()

@@ -70,6 +70,8 @@ class Node:
     implements: tuple[str, ...] = ()
     description: str | None = None
     owner: str | None = None
+    co_owners: tuple[str, ...] = ()
+    """Who else answers for it: as written, else all further owners of its components."""
     name: str = ""
     namespace: str = "/"
     kinds: tuple[NodeKind, ...] = ("node",)
@@ -98,6 +100,11 @@ class Node:
     def full_name(self) -> str:
         """Namespace and name as ROS shows them: `/perception/object_recognizer`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Give all partners who answer for it, the first one first."""
+        return (self.owner, *self.co_owners) if self.owner else ()
 
 
 @dataclass(frozen=True, slots=True)

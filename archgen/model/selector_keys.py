@@ -68,14 +68,14 @@ def _media(component: Component) -> Iterable[str]:
 
 
 _COMPONENTS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
-    "owner": lambda component: (component.owner,),
+    "owner": lambda component: component.owners,
     "medium": _media,
     "role": lambda component: (component.role,),
     "requirement": lambda component: (use.text for use in component.requirements if use.is_id),
     "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
 }
 _NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
-    "owner": lambda node: (node.owner,),
+    "owner": lambda node: node.owners,
     "status": lambda node: (node.status,),
     "host": lambda node: (node.host,),
     "package": lambda node: (node.package,),

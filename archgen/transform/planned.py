@@ -36,6 +36,7 @@ def _planned(component: Component, name: str) -> Node:
         title=component.title,
         implements=(component.id,),
         owner=component.owner,
+        co_owners=component.co_owners,
         name=name,
         status="planned",
         timing={component.id: component.timing} if component.timing else {},

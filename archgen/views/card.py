@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,7 +96,11 @@ def card(view: Index, sort: str, name: str) -> Card:
 
 
 def _group(group: Group) -> Card:
-    facts = [("owner", group.owner or "?"), ("tags", ", ".join(group.tags)), ("description", group.description or "")]
+    facts = [
+        ("owner", ", ".join(group.owners) or "?"),
+        ("tags", ", ".join(group.tags)),
+        ("description", group.description or ""),
+    ]
     listed = tuple(f"{c.name}: {c.title}" for c in group.components.values())
     return Card("group", group.id, group.title, group.at, _shown(facts), (("components", listed),))
 
@@ -104,7 +108,7 @@ def _group(group: Group) -> Card:
 def _component(view: Index, component: Component) -> Card:
     facts = [
         ("group", component.group),
-        ("owner", component.owner or "?"),
+        ("owner", ", ".join(component.owners) or "?"),
         ("role", component.role or "?"),
         ("functionality", " ".join((component.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in component.requirements)),
@@ -166,6 +170,7 @@ def _port(view: Index, port: Input | Output) -> Card:
 def _node(view: Index, node: Node) -> Card:
     facts = [
         ("implements", ", ".join(node.implements)),
+        ("owner", ", ".join(node.owners) or "?"),
         ("ROS name", node.full_name),
         ("kind", ", ".join(node.kinds)),
         ("status", node.status or "?"),
@@ -220,12 +225,18 @@ def _other(view: Index, sort: str, name: str) -> Card:
     elif sort == "requirement":
         lists.append(("served by", tuple(component.id for component in view.components_for.get(name, ()))))
     elif sort == "partner":
-        lists.append(("owns", tuple(c.id for c in found.components.values() if c.owner == name)))
+        facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
+        parts = (("groups", found.groups), ("components", found.components), ("nodes", found.nodes))
+        lists += [(sort, owned) for sort, of in parts if (owned := _owned(of.values(), name))]
     elif sort in {"host", "container"}:
         lists.append(("nodes", tuple(node.id for node in found.nodes.values() if getattr(node, sort) == name)))
     elif sort == "chain":
         lists.append(("through", tuple(point.id for point in found.chains[name].through)))
     return Card(sort, name, getattr(element, "title", name), element.at, _shown(facts), tuple(lists))
+
+
+def _owned(elements: Iterable[Group | Component | Node], partner: str) -> tuple[str, ...]:
+    return tuple(each.id for each in elements if partner in each.owners)
 
 
 def _fact(value: object) -> str:

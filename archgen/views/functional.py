@@ -42,7 +42,7 @@ def group_blocks(view: Index, group: Group) -> tuple[Block, ...]:
 
 
 def _group_facts(view: Index, group: Group) -> list[tuple[str, Inlines]]:
-    rows = [("Owner", words.partner_link(view.architecture, group.owner))]
+    rows = [("Owner", words.owner_links(view.architecture, group.owners))]
     rows.append(("Components", words.text(str(len(group.components)))))
     if group.tags:
         rows.append(("Tags", words.text(", ".join(group.tags))))
@@ -104,7 +104,7 @@ def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlin
     architecture = view.architecture
     rows = [
         ("Group", words.text(words.group_link(architecture, component.group))),
-        ("Owner", words.partner_link(architecture, component.owner)),
+        ("Owner", words.owner_links(architecture, component.owners)),
         ("Role", words.maybe(component.role)),
     ]
     timing = words.timing_sentence(component.timing)
@@ -190,9 +190,9 @@ def _from(view: Index, port: Input) -> Inlines:
 def _other_owner(view: Index, component: str, outputs: tuple[str, ...]) -> Inlines:
     """Name the partners on the other side, where they are others."""
     found = view.architecture
-    mine = found.components[component].owner
-    owners = dict.fromkeys(found.components[found.outputs[o].component].owner for o in outputs)
-    others = [owner for owner in owners if owner and owner != mine]
+    mine = found.components[component].owners
+    owners = dict.fromkeys(p for o in outputs for p in found.components[found.outputs[o].component].owners)
+    others = [owner for owner in owners if owner not in mine]
     return (Text(" ("), *words.joined(words.partner_link(found, o) for o in others), Text(")")) if others else ()
 
 
@@ -213,10 +213,9 @@ def _read_by(view: Index, port: Output) -> Inlines:
 
 def _reader_owner(view: Index, port: Output, reader: Input) -> Inlines:
     found = view.architecture
-    owner = found.components[reader.component].owner
-    if owner is None or owner == found.components[port.component].owner:
-        return ()
-    return (Text(" ("), *words.partner_link(found, owner), Text(")"))
+    mine = found.components[port.component].owners
+    others = [owner for owner in found.components[reader.component].owners if owner not in mine]
+    return (Text(" ("), *words.joined(words.partner_link(found, o) for o in others), Text(")")) if others else ()
 
 
 def _medium(port: Input | Output) -> Inlines:

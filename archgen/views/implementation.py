@@ -52,7 +52,7 @@ def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
         ("ROS name", words.text(Text(node.full_name, code=True))),
         ("Kind, status", words.text(f"{kind}, ", *words.maybe(node.status))),
         ("Package", (*words.maybe(node.package), *_program(node))),
-        ("Owner", words.partner_link(found, node.owner) if node.owner else ()),
+        ("Owner", words.owner_links(found, node.owners) if node.owners else ()),
         ("Runs on", _place(node)),
         ("Parameter files", words.joined((Text(name, code=True),) for name in node.parameter_files)),
         ("Tags", words.text(", ".join(node.tags)) if node.tags else ()),

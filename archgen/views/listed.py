@@ -23,7 +23,7 @@ def _components(view: Index) -> Iterator[Row]:
             yield (
                 c.id,
                 c.title,
-                c.owner or "",
+                ", ".join(c.owners),
                 c.role or "",
                 str(len(c.inputs)),
                 str(len(c.outputs)),
@@ -35,13 +35,14 @@ def _components(view: Index) -> Iterator[Row]:
 def _nodes(view: Index) -> Iterator[Row]:
     for n in view.nodes():
         place = str(n.at) if n.written else ""
-        yield (n.id, ", ".join(n.implements), n.package or "", n.status or "", n.host or "", n.full_name, place)
+        owners = ", ".join(n.owners)
+        yield (n.id, ", ".join(n.implements), owners, n.package or "", n.status or "", n.host or "", n.full_name, place)
 
 
 def _groups(view: Index) -> Iterator[Row]:
     for name in view.groups():
         group = view.architecture.groups[name]
-        yield (group.id, group.title, group.owner or "", str(len(group.components)), str(group.at))
+        yield (group.id, group.title, ", ".join(group.owners), str(len(group.components)), str(group.at))
 
 
 def _connections(view: Index) -> Iterator[Row]:
@@ -50,8 +51,8 @@ def _connections(view: Index) -> Iterator[Row]:
         outputs = [found.outputs[output] for output in c.outputs]
         types = ", ".join(dict.fromkeys(output.type or "?" for output in outputs))
         messages = ", ".join(dict.fromkeys("physical" if o.physical else found.message(o) or "?" for o in outputs))
-        reader = found.components[found.inputs[c.input].component].owner or ""
-        writers = ", ".join(dict.fromkeys(found.components[output.component].owner or "" for output in outputs))
+        reader = ", ".join(found.components[found.inputs[c.input].component].owners)
+        writers = ", ".join(dict.fromkeys(o for output in outputs for o in found.components[output.component].owners))
         yield (c.input, c.target, c.kind, types, messages, str(len(outputs)), writers, reader, str(c.at))
 
 
@@ -101,7 +102,7 @@ def _hosts(view: Index) -> Iterator[Row]:
 
 _SORTS: dict[str, tuple[tuple[str, ...], Callable[[Index], Iterator[Row]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _components),
-    "nodes": (("id", "implements", "package", "status", "host", "ros_name", "place"), _nodes),
+    "nodes": (("id", "implements", "owner", "package", "status", "host", "ros_name", "place"), _nodes),
     "groups": (("id", "title", "owner", "components", "place"), _groups),
     "connections": (
         ("input", "from", "kind", "types", "messages", "edges", "from_owner", "to_owner", "place"),

@@ -79,12 +79,11 @@ class _Pages:
 
     def _group(self, group: Group) -> Page:
         section = Section(f"group:{group.id}", group.title, self.drawn(group_blocks(self.view, group)))
-        lead = self._owned(f"Group of {words.plural(len(group.components), 'component')}", group.owner)
+        lead = self._owned(f"Group of {words.plural(len(group.components), 'component')}", group.owners)
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME,), lead)
 
-    def _owned(self, words_: str, owner: str | None) -> str:
-        partner = self.found.partners.get(owner) if owner else None
-        return f"{words_} · {partner.title}" if partner else words_
+    def _owned(self, words_: str, owners: Iterable[str]) -> str:
+        return " · ".join([words_, *(self.found.partners[owner].title for owner in owners)])
 
     def _component(self, group: Group, component: Component) -> Page:
         sections = []
@@ -97,7 +96,7 @@ class _Pages:
         blocks = self.drawn(component_blocks(self.view, component))
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         crumbs = (HOME, (group.title, f"group:{group.id}"))
-        lead = self._owned(f"Component{f' · {component.role}' if component.role else ''}", component.owner)
+        lead = self._owned(f"Component{f' · {component.role}' if component.role else ''}", component.owners)
         path = f"components/{component.id}.html"
         return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
 
@@ -114,7 +113,7 @@ class _Pages:
     def _node(self, node: Node) -> Page:
         section = Section(f"node:{node.id}", node.id, node_blocks(self.view, node), tuple(self._findings(node.id)))
         kinds = ", ".join(words.KINDS[kind] for kind in node.kinds)
-        lead = self._owned(f"{kinds[0].upper()}{kinds[1:]}{f' · {node.status}' if node.status else ''}", node.owner)
+        lead = self._owned(f"{kinds[0].upper()}{kinds[1:]}{f' · {node.status}' if node.status else ''}", node.owners)
         crumbs = (HOME, ("Nodes", "page:nodes"))
         return Page(f"nodes/{node.id}.html", section.anchor, node.id, "nodes", section, crumbs, lead)
 

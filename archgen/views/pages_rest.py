@@ -255,14 +255,14 @@ def _container(view: Index, name: str) -> Page:
 
 def _partner(view: Index, partner: Partner, drawn: Drawn) -> Page:
     blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
-    if partner.urls:
-        blocks.append(Facts((("Links", words.urls(partner.urls.items())),)))
-    owned = [c for c in view.architecture.components.values() if c.owner == partner.id and view.scope.component(c.id)]
+    if partner.contact:
+        blocks.append(Facts((("Contact", words.text(partner.contact)),)))
+    owned = [c for c in view.architecture.components.values() if partner.id in c.owners and view.scope.component(c.id)]
     if owned:
         caption = f"Components of {partner.title}"
         blocks.append(component_table(view, f"table:owned/{partner.id}", caption, owned))
     mine = {component.id for component in owned}
-    ids = {node.id for node in view.nodes() if node.owner == partner.id or mine & set(node.implements)}
+    ids = {node.id for node in view.nodes() if partner.id in node.owners or mine & set(node.implements)}
     blocks += node_table(view, [node for node in view.nodes() if node.id in ids])
     if not blocks:
         blocks.append(Paragraph(words.text(Text("This partner owns nothing yet.", muted=True))))

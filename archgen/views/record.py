@@ -29,7 +29,7 @@ def record(view: Index) -> Record:
     return {
         "archgen_resolved": VERSION,
         "project": _picked(found.project, "id", "title", "version", "description") | _known({"distro": found.distro}),
-        "partners": {p.id: _picked(p, "title", "description") for p in found.partners.values()},
+        "partners": {p.id: _picked(p, "title", "description", "contact", "reviewers") for p in found.partners.values()},
         "use_cases": {u.id: _picked(u, "title", "description") for u in found.use_cases.values()},
         "requirements": {r.id: _requirement(view, r) for r in found.requirements.values()},
         "groups": {name: _group(view, found.groups[name]) for name in view.groups()},
@@ -67,7 +67,7 @@ def _requirement(view: Index, requirement: Requirement) -> dict[str, object]:
 
 def _group(view: Index, group: Group) -> dict[str, object]:
     components = {"components": [component.id for component in view.components(group.id)]}
-    return _picked(group, "title", "description", "owner", "tags") | _known(dict(components))
+    return _picked(group, "title", "description", "owner", "co_owners", "tags") | _known(dict(components))
 
 
 def _type(mapped: Type) -> dict[str, object]:
@@ -106,6 +106,7 @@ def _component(view: Index, component: Component) -> dict[str, object]:
             "title": component.title,
             "group": component.group,
             "owner": component.owner,
+            "co_owners": list(component.co_owners),
             "role": component.role,
             "functionality": component.functionality,
             "description": component.description,
@@ -170,6 +171,7 @@ def _node(view: Index, node: Node) -> dict[str, object]:
             **{key: getattr(node, key) for key in plain},
             "full_name": node.full_name,
             "kind": list(node.kinds),
+            "co_owners": list(node.co_owners),
             "implements": list(node.implements),
             "derived": None if node.written else True,
             "endpoints": [_endpoint(endpoint) for endpoint in view.endpoints_of.get(node.id, ())],

@@ -30,6 +30,8 @@ class Text:
     muted: bool = False
     line_break: bool = False
     """A line break stands before this run."""
+    change: Literal["added", "removed", "changed"] | None = None
+    """What it tells of: emitters may colour it; its words and sign say the same."""
 
 
 Inlines = tuple[Text, ...]

@@ -24,7 +24,7 @@ def groups(view: Index) -> Table | None:
     rows = tuple(
         (
             words.text(words.group_link(found, name)),
-            words.partner_link(found, found.groups[name].owner),
+            words.owner_links(found, found.groups[name].owners),
             words.text(str(len(found.groups[name].components))),
             words.maybe(first_sentence(found.groups[name].description)),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import chain
 
 from archgen.model.architecture import Architecture
@@ -43,6 +44,11 @@ def maybe(value: str | None) -> Inlines:
     return (Text(value),) if value else UNKNOWN
 
 
+def ticked(said: str) -> Inlines:
+    """Make a run of text of a finding's words: what stands between ticks is code."""
+    return tuple(Text(part, code=bool(at % 2)) for at, part in enumerate(said.split("`")) if part)
+
+
 def joined(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Put a separator between runs of text."""
     runs = list(items)
@@ -59,7 +65,7 @@ def lines(items: Iterable[Inlines]) -> Inlines:
 
 
 def _broken(part: Text) -> Text:
-    return Text(part.text, part.ref, part.url, part.strong, part.emphasis, part.code, part.muted, line_break=True)
+    return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group: str) -> Text:
@@ -101,6 +107,11 @@ def partner_link(architecture: Architecture, partner: str | None) -> Inlines:
         return UNKNOWN
     found = architecture.partners.get(partner)
     return (Text(found.title if found else partner, ref=f"partner:{partner}"),)
+
+
+def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
+    """Name who answers for an element, as links; that nobody is known to do is said."""
+    return joined(partner_link(architecture, owner) for owner in owners) or UNKNOWN
 
 
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:

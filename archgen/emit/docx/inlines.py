@@ -9,6 +9,7 @@ from archgen.emit.docx.markup import bookmark_name, run
 from archgen.views.shapes import Text
 
 _MUTED = '<w:color w:val="55606A"/>'
+_CHANGES = {"added": "1C6B3C", "removed": "B3261E", "changed": "8A5300"}
 _MONOSPACE = '<w:rFonts w:ascii="Consolas" w:hAnsi="Consolas" w:cs="Consolas"/>'
 
 
@@ -24,7 +25,7 @@ def plain(inlines: Iterable[Text]) -> str:
 
 def _plain(draft: Draft, text: Text, link: str = "") -> str:
     before = "<w:r><w:br/></w:r>" if text.line_break else ""
-    if not (link or text.strong or text.emphasis or text.code or text.muted):
+    if not (link or text.strong or text.emphasis or text.code or text.muted or text.change):
         return before + run(text.text)
     properties = ""
     if link or text.code:
@@ -32,7 +33,9 @@ def _plain(draft: Draft, text: Text, link: str = "") -> str:
     if link and text.code:
         properties += _MONOSPACE
     properties += ("<w:b/><w:bCs/>" if text.strong else "") + ("<w:i/><w:iCs/>" if text.emphasis else "")
-    if text.muted and not link:
+    if text.change:
+        properties += f'<w:color w:val="{_CHANGES[text.change]}"/>'
+    elif text.muted and not link:
         properties += _MUTED
     return before + run(text.text, properties)
 

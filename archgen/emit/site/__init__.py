@@ -19,7 +19,7 @@ from archgen.emit.tree import FileTree, tree
 from archgen.views.shapes import Page, Paragraph
 
 if TYPE_CHECKING:
-    from jinja2 import Template
+    from jinja2 import Environment, Template
 
 FONTS = Path(__file__).resolve().parent.parent / "fonts"
 """The font that pictures are laid out with: pages load the same, so that text fits its boxes in every browser."""
@@ -75,16 +75,20 @@ def _kinds(backend: backends.Backend) -> tuple[tuple[str, str], ...]:
 @cache
 def _template(folder: Path) -> Template:
     """Compile the frame once for all pages and all runs of a process."""
+    return environment(folder).get_template("page.html.j2")
+
+
+def environment(folder: Path) -> Environment:
+    """Give what templates of pages run in: all that is not marked safe is escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    environment = Environment(
+    return Environment(
         loader=FileSystemLoader(folder / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("page.html.j2")
 
 
 def _pictures(pictures: Mapping[str, Picture], links: Links) -> Iterator[tuple[str, bytes]]:

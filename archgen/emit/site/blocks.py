@@ -41,6 +41,8 @@ class Writer:
     drawn: Mapping[str, Picture]
     chapters: Chapters
     seen: set[str] = field(default_factory=set)
+    alone: bool = False
+    """The page is all there is: no picture has a file of its own."""
 
     def content(self, section: Section) -> str:
         """Write a page's section; its title is the page's own."""
@@ -67,7 +69,7 @@ class Writer:
             case Table():
                 return self._table(block)
             case Facts():
-                return self._facts(block)
+                return self.facts(block)
             case Bullets():
                 return self._bullets(block)
             case Figure():
@@ -95,6 +97,8 @@ class Writer:
         href = (self.here.href(run.ref) if run.ref else None) or web(run.url)
         if href:
             html = f'<a href="{href}">{html}</a>'
+        if run.change:
+            html = f'<span class="{run.change}">{html}</span>'
         if run.muted:
             html = f'<span class="muted">{html}</span>'
         return "<br>" + html if run.line_break else html
@@ -119,7 +123,8 @@ class Writer:
         )
         return f"<tr{self._id(anchor) if anchor else ''}>{cells}</tr>"
 
-    def _facts(self, facts: Facts) -> str:
+    def facts(self, facts: Facts) -> str:
+        """Write names and values."""
         rows = "\n".join(
             [f"<div><dt>{escape(name)}</dt><dd>{self.inlines(value)}</dd></div>" for name, value in facts.rows]
         )
@@ -139,13 +144,18 @@ class Writer:
                 f"This picture could not be drawn.</p>\n<figcaption>{caption}</figcaption>\n</figure>"
             )
         svg = pictures.inline(picture.svg, self.here.href, alt)
-        file = self.here.root + pictures.path(figure.graph)
         warning = f'<p class="notice warning">{escape(picture.warning)}</p>\n' if picture.warning else ""
         return (
             f'<figure class="picture"{self._id(figure.anchor)}>\n<div class="canvas">{svg}</div>\n{warning}'
-            f'<figcaption><span>{caption}</span> <a class="whole" href="{file}">Open picture'
-            f'<span class="spoken">: {caption}</span></a></figcaption>\n</figure>'
+            f"<figcaption><span>{caption}</span>{self._whole(figure.graph, caption)}</figcaption>\n</figure>"
         )
+
+    def _whole(self, graph: str, caption: str) -> str:
+        """Lead to the picture's own file."""
+        if self.alone:
+            return ""
+        file = self.here.root + pictures.path(graph)
+        return f' <a class="whole" href="{file}">Open picture<span class="spoken">: {caption}</span></a>'
 
     def _id(self, anchor: str) -> str:
         """Write the id of an anchor where it first stands on the page."""

@@ -36,15 +36,15 @@ def _style(item: Component) -> Literal["component", "source", "sink", "reactive"
 def _tooltip(view: Index, item: Component) -> str:
     said = [f"{item.title} ({item.id})", f"Group: {view.architecture.groups[item.group].title}"]
     said += [f"Role: {item.role}"] if item.role else []
-    said += [f"Owner: {owner(view, item.owner)}"] if item.owner else []
+    said += [f"Owner: {owners(view, item.owners)}"] if item.owners else []
     said += [item.functionality] if item.functionality else []
     return "\n".join(said)
 
 
-def owner(view: Index, partner: str | None) -> str:
-    """Name a partner by its title."""
-    found = view.architecture.partners.get(partner or "")
-    return found.title if found else partner or ""
+def owners(view: Index, partners: Iterable[str]) -> str:
+    """Name partners by their titles; empty where there is none."""
+    found = view.architecture.partners
+    return ", ".join(found[partner].title if partner in found else partner for partner in partners)
 
 
 def hue(view: Index, group: str) -> int:
@@ -75,7 +75,7 @@ def whole_group(view: Index, group: str, *, lines: Iterable[str] = ()) -> Box:
     """Draw a group as one box."""
     found = view.architecture.groups[group]
     count = plural(len(found.components), "component")
-    said = [line for line in (owner(view, found.owner), count) if line]
+    said = [line for line in (owners(view, found.owners), count) if line]
     return Box(
         group,
         found.title,

@@ -47,7 +47,7 @@ def component(view: Index, name: str) -> Graph:
 
 
 def _subject(view: Index, item: Component) -> Box:
-    said = (item.role or "", boxes.owner(view, item.owner), short_timing(item.timing))
+    said = (item.role or "", boxes.owners(view, item.owners), short_timing(item.timing))
     box = boxes.component(view, item, lines=tuple(x for x in (" · ".join(word for word in said if word),) if x))
     return replace(
         box,

@@ -159,7 +159,7 @@ def _value(view: Index, box: Box, by: str) -> str | None:
     if item is None:
         return None
     values: dict[str, Callable[[], str | None]] = {
-        "owner": lambda: boxes.owner(view, item.owner) or None,
+        "owner": lambda: boxes.owners(view, item.owners) or None,
         "role": lambda: component.role if component else None,
         "status": lambda: node.status if node else _status(view, box.id),
         "host": lambda: node.host if node else None,

@@ -1,0 +1,286 @@
+"""Agreements: which interfaces two partners have, what is said of each, and what changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline, resources
+from archgen.views.agreement import Made, agreement
+from archgen.views.agreement.interfaces import between
+from archgen.views.shapes import Inlines, Table
+from tests.agreeing import DUO, checked, lines, section, text, view
+
+
+def made(folder: Path, first: str = "north", second: str = "south", source: str = DUO) -> Made:
+    return agreement(view(checked(folder, source)), first, second, revision="r1")
+
+
+def changed(folder: Path, *edits: tuple[str, str]) -> Made:
+    after = DUO
+    for old, new in edits:
+        assert old in after
+        after = after.replace(old, new)
+    earlier = view(checked(folder / "before"))
+    return agreement(view(checked(folder / "after", after)), "north", "south", since=("v1", earlier))
+
+
+def keys(folder: Path, first: str, second: str, source: str = DUO) -> list[tuple[str, str, str]]:
+    return [(each.key, *each.pair) for each in between(view(checked(folder, source)), first, second)]
+
+
+def test_both_directions_those_of_the_first_partner_first(tmp_path: Path) -> None:
+    given = ("moving.planner.plan", "north", "south")
+    taken = [("seeing.camera.image", "south", "north"), ("seeing.finder.objects", "south", "north")]
+    assert keys(tmp_path, "north", "south") == [given, *taken]
+    assert keys(tmp_path, "south", "north") == [*taken, given]
+
+
+def test_the_partner_of_a_node_answers_too(tmp_path: Path) -> None:
+    """West's node implements north's arm: what runs between arm and planner is between west and north."""
+    assert keys(tmp_path, "west", "north") == [
+        ("moving.arm.joints", "west", "north"),
+        ("moving.planner.commands", "north", "west"),
+    ]
+    joints = section(made(tmp_path, "west", "north").outline, "Arm · joints")
+    assert "West Wheels implements Arm with the node arm_node, and answers for this interface too." in lines(
+        joints.blocks
+    )
+
+
+def test_what_belongs_to_both_at_both_ends_is_not_between_them(tmp_path: Path) -> None:
+    assert "moving.calibration.offset" not in {key for key, _, _ in keys(tmp_path, "north", "south")}
+    alone = DUO.replace("watch: {owner: [north, south]", "watch: {owner: south")
+    assert ("moving.calibration.offset", "north", "south") in keys(tmp_path, "north", "south", alone)
+    said = lines(section(made(tmp_path, source=alone).outline, "Calibration · offset").blocks)
+    assert "Calibration belongs to North Robotics, South Vision together: each answers for this interface." in said
+
+
+def test_a_node_of_two_partners_components_makes_neither_answer_for_the_other(tmp_path: Path) -> None:
+    shared = DUO.replace("planner_node: {implements: planner,", "planner_node: {implements: [planner, finder],")
+    shared = shared.replace("implements: finder\n", "implements: finder\n    owner: south\n")
+    assert ("seeing.camera.image", "south", "north") in keys(tmp_path, "north", "south", shared)
+    found = between(view(checked(tmp_path, shared)), "north", "south")
+    assert [port.id for each in found if each.key == "seeing.camera.image" for port in each.inputs] == [
+        "moving.calibration.image"
+    ]
+
+
+def test_topics_without_a_connection_are_interfaces_too(tmp_path: Path) -> None:
+    nodes = "  north_frames: {owner: north, publishes: {tf: {topic: /tf, message: tf2_msgs/msg/TFMessage}}}\n"
+    nodes += "  south_frames: {owner: south, subscribes: {tf: {topic: /tf, message: tf2_msgs/msg/TFMessage}}}\n"
+    source = DUO.replace("hosts: {pc", f"{nodes}hosts: {{pc")
+    assert ("/tf", "north", "south") in keys(tmp_path, "north", "south", source)
+    said = lines(section(made(tmp_path, source=source).outline, "/tf").blocks)
+    assert said[0] == "Topic: /tf"
+    assert "publishes | North Robotics | north_frames | default (not written)" in said
+
+
+def test_a_physical_flow_needs_no_message(tmp_path: Path) -> None:
+    source = DUO.replace(
+        "outputs: {joints: Joint states}", "outputs: {joints: Joint states, grip: {type: Force, medium: physical}}"
+    )
+    source = source.replace(
+        "inputs: {image: camera.image, planner", "inputs: {felt: moving.arm.grip, image: camera.image, planner"
+    )
+    source = source.replace(", owner: west", "")
+    assert lines(section(made(tmp_path, source=source).outline, "Arm · grip").blocks) == [
+        "Kind: physical: neither message nor topic",
+        "Type: Force",
+        "Requirements: R-1 The arm grasps what lies on the table (Finder)",
+        "gives | North Robotics | Arm · grip",
+        "takes | South Vision | Finder · felt",
+    ]
+
+
+def test_every_connection_between_owners_is_in_their_agreement() -> None:
+    found = view(pipeline.check(resources.path("example_ramcip")))
+    architecture, partners = found.architecture, sorted(found.architecture.partners)
+    agreed = {
+        (each.key, port.id): each.pair
+        for at, first in enumerate(partners)
+        for second in partners[at + 1 :]
+        for each in between(found, first, second)
+        for port in each.inputs
+    }
+    for edge in architecture.edges:
+        giver = architecture.components[architecture.outputs[edge.output].component].owner
+        taker = architecture.components[architecture.inputs[edge.input].component].owner
+        assert agreed.pop((edge.output, edge.input), None) == (None if giver == taker else (giver, taker))
+    assert agreed == {}
+
+
+def test_what_an_interface_says(tmp_path: Path) -> None:
+    assert lines(section(made(tmp_path).outline, "Finder · objects").blocks) == [
+        "Topic: /objects",
+        "Type: Found objects",
+        "Message: geometry_msgs/msg/PoseArray",
+        "Rate: 30 Hz · 33.333 ms, event (derived from camera_driver)",
+        "Largest gap: 56.333 ms (derived)",
+        "Size: 12 kB (written)",
+        "Traffic: 360 kB/s",
+        "QoS offered: default: reliable, depth 10",
+        "Requirements: R-1 The arm grasps what lies on the table (Finder, Planner)",
+        "publishes | South Vision | Finder · objects | finder_node\non Pc | default: reliable, depth 10",
+        "reads | North Robotics | Planner · objects | planner_node\non Pc | default (not written)",
+        "header | std_msgs/msg/Header",
+        "header.stamp | builtin_interfaces/msg/Time",
+        "header.frame_id | string",
+        "poses | geometry_msgs/msg/Pose[]",
+        "poses[].position | geometry_msgs/msg/Point",
+        "poses[].orientation | geometry_msgs/msg/Quaternion",
+        "See And Move | 66.333 ms | 300 ms | met",
+    ]
+
+
+def test_a_service_runs_from_its_server_and_says_how_soon_it_answers(tmp_path: Path) -> None:
+    found = made(tmp_path)
+    said = lines(section(found.outline, "Planner · plan").blocks)
+    assert said[:4] == [
+        "Service: /moving/planner/plan",
+        "Type: Plan on request",
+        "Message: example_interfaces/srv/Trigger",
+        "Answers within: 10 ms (derived)",
+    ]
+    assert "The definition of example_interfaces/srv/Trigger is not held: its fields cannot be shown." in said
+    assert not any(line.startswith("See And Move") for line in said), "the chain goes by the topic"
+    arrow = next(each for each in found.graph.arrows if each.style == "service")
+    assert (arrow.tail, arrow.head) == ("seeing.finder", ">moving.planner"), "drawn from client to server"
+
+
+def test_the_fields_of_a_service_and_those_that_are_used_again(tmp_path: Path) -> None:
+    source = DUO.replace("example_interfaces/srv/Trigger", "std_srvs/srv/SetBool").replace(
+        "ros: {distro: jazzy}",
+        'ros: {distro: jazzy, definitions: {std_srvs/srv/SetBool: "bool data\\n---\\nbool success\\nstring message"}}',
+    )
+    source = source.replace(
+        "Found objects: {message: geometry_msgs/msg/PoseArray", "Found objects: {message: sensor_msgs/msg/Image"
+    )
+    outline = made(tmp_path, source=source).outline
+    said = lines(section(outline, "Planner · plan").blocks)
+    assert said[-3:] == ["request | data | bool", "answer | success | bool", "answer | message | string"]
+    again = lines(section(outline, "Finder · objects").blocks)
+    assert "The fields of sensor_msgs/msg/Image stand at the first interface that carries it." in again
+
+
+def test_open_points(tmp_path: Path) -> None:
+    source = DUO.replace("qos: {reliability: reliable}}}", "qos: {reliability: best_effort}}}")
+    source = source.replace(
+        "trigger: [objects]}, host: pc}",
+        "trigger: [objects]}, host: pc, subscribes: {objects: {qos: {reliability: reliable}}}}",
+    )
+    outline = made(tmp_path, source=source).outline
+    clash = (
+        "error: planner_node receives nothing from finder_node on /objects: it asks for reliable delivery, and is "
+        "offered best effort only"
+    )
+    assert f"Open points: {clash}" in lines(section(outline, "Finder · objects").blocks)
+    points = lines(section(outline, "Open points").blocks)
+    assert points[0] == "Planner · plan | definition of the message"
+    assert any("`planner_node` receives nothing" in line and "incompatible-qos" in line for line in points)
+
+
+def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
+    outline = made(tmp_path).outline
+    assert (outline.title, outline.subtitle) == ("North Robotics and South Vision", "Interface agreement")
+    facts = {name: text(value) for name, value in outline.facts}
+    assert facts == {
+        "Between": "North Robotics, ada@north.example\nSouth Vision",
+        "Project": "Duo Arm",
+        "Version": "0.3",
+        "Revision": "r1",
+        "ROS distribution": "jazzy",
+    }
+    signed = lines(section(outline, "Signatures").blocks)
+    assert signed[0] == "The partners agree on the interfaces of Duo Arm as this document states them, at revision r1."
+    assert [line.split(" | ")[0] for line in signed[1:]] == ["North Robotics", "South Vision"]
+
+
+def test_nothing_changed(tmp_path: Path) -> None:
+    moved = DUO.replace("  seeing:\n    owner: south\n", "  seeing: # moved\n\n    owner: south\n")
+    assert moved != DUO
+    found = agreement(
+        view(checked(tmp_path / "b", moved)), "north", "south", since=("v1", view(checked(tmp_path / "a")))
+    )
+    assert found.changes is not None
+    assert not found.changes.some
+    assert text(found.outline.notices[0].inlines) == "Nothing between the two has changed since v1."
+
+
+def test_what_changed_stands_side_by_side(tmp_path: Path) -> None:
+    found = changed(tmp_path, ("rate: 30 Hz", "rate: 25 Hz"), ("deadline: 300 ms", "deadline: 60 ms"))
+    said = lines(section(found.outline, "Finder · objects").blocks)
+    assert said[0] == "~ changed since v1"
+    assert said[1:5] == [
+        "Rate | ~ changed | 30 Hz · 33.333 ms, event (derived from camera_driver) | 25 Hz · 40 ms, event (derived from camera_driver)",
+        "Largest gap | ~ changed | 56.333 ms (derived) | 63 ms (derived)",
+        "Traffic | ~ changed | 360 kB/s | 300 kB/s",
+        "Chain See And Move | ~ changed | 66.333 ms; deadline 300 ms; met | 73 ms; deadline 60 ms; missed",
+    ]
+    assert [text(row[1]) for row in _summary(found)] == [
+        "",
+        "~ changed: rate, largest gap, traffic",
+        "~ changed: rate, largest gap, traffic, chains",
+    ]
+
+
+def test_added_and_removed(tmp_path: Path) -> None:
+    found = changed(
+        tmp_path,
+        (", planner: moving.planner.plan", ""),
+        ("{image: camera.image}, outputs: {offset", "{info: camera.info}, outputs: {offset"),
+    )
+    assert [(text(row[0]), text(row[1])) for row in _summary(found)] == [
+        ("Camera · info", "+ added"),
+        ("Finder · objects", "~ changed: chains"),
+        ("Planner · plan", "\u2212 removed"),
+        ("Camera · image", "\u2212 removed"),
+    ]
+    assert text(found.outline.notices[0].inlines) == "Interfaces since v1: 1 added, 1 changed, 2 removed."
+    gone = section(found.outline, "Removed").sections[0]
+    assert lines(gone.blocks)[:2] == ["\u2212 removed", "Service: /moving/planner/plan"]
+    assert {run.change for row in _summary(found) for run in row[1]} >= {"added", "removed"}
+
+
+def test_a_new_name_on_the_same_topic_is_a_change(tmp_path: Path) -> None:
+    found = changed(
+        tmp_path,
+        ("finder:\n", "searcher:\n"),
+        ("finder.objects", "searcher.objects"),
+        ("implements: finder", "implements: searcher"),
+        ("through: [camera, finder", "through: [camera, searcher"),
+    )
+    assert found.changes is not None
+    assert (found.changes.added, found.changes.removed) == (frozenset(), ())
+    assert "Title | ~ changed | Finder · objects | Searcher · objects" in lines(
+        section(found.outline, "Searcher · objects").blocks
+    )
+
+
+def test_a_reader_more_and_a_field_less(tmp_path: Path) -> None:
+    found = changed(
+        tmp_path,
+        ("inputs: {offset: calibration.offset}", "inputs: {offset: calibration.offset, image: camera.image}"),
+        ("Colour image: {message: sensor_msgs/msg/Image", "Colour image: {message: sensor_msgs/msg/CompressedImage"),
+    )
+    said = lines(section(found.outline, "Camera · image").blocks)
+    assert "Watch · image | + added |  | reads; North Robotics, South Vision" in said
+    assert "Field width | \u2212 removed | uint32 | " in said
+    assert "Field format | + added |  | string" in said
+
+
+def _summary(found: Made) -> tuple[tuple[Inlines, ...], ...]:
+    table = section(found.outline, "At a glance").blocks[0]
+    assert isinstance(table, Table)
+    return table.rows
+
+
+@pytest.mark.parametrize(("first", "second"), [("certh", "sssa"), ("accrea", "tum"), ("forth", "certh")])
+def test_the_case_study_s_pictures_account_for_all_that_flows(first: str, second: str) -> None:
+    found = view(pipeline.check(resources.path("example_ramcip")))
+    made_of = agreement(found, first, second)
+    assert made_of.graph.asked == sum(arrow.count for arrow in made_of.graph.arrows)
+    assert {box.id for box in made_of.graph.boxes} >= {end for a in made_of.graph.arrows for end in (a.tail, a.head)}
+    listed = [each for each in made_of.outline.sections if each.anchor.startswith("way:")]
+    assert sum(len(each.sections) for each in listed) == made_of.interfaces > 0
