@@ -38,6 +38,7 @@ format: .make/test
 
 bench: .make/test
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/timing.py
 	$(BIN)/python benchmarks/simulation.py
 
 golden: .make/test

@@ -11,13 +11,13 @@ project.write_report("report.docx", select="owner:certh")
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
 
 from archgen import agreements, outputs, ownership, pipeline, sides
 from archgen.analyses import size as size_analysis
 from archgen.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.selector import Selection
 from archgen.outputs import Ask

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import enum
 import inspect
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from archgen.frozen import dataclass
 from archgen.source import Span
 
 if TYPE_CHECKING:

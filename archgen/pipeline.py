@@ -9,18 +9,18 @@ import gc
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostic import Diagnostic, Rule, Severity, settle
 from archgen.findings import aftermath, rules, suppress
+from archgen.frozen import dataclass
 from archgen.link import chapters, interfaces, merge, shipped
 from archgen.link.chapters import Chapters
 from archgen.link.pack import Attachments, Packed, pack
 from archgen.model.architecture import Architecture
 from archgen.model.interfaces import Interfaces
-from archgen.project import Loaded, Tracked
+from archgen.project import Loaded, Slices, Tracked
 from archgen.source import Sources
 from archgen.syntax import files
 from archgen.syntax import interfaces as interface_files
@@ -114,10 +114,10 @@ def check_at(path: Path | None, revision: str) -> Checked:
     return check_tracked(project.tracked(path), revision)
 
 
-def check_tracked(tracked: Tracked, revision: str) -> Checked:
-    """Judge a project at a revision; whoever wants many revisions finds the project once."""
+def check_tracked(tracked: Tracked, revision: str, known: Slices | None = None) -> Checked:
+    """Judge a project at a revision; whoever wants many revisions finds the project once, and keeps the slices in `known`."""
     with _without_collection():
-        return judge(project.load_at(tracked, revision))
+        return judge(project.load_at(tracked, revision, known))
 
 
 @contextmanager

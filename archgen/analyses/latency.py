@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.timing import wording
-from archgen.timing.chains import chains
+from archgen.timing.chains import missed
 from archgen.timing.sums import boundless, known
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
-    from archgen.timing.analysis import Analysis, ChainResult, Term
+    from archgen.timing.analysis import Analysis, Term
+    from archgen.timing.value import Value
 
 
 def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
@@ -57,14 +58,12 @@ def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagn
     """
     if not any(chain.deadline for chain in architecture.chains.values()):
         return
-    for name, result in chains(analysis, architecture).items():
-        chain = architecture.chains[name]
-        if result.verdict != "missed" or chain.deadline is None:
-            continue
-        largest = max(result.terms, key=_weight)
+    for late in missed(analysis, architecture):
+        name, chain = late.chain.id, late.chain
+        largest = max(late.terms, key=_weight)
         yield Diagnostic(
             "late-chain",
-            f"the chain `{name}` may take {_said(result)}, its deadline is {chain.deadline}",
+            f"the chain `{name}` may take {_said(late.bound)}, its deadline is {chain.deadline}",
             chain.at,
             labels=(Label(largest.at, f"the largest part: {largest.activity}, {_part(largest)}"),),
             help=f"`archgen timing --sensitivity {name}` shows which figure shortens it most",
@@ -72,11 +71,11 @@ def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagn
         )
 
 
-def _said(result: ChainResult) -> str:
-    if result.bound.value is None:
-        return "any time, for a host is overloaded" if "overload" in result.bound.assumptions else "any time"
-    more = "" if known(result.bound) else " and more, for not all of its figures are known"
-    return wording.duration(result.bound.value) + more
+def _said(bound: Value) -> str:
+    if bound.value is None:
+        return "any time, for a host is overloaded" if "overload" in bound.assumptions else "any time"
+    more = "" if known(bound) else " and more, for not all of its figures are known"
+    return wording.duration(bound.value) + more
 
 
 def _weight(term: Term) -> tuple[bool, object]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass
 from archgen.model.mapping import flow_of
 
 if TYPE_CHECKING:

@@ -142,8 +142,8 @@ def wrote(path: Path, detail: str = "") -> None:
     click.echo(f"wrote {shown}{f' ({detail})' if detail else ''}")
 
 
-def progress() -> Callable[[int, int], None] | None:
-    """Give a function that shows on a terminal how many pictures are drawn, of how many; None in a pipe."""
+def progress(doing: str = "drawing") -> Callable[[int, int], None] | None:
+    """Give a function that shows on a terminal how much of long work is done, of how much; None in a pipe."""
     if not sys.stderr.isatty():
         return None
     last = [0.0]
@@ -154,7 +154,7 @@ def progress() -> Callable[[int, int], None] | None:
             return
         last[0] = now
         end = "\r\x1b[K" if done >= total else ""
-        sys.stderr.write(f"\r\x1b[Kdrawing: {done} of {total}{end}")
+        sys.stderr.write(f"\r\x1b[K{doing}: {done} of {total}{end}")
         sys.stderr.flush()
 
     return show

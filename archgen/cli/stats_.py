@@ -13,17 +13,36 @@ from archgen.cli import options, run
 
 if TYPE_CHECKING:
     from archgen.analyses.size import Progress, Size
+    from archgen.history import By
 
 
 @click.command("stats")
 @options.project
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def command(project: Path | None, form: str) -> None:
+@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+@click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
+@click.option(
+    "--by",
+    type=click.Choice(["revision", "month"]),
+    help="Each revision, or the last of each month.  [default: revision]",
+)
+def command(project: Path | None, form: str, by: By | None, *, history: bool) -> None:
     """Show how large PROJECT is and how far along: as a whole, for each group and for each partner.
 
     Described: it has a functionality. Typed: each output has a type. Mapped: a node that somebody wrote implements it.
     Timed: it or all its nodes have a timing. Traced: it names a declared requirement.
+
+    With --history: the same at each revision that changed the project, along the first parents of git's HEAD.
     """
+    if history:
+        _over_time(project, form, by or "revision")
+        return
+    if by or form == "csv":
+        msg = "--by and --format csv belong to --history"
+        raise click.UsageError(msg)
+    _now(project, form)
+
+
+def _now(project: Path | None, form: str) -> None:
     from archgen.analyses.size import progress, size
     from archgen.diagnostic import Severity
     from archgen.findings.escape import json_text
@@ -38,6 +57,25 @@ def command(project: Path | None, form: str) -> None:
     else:
         click.echo(_text(checked.architecture.project.title, found, rows, len(checked.files)), nl=False)
     run.finish(checked)
+
+
+def _over_time(project: Path | None, form: str, by: By) -> None:
+    from archgen import git, outputs
+    from archgen.findings import history_text
+    from archgen.findings.escape import json_text
+    from archgen.history import history
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        found = history(project, by, cache=outputs.cache_folder(), progress=run.progress("reading"))
+    except (git.GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(str(error)) from None
+    if form == "json":
+        click.echo(json_text(history_text.document(found)), nl=False)
+    elif form == "csv":
+        click.echo(history_text.csv(found), nl=False)
+    else:
+        click.echo(history_text.text(found), nl=False)
 
 
 def _text(title: str, found: Size, rows: tuple[Progress, ...], files: int) -> str:

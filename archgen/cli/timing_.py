@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from archgen.cli import options, run
+from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
     from archgen.diagnostic import Diagnostic

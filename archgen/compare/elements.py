@@ -84,7 +84,8 @@ def _around(found: Architecture, names: Names) -> Iterator[Element]:
         values: dict[str, object] = {
             "title": title(partner.id, partner.title),
             "description": prose(partner.description),
-            **_urls(partner.urls),
+            "contact": partner.contact,
+            "reviewers": words(partner.reviewers),
         }
         name = names.to("partner", partner.id)
         yield Element("partner", name, partner.id, known(values), owner=name)
@@ -111,6 +112,7 @@ def _groups(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(group.id, group.title),
             "description": prose(group.description),
             "owner": owner,
+            "co_owners": words(names.to("partner", other) for other in group.co_owners),
             "tags": words(group.tags),
             "layout": group.layout.direction,
             **_urls(group.urls),
@@ -129,6 +131,7 @@ def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> 
         "functionality": prose(component.functionality),
         "description": prose(component.description),
         "owner": owner,
+        "co_owners": words(names.to("partner", other) for other in component.co_owners),
         "role": component.role,
         "requirements": words(names.to("requirement", use.text) for use in component.requirements),
         "tags": words(component.tags),

@@ -9,6 +9,7 @@ from archgen.compare.nodes import default_qos
 from archgen.compare.values import Title, plain
 
 Row = tuple[str, object, object]
+_OWNERS = frozenset({"owner", "co_owners"})
 
 
 def changed(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> Iterator[Row]:
@@ -37,8 +38,8 @@ def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element]
     one, other = old.values.get(key), new.values.get(key)
     if isinstance(one, Title) and isinstance(other, Title):
         return one.text == other.text or (one.made and other.made)
-    if key == "owner" or (new.sort == "node" and key.startswith("timing.")):
-        return _orphaned(old, new, before, after) or (key == "owner" and _same_giver(old, new, before, after))
+    if key in _OWNERS or (new.sort == "node" and key.startswith("timing.")):
+        return _orphaned(old, new, before, after) or (key in _OWNERS and _same_giver(key, old, new, before, after))
     if key in {"inputs", "outputs"}:
         return SOME in {one, other}
     if new.sort == "project":
@@ -52,15 +53,17 @@ def _orphaned(old: Element, new: Element, before: Mapping[Key, Element], after: 
     return new.sort == "node" and (gone or any(("component", ref) not in before for ref in new.refs))
 
 
-def _same_giver(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> bool:
+def _same_giver(
+    key: str, old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]
+) -> bool:
     """Say whether an owner is given by what stands above, which changed hands itself."""
     givers = [("component", ref) for ref in new.refs] if new.sort == "node" else [new.parent] if new.parent else []
     return any(
         giver in before
         and giver in after
         and old.parent == new.parent
-        and before[giver].owner == old.owner
-        and after[giver].owner == new.owner
+        and before[giver].values.get(key) == old.values.get(key)
+        and after[giver].values.get(key) == new.values.get(key)
         for giver in givers
     )
 

@@ -82,6 +82,12 @@ def _end(path: str, parts: int) -> str:
     return ".".join(path.split(".")[-parts:])
 
 
+def _further(found: Architecture, node: Node) -> tuple[str, ...]:
+    """Give a node's further owners, unless they are just those of its components."""
+    inherited = {owner for component in node.implements for owner in found.components[component].owners}
+    return () if set(node.owners) == inherited else node.co_owners
+
+
 def _node(found: Architecture, node: Node, names: Names, alone: frozenset[str]) -> dict[str, object]:
     container = names.to("container", node.container) if node.container else None
     held = found.containers.get(node.container) if node.container else None
@@ -91,6 +97,7 @@ def _node(found: Architecture, node: Node, names: Names, alone: frozenset[str]) 
         "implements": words(names.to("component", component) for component in node.implements),
         "description": prose(node.description),
         "owner": names.to("partner", node.owner) if node.owner else None,
+        "co_owners": words(names.to("partner", other) for other in _further(found, node)),
         "name": None if node.name == node.id else node.name,
         "namespace": None if node.namespace == "/" else node.namespace,
         "kind": words(() if node.kinds == ("node",) else node.kinds),

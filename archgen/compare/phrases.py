@@ -25,6 +25,7 @@ _NAMES = {
     "timing.bcet": "best case execution time",
     "timing.response": "stated response time",
     "use_cases": "use cases",
+    "co_owners": "further owners",
     "latency.best": "best latency",
     "latency.worst": "worst latency",
     "forbid.from": "forbidden source",
@@ -56,7 +57,7 @@ def changed_key(change: Change) -> str:
     if key in _FLAT and after is not None and before is not None:
         return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
     if isinstance(before, list) or isinstance(after, list):
-        return f"{said}: {_blank(key)} {_sets(before, after)}"
+        return f"{said}: {_NAMES.get(key) or _blank(key)} {_sets(before, after)}"
     return f"{said}: {_values(_name(key), before, after)}"
 
 

@@ -6,6 +6,7 @@ repository whose configuration or attributes name a program is read without runn
 
 from archgen.git.base import Base, base, fork
 from archgen.git.errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.log import first_parents, ids
 from archgen.git.objects import Blob, Objects
 from archgen.git.repository import Repository, repository, resolve
 
@@ -20,7 +21,9 @@ __all__ = [
     "ShallowError",
     "UnknownRevisionError",
     "base",
+    "first_parents",
     "fork",
+    "ids",
     "repository",
     "resolve",
 ]

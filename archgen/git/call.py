@@ -34,14 +34,14 @@ class Done(NamedTuple):
         return self.out.decode("utf-8", "surrogateescape")
 
 
-def call(folder: Path, *arguments: str) -> Done:
+def call(folder: Path, *arguments: str, stdin: bytes = b"") -> Done:
     """Run one command of git in a folder."""
     try:
         done = subprocess.run(  # noqa: S603 - a fixed program; what users type stands behind --end-of-options or --
             [*SAFE, *arguments],
             cwd=folder,
             env=environment(os.environ),
-            stdin=subprocess.DEVNULL,
+            input=stdin,
             capture_output=True,
             timeout=_SECONDS,
             check=False,

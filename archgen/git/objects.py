@@ -12,6 +12,9 @@ from archgen.git.repository import Repository
 
 LINK = "120000"
 SUBMODULE = "160000"
+_SMALL = 65_536
+_MOST_HELD = 4096
+"""Small files are held, so many of them: most are the same in most commits."""
 
 
 class Blob(NamedTuple):
@@ -29,6 +32,7 @@ class Objects:
         self.repository = repository
         self._sizes = _Batch(repository, "--batch-check")
         self._contents = _Batch(repository, "--batch")
+        self._held: dict[str, bytes] = {}
 
     def tree(self, commit: str, prefix: str = "") -> dict[str, Blob] | None:
         """Give all that lies below a folder of a commit, by path; None where there is no such folder."""
@@ -40,13 +44,23 @@ class Objects:
 
     def size(self, blob: str) -> int | None:
         """Give a blob's size, None where this clone does not have it."""
+        if blob in self._held:
+            return len(self._held[blob])
         words = self._sizes.ask(blob)
         return int(words[2]) if words else None
 
     def content(self, blob: str) -> bytes | None:
         """Give a blob's content, None where this clone does not have it. Ask for its size first."""
+        held = self._held.get(blob)
+        if held is not None:
+            return held
         words = self._contents.ask(blob)
-        return self._contents.read(int(words[2])) if words else None
+        if not words:
+            return None
+        data = self._contents.read(int(words[2]))
+        if len(data) <= _SMALL and len(self._held) < _MOST_HELD:
+            self._held[blob] = data
+        return data
 
 
 class _Batch:

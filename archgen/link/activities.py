@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
 from archgen.diagnostic import Diagnostic, Label
+from archgen.frozen import dataclass
 from archgen.link import sense
 from archgen.model.component import Component
 from archgen.model.timing import Timing

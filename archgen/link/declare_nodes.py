@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from archgen.diagnostic import Diagnostic, Label
+from archgen.frozen import dataclass
 from archgen.link import reading
 from archgen.link.activities import Activities
 from archgen.link.declare_timing import declare_timing

@@ -10,7 +10,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -66,14 +66,22 @@ def load(
 
     `definitions` are files (path, text), `inline` those of `ros: {definitions: ...}` with the place of their text.
     """
-    shipped = _shipped(distro)
     if not definitions and not inline:
-        return shipped, ()
+        return _shipped(distro), ()
+    return _own(distro, tuple(definitions), tuple((inline or {}).items()))
+
+
+@lru_cache(4)
+def _own(
+    distro: str | None, definitions: tuple[tuple[str, str], ...], inline: tuple[tuple[str, tuple[str, Span]], ...]
+) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
+    """Lay the project's own definitions over what ships. They are the same in most revisions of a project."""
+    shipped = _shipped(distro)
     ros1 = is_ros_1(distro)
     diagnostics = list[Diagnostic]()
     own = dict[str, Definition]()
     places = dict[str, Span]()
-    for name, definition, place in _read(definitions, inline or {}, diagnostics, ros1=ros1):
+    for name, definition, place in _read(definitions, dict(inline), diagnostics, ros1=ros1):
         if name in own:
             label = Label(places[name], "the first one")
             diagnostics.append(Diagnostic(NAME, f"`{name}` is defined twice", place, labels=(label,)))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from archgen.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.link.sense import sound
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

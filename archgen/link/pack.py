@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.mapping import Type
 from archgen.syntax.tree import Entry, Ignore, Listing, Scalar, Table, Value

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.component import Component, Connection, Group, Input, Layout, Output
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.interfaces import Interfaces

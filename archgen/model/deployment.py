@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE, Span
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection
 from archgen.model.mapping import flow_of

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.distro import is_ros_1
 from archgen.suggest import closest
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 from archgen.source import NOWHERE, Span
 

@@ -7,9 +7,10 @@ elements.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import islice
 from typing import NamedTuple
+
+from archgen.frozen import dataclass
 
 LISTED = 8
 """How many candidates are given by name; there may be ten thousand."""

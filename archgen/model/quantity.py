@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import lru_cache
+
+from archgen.frozen import dataclass
 
 DIGITS = 18
 """So many may stand before the point, and so many behind it."""

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
+from archgen.frozen import dataclass
 from archgen.model import graph
 from archgen.model.architecture import Architecture
 from archgen.model.names import Named, Names
@@ -43,7 +44,7 @@ def select(
     return Selecting(architecture, findings or {}).select(text)
 
 
-@dataclass
+@dataclass()
 class Selecting:
     """The look-ups of an architecture, made when a word first asks for them: keep it to evaluate several selectors."""
 

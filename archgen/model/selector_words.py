@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.suggest import closest
 
 KEYS = (

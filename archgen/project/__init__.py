@@ -6,6 +6,7 @@ From the disk, or from a commit of the repository that it stands in.
 from archgen.project.find import MARKER, ProjectNotFoundError
 from archgen.project.loaded import Loaded, load
 from archgen.project.rules import RULES
+from archgen.project.slices import Slices
 from archgen.project.tracked import NotAtRevisionError, Tracked, load_at, tracked
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "Loaded",
     "NotAtRevisionError",
     "ProjectNotFoundError",
+    "Slices",
     "Tracked",
     "load",
     "load_at",

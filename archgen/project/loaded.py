@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass
 from archgen.project.find import MARKER, find
 from archgen.project.reading import Reading, matches, read_sources, take
+from archgen.project.slices import Slices
 from archgen.source import Sources, Span
 from archgen.syntax.files import Files
 from archgen.syntax.folder import Folder
@@ -61,9 +63,11 @@ def load(path: Path | None = None) -> Loaded:
     return load_from(Folder(root), first)
 
 
-def load_from(files: Files, first: str) -> Loaded:
-    """Read a project, wherever its files are; `first` is the one that is read first."""
-    reading = Reading(files)
+def load_from(files: Files, first: str, known: Slices | None = None) -> Loaded:
+    """Read a project, wherever its files are; `first` is the one that is read first. Slices that are `known` are not
+    parsed again.
+    """
+    reading = Reading(files, known=known)
     take(reading, first)
     if first == MARKER:
         read_sources(reading)

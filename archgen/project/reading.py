@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic
 from archgen.project import baseline
 from archgen.project.find import MARKER
-from archgen.schema import better_keys, normalise, sections, validate
+from archgen.project.slices import Slice, Slices, parse
+from archgen.schema import sections
 from archgen.source import Sources, Span
 from archgen.suggest import closest
-from archgen.syntax import globs, yaml
+from archgen.syntax import globs
 from archgen.syntax.files import Files, read
-from archgen.syntax.tree import Listing, Scalar, Table
+from archgen.syntax.tree import Listing, Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from archgen.syntax.tree import Document, Value
 
@@ -36,6 +36,7 @@ class Reading:
     sources: Sources = field(default_factory=Sources)
     documents: list[Document] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    known: Slices | None = None
     seen: set[str] = field(default_factory=set)
     broken: list[str] = field(default_factory=list)
     lost: set[str] = field(default_factory=set)
@@ -44,65 +45,32 @@ class Reading:
     """Whether a whole file or section was not understood."""
 
 
-def _read(reading: Reading, file: str) -> tuple[Document | None, tuple[Diagnostic, ...]]:
+def _read(reading: Reading, file: str) -> Slice:
     """Read and parse one file; nothing is kept of it yet but its text."""
     if not file.isprintable():
         message = f"a file's name cannot be read as text: {file!a}"
-        return None, (Diagnostic("syntax-error", message, Span.of_file(MARKER), help="rename the file"),)
+        unnamed = Diagnostic("syntax-error", message, Span.of_file(MARKER), help="rename the file")
+        return Slice(file, "", None, (unnamed,))
     text = read(reading.files, file)
     reading.sources.add(file, text.text)
-    return (None, (text.problem,)) if text.problem else yaml.parse(file, text.text)
+    return Slice(file, text.text, None, (text.problem,)) if text.problem else parse(file, text.text, reading.known)
 
 
 def take(reading: Reading, file: str) -> None:
     """Read one file, whatever it holds, as a slice."""
     reading.seen.add(file)
-    _keep(reading, file, *_read(reading, file))
+    _keep(reading, _read(reading, file))
 
 
-def _keep(reading: Reading, file: str, document: Document | None, found: tuple[Diagnostic, ...]) -> None:
-    reading.diagnostics.extend(found)
-    if document is None:
-        reading.broken.append(file)
-        reading.partial = True
-        reading.lost.update(_written(reading, file))
+def _keep(reading: Reading, one: Slice) -> None:
+    understood = one.understood()
+    reading.diagnostics.extend(understood.diagnostics)
+    reading.lost.update(understood.lost)
+    reading.partial |= understood.partial
+    if one.document is None:
+        reading.broken.append(one.file)
     else:
-        written = len(document.root.entries)
-        wrong = validate(document)
-        if wrong:
-            reading.partial |= len(document.root.entries) < written
-            reading.lost.update(_lost(reading, document, wrong))
-        reading.diagnostics.extend(wrong)
-        reading.diagnostics.extend(normalise(document))
-        reading.documents.append(document)
-
-
-_KEY = re.compile(r"(?<![A-Za-z0-9_.-])([A-Za-z0-9][A-Za-z0-9_.-]*+)[\"']?[ \t]*+:")
-"""Begins at a word's first letter and never goes back: a long word without a colon is looked at once."""
-
-
-def _written(reading: Reading, file: str) -> list[str]:
-    """Give the keys in a file, read or not, as its text shows them."""
-    return _KEY.findall(reading.sources.text(file) or "")
-
-
-def _lost(reading: Reading, document: Document, wrong: Sequence[Diagnostic]) -> Iterator[str]:
-    """Give the keys that were taken out of a document, and the ids that were meant by those that cannot be one."""
-    yield from Counter(_written(reading, document.file)) - Counter(_keys(document.root))
-    for diagnostic in wrong:
-        at = diagnostic.span
-        line = reading.sources.line(at.file, at.line) or ""
-        yield from better_keys(line[at.column - 1 : at.end_column - 1])
-
-
-def _keys(value: Value) -> Iterator[str]:
-    if isinstance(value, Table):
-        for entry in value:
-            yield entry.key
-            yield from _keys(entry.value)
-    elif isinstance(value, Listing):
-        for item in value.items:
-            yield from _keys(item)
+        reading.documents.append(one.document)
 
 
 def read_sources(reading: Reading) -> None:
@@ -120,9 +88,9 @@ def read_sources(reading: Reading) -> None:
 def _take_slice(reading: Reading, file: str, *, named: bool) -> None:
     """Read a file; what a wildcard found is left out if it is a project of its own (a packed one, for instance)."""
     reading.seen.add(file)
-    document, found = _read(reading, file)
-    if named or document is None or _NO_SLICE.isdisjoint(document.root.entries):
-        _keep(reading, file, document, found)
+    one = _read(reading, file)
+    if named or _NO_SLICE.isdisjoint(one.sections):
+        _keep(reading, one)
 
 
 def _read_all(reading: Reading) -> None:
@@ -132,26 +100,25 @@ def _read_all(reading: Reading) -> None:
         if file in reading.seen:
             continue
         reading.seen.add(file)
-        document, found = _read(reading, file)
-        if baseline.is_own(reading.sources.text(file) or ""):
+        one = _read(reading, file)
+        if baseline.is_own(one.text):
             continue  # broken or not, it is judged where it is used
-        if document is None and found[0].rule != "too-large" and not _looks_like_slice(reading, file, known):
+        if one.document is None and one.diagnostics[0].rule != "too-large" and not _looks_like_slice(one, known):
             ignored.append((file, None))
-        elif document is None:
-            _keep(reading, file, None, found)
-        elif not known.isdisjoint(document.root.entries):
-            if _NO_SLICE.isdisjoint(document.root.entries):
-                _keep(reading, file, document, found)
-        elif document.root.entries:
-            ignored.append((file, next(filter(None, (closest(key, known) for key in document.root.entries)), None)))
+        elif one.document is None:
+            _keep(reading, one)
+        elif not known.isdisjoint(one.sections):
+            if _NO_SLICE.isdisjoint(one.sections):
+                _keep(reading, one)
+        elif one.sections:
+            ignored.append((file, next(filter(None, (closest(key, known) for key in one.sections)), None)))
     if ignored and MARKER not in reading.broken:
         reading.diagnostics.append(_ignored(ignored))
 
 
-def _looks_like_slice(reading: Reading, file: str, known: frozenset[str]) -> bool:
+def _looks_like_slice(one: Slice, known: frozenset[str]) -> bool:
     """Say whether a file that cannot be parsed was meant as a slice: one that cannot be read at all, or has a section."""
-    text = reading.sources.text(file) or ""
-    return not text or re.search(rf"^\W*(?:{'|'.join(sorted(known))})\W*:", text, re.MULTILINE) is not None
+    return not one.text or re.search(rf"^\W*(?:{'|'.join(sorted(known))})\W*:", one.text, re.MULTILINE) is not None
 
 
 def _ignored(ignored: list[tuple[str, str | None]]) -> Diagnostic:

@@ -9,6 +9,7 @@ from pathlib import Path
 from archgen.git import NoRepositoryError, Objects, repository, resolve
 from archgen.project.find import MARKER, ProjectNotFoundError, find
 from archgen.project.loaded import Loaded, load_from
+from archgen.project.slices import Slices
 from archgen.syntax.committed import committed
 
 
@@ -57,8 +58,8 @@ def _only_committed(path: Path | None, nothing: ProjectNotFoundError) -> Tracked
     return Tracked(Objects(found), tuple((folder, MARKER) for folder in folders))
 
 
-def load_at(project: Tracked, revision: str) -> Loaded:
-    """Read a project as a revision holds it, from git's objects.
+def load_at(project: Tracked, revision: str, known: Slices | None = None) -> Loaded:
+    """Read a project as a revision holds it, from git's objects; slices that are `known` are not parsed again.
 
     Raises `NotAtRevisionError` where it does not exist there, and what `git.resolve` raises.
     """
@@ -66,7 +67,7 @@ def load_at(project: Tracked, revision: str) -> Loaded:
     for folder, first in project.places:
         files = committed(project.objects, commit, folder)
         if first and files is not None and files.exists(first):
-            return load_from(files, first)
+            return load_from(files, first, known)
     folder, first = project.places[0]
     msg = f"the project `{posixpath.join(folder, first)}` does not exist in `{revision}`"
     raise NotAtRevisionError(msg)

@@ -6,10 +6,11 @@ Empty entries go too (they are "not written"), but below an id an empty entry de
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label
+from archgen.frozen import dataclass
 from archgen.syntax.tree import Entry, Listing, Scalar, Table
 
 if TYPE_CHECKING:

@@ -7,9 +7,10 @@ for ROS 2), in words that say what to write; whether the messages that fields na
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.frozen import dataclass
 from archgen.model.interfaces import Field, Interface
 from archgen.source import Span
 from archgen.suggest import did_you_mean

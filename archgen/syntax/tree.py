@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.source import Span
 
 Plain = str | int | float | bool | None

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node
 from archgen.model.timing import Behaviour, Timing

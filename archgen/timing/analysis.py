@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.timing import Behaviour
 from archgen.source import NOWHERE, Span
 from archgen.timing.system import Arc, System

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
 from archgen.model.node import Endpoint, Topic
@@ -52,14 +53,14 @@ class _Joining:
                 # What all nodes share would join all of them: there only what an input names counts.
                 if topic.shared and writer.port not in reader.sources:
                     continue
-                data = self._data(topic, writer, reader)
                 if topic.flow == "topic":
-                    yield replace(data, size=self.size(writer, "data"))
+                    yield self._data(topic, writer, reader, self.size(writer, "data"))
                 else:
+                    data = self._data(topic, writer, reader, None)
                     yield replace(self._request(data), size=self.size(writer, "request"))
                     yield replace(data, role="answer", size=self.size(writer, "answer"))
 
-    def _data(self, topic: Topic, writer: Endpoint, reader: Endpoint) -> Arc:
+    def _data(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
         source, target = (owner(self.architecture, self.named, end) for end in (writer, reader))
         link, best, worst = self.route(self.made[source].host, self.made[target].host)
         port = self.architecture.inputs.get(reader.port or "")
@@ -75,6 +76,7 @@ class _Joining:
             best=best,
             worst=worst,
             depth=None if qos.history == "keep_all" else qos.depth,
+            size=size,
             optional=bool(port and port.optional),
             depth_written=qos.written and qos.depth != PROFILES[qos.profile].depth,
             at=self._place(writer, reader),

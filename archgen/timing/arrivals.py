@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
 from archgen.timing.sums import bounded, known, nameless, times
 from archgen.timing.system import Activity, Arc

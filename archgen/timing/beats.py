@@ -54,8 +54,12 @@ def periodic(found: Paces, activity: Activity) -> Beat:
     """Give the beat that an activity states itself."""
     if activity.period is None:
         return unknown(activity.id), unknown(activity.id)
-    tick = found.state.system.tick
-    return Value(SECOND / (activity.period * tick)), Value((activity.period + activity.jitter) * tick)
+    key = activity.period, activity.jitter
+    beat = found.beats.get(key)
+    if beat is None:
+        rate = Value(SECOND / (activity.period * found.state.system.tick))
+        beat = found.beats[key] = rate, found.time(activity.period + activity.jitter)
+    return beat
 
 
 def periodic_reason(found: Paces, activity: Activity) -> Reason:

@@ -10,9 +10,9 @@ from typing import Literal
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
 from archgen.timing.placement import Resource
 from archgen.timing.propagate import State
-from archgen.timing.response import Found
 from archgen.timing.sums import times, total, unknown
 from archgen.timing.system import Activity, System
+from archgen.timing.threads import Found
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import Value
 

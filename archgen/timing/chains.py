@@ -6,9 +6,10 @@ F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
 from archgen.timing import route
 from archgen.timing.analysis import Analysis, ChainResult, Term
@@ -30,6 +31,15 @@ class Found:
     bound: Value
 
 
+@dataclass(frozen=True, slots=True)
+class Late:
+    """A chain that may miss its deadline: its bound, and the terms."""
+
+    chain: Chain
+    bound: Value
+    terms: tuple[Term, ...]
+
+
 def chain(analysis: Analysis, architecture: Architecture, asked: Chain, network: Network | None = None) -> ChainResult:
     """Bound one chain. Give the network to share its costs among many chains."""
     network = network or Network.of(analysis)
@@ -42,6 +52,21 @@ def chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainRes
     """Bound all chains of an architecture, in order of appearance."""
     network = Network.of(analysis)
     return {asked.id: chain(analysis, architecture, asked, network) for asked in architecture.chains.values()}
+
+
+def missed(analysis: Analysis, architecture: Architecture) -> Iterator[Late]:
+    """Give the chains that may miss their deadlines; their other figures are left out."""
+    network = Network.of(analysis)
+    for asked in architecture.chains.values():
+        if asked.deadline is None:
+            continue
+        regions = route.chain_route(network, route.points(analysis.system, architecture, asked.through))
+        found = _ways(network, regions, "bound") if regions else None
+        way = next(found.best(), None) if found else None
+        if found is not None and way is not None:
+            bound = _whole(network, found, way, "bound")
+            if verdict(bound, Value(asked.deadline.value)) == "missed":
+                yield Late(asked, bound, terms(network, way))
 
 
 def between(

@@ -8,10 +8,10 @@ element reads at its start and writes at its end, is preempted by fixed prioriti
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
 from archgen.timing.system import Activity
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
 from archgen.timing.propagate import State, arriving
 from archgen.timing.streams import eta
@@ -27,6 +28,8 @@ class Known:
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
     """Found once for each reader."""
+    fits: dict[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = field(default_factory=dict)
+    """Loss and reads of each sample, found once for each pair of rates."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -62,9 +65,18 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
         return EdgePace(arc, why, why, why, _queue(known, arc))
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
         return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
-    loss = max(1 - read.value / sent.value, Fraction(0)) if sent.value else Fraction(0)
-    again = max(read.value / sent.value, Fraction(1)) if sent.value else Fraction(1)
+    rates = sent.value, read.value
+    fit = known.fits.get(rates)
+    if fit is None:
+        fit = known.fits[rates] = _fit(*rates)
+    loss, again = fit
     return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
+
+
+def _fit(sent: Fraction, read: Fraction) -> tuple[Fraction, Fraction]:
+    """Give the share of samples that is lost, and how often each is read."""
+    each = read / sent if sent else Fraction(1)
+    return max(1 - each, Fraction(0)), max(each, Fraction(1))
 
 
 def _either(sent: Value, read: Value) -> Value:
@@ -107,8 +119,8 @@ def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: 
     waiting = response if is_fired else total((known.paces[reader].gap, response))
     if waiting.value is None or not waiting.complete:
         return replace(waiting, value=None, side="exact")
-    window = waiting.value / known.state.system.tick
-    return max(-(-window.numerator // window.denominator), 1)
+    (above, below), tick = waiting.value.as_integer_ratio(), known.state.system.tick
+    return max(-(-above * tick.denominator // (below * tick.numerator)), 1)
 
 
 def service_loads(known: Known) -> dict[str, ServiceLoad]:

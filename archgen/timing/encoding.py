@@ -8,8 +8,9 @@ million elements in a row need no million steps. Source: OMG DDS-XTypes 1.3, 7.4
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import reduce
+
+from archgen.frozen import dataclass
 
 _STEP = 8
 _LENGTH = 4

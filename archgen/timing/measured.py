@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 from archgen.source import Span
 from archgen.suggest import did_you_mean

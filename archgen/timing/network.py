@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import lcm
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
 from archgen.timing.paths import Graph, Hop
 from archgen.timing.steps import Steps

@@ -30,8 +30,7 @@ def paces(state: State, responses: Mapping[str, Response]) -> Paces:
             beat, asked, reasons = beat_of(found, activity)
             pace = _pace(found, activity, beat, asked, tuple(reasons))
         found.of[name] = pace
-        for key in activity.outputs:
-            found.outputs[name, key] = _output(found, activity, key, beat, asked)
+        _publish(found, activity, beat, asked)
     for activity in later:
         beat, asked, reasons = beat_of(found, activity)
         found.derived[activity.id] = _pace(found, activity, beat, asked, tuple(reasons))
@@ -58,20 +57,31 @@ def _shape(found: Paces, events: Streams | Cause) -> tuple[Value, Value]:
         return because(events), because(events)
     if not events:
         return ZERO, UNBOUNDED
-    tick = found.state.system.tick
     one = single(events)
     distance = one.spacing if len(events) == 1 else 0
-    return Value(one.jitter * tick), Value(distance * tick)
+    return found.time(one.jitter), found.time(distance)
 
 
-def _output(found: Paces, activity: Activity, key: str, beat: Beat, asked: Value | None) -> Pace:
-    """Give how often an output is published: at each activation, R - B later, unless it is conditional."""
-    pace = found.of[activity.id]
-    serves = found.state.system.served
-    rate, gap = (asked or unknown(activity.id), unknown(activity.id)) if (activity.id, key) in serves else beat
-    if key in activity.conditional:
-        return _conditional(found, activity, key, pace, rate)
-    spread = _spread(found.responses[activity.id])
+def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) -> None:
+    """Find how often each output is published: at each activation, R - B later, unless it is conditional."""
+    pace, name = found.of[activity.id], activity.id
+    spread = _spread(found.responses[name]) if activity.outputs else ZERO
+    usual: Pace | None = None
+    for key in activity.outputs:
+        serves = (name, key) in found.state.system.served
+        now = (asked or unknown(name), unknown(name)) if serves else beat
+        if key in activity.conditional:
+            found.outputs[name, key] = _conditional(found, activity, key, pace, now[0])
+        elif serves:
+            found.outputs[name, key] = _later(pace, now, spread)
+        else:
+            usual = usual or _later(pace, beat, spread)
+            found.outputs[name, key] = usual
+
+
+def _later(pace: Pace, beat: Beat, spread: Value) -> Pace:
+    """Give the pace of what comes up to `spread` later than it might."""
+    rate, gap = beat
     if spread.value == 0:
         return Pace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
     gap = gap if gap.value is None else total((gap, spread))

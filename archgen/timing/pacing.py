@@ -24,6 +24,16 @@ class Paces:
     of: dict[str, Pace] = field(default_factory=dict)
     outputs: dict[tuple[str, str], Pace] = field(default_factory=dict)
     derived: dict[str, Pace] = field(default_factory=dict)
+    beats: dict[tuple[int, int], Beat] = field(default_factory=dict)
+    """Of each period and jitter."""
+    times: dict[int, Value] = field(default_factory=dict)
+
+    def time(self, ticks: int) -> Value:
+        """Give a duration in ns."""
+        found = self.times.get(ticks)
+        if found is None:
+            found = self.times[ticks] = Value(ticks * self.state.system.tick)
+        return found
 
 
 def trigger_place(activity: Activity) -> Span:

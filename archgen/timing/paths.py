@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from archgen.frozen import dataclass
 from archgen.timing.states import Graph, Hop, Region, States, in_order, unfolded, without_returns
 
 __all__ = ["Graph", "Hop", "Region", "Way", "Ways", "ways"]

@@ -11,10 +11,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from archgen.timing.placement import Resource, resources
-from archgen.timing.response import DIVERGED, Effort, Found, alone, responses
+from archgen.timing.response import Effort, alone, responses
 from archgen.timing.rings import components
 from archgen.timing.streams import Stream, Streams, all_of, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
+from archgen.timing.threads import DIVERGED, Found
 from archgen.timing.triggers import Triggers, states_itself
 from archgen.timing.value import Cause, united
 from archgen.timing.windows import Budget

@@ -7,27 +7,28 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
+from math import lcm
 from typing import NamedTuple
 
 from archgen.timing.analysis import Tier
-from archgen.timing.placement import Resource, Unit
-from archgen.timing.streams import Streams
+from archgen.timing.placement import Resource
 from archgen.timing.system import System
-from archgen.timing.value import Cause, united
-from archgen.timing.windows import Budget, Demand, DivergedError, Work, busy, carried, demand, shared, worst
-
-_NO_DEMAND: tuple[Demand, int] = (lambda _: 0, 0)
-
-
-class Found(NamedTuple):
-    """A worst response in ticks, or why there is none."""
-
-    value: int | None
-    tier: Tier
-    cause: Cause = Cause()
+from archgen.timing.threads import DIVERGED, OVERLOAD, UNBOUNDED, Events, Found, Thread, thread_of, utilisation, work_of
+from archgen.timing.value import Cause, added, united
+from archgen.timing.windows import (
+    NO_DEMAND,
+    Budget,
+    Demand,
+    DivergedError,
+    Load,
+    busy,
+    shared,
+    together,
+    without,
+    worst,
+)
 
 
 class Effort(NamedTuple):
@@ -37,74 +38,24 @@ class Effort(NamedTuple):
     stale: frozenset[str] | None = None
 
 
-Events = Mapping[str, Streams | Cause]
-OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
-
-
-def utilisation(cost: int, streams: Streams) -> Fraction:
-    """Give the share of a core that an activity takes."""
-    return sum((stream.rate for stream in streams), Fraction(0)) * cost
-
-
 def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
     """Find the response of what has no host: its own queue, on a core of its own."""
     activity = system.activities[name]
     if activity.response is not None:
         return Found(activity.response, "declared")
-    works = _work(system, name, events, {})
+    works = work_of(system, name, events, {})
     if isinstance(works, Cause):
         return Found(None, "dedicated" if activity.wcet is not None else "unknown", works)
     if utilisation(works.cost, works.streams) >= 1:
         return Found(None, "dedicated", OVERLOAD)
     try:
-        return Found(worst(works, *_NO_DEMAND, budget), "dedicated")
+        return Found(worst(works, NO_DEMAND, budget), "dedicated")
     except DivergedError:
         return Found(None, "dedicated", DIVERGED)
 
 
-def _work(system: System, name: str, events: Events, known: Mapping[str, Found]) -> Work | Cause:
-    cost, streams = system.activities[name].wcet, events[name]
-    if cost == 0:
-        return Work(0, () if isinstance(streams, Cause) else streams)
-    if cost is None or isinstance(streams, Cause):
-        unwritten = Cause((name,)) if cost is None else Cause()
-        return united((unwritten, streams)) if isinstance(streams, Cause) else unwritten
-    found = known.get(name)
-    return Work(cost, streams, (found.value or 0) if found else 0)
-
-
-@dataclass(frozen=True, slots=True)
-class _Thread:
-    """A unit with its work: `low` and `high` are the least and greatest priority of its members, None for ordinary ones."""
-
-    unit: Unit
-    works: tuple[Work, ...]
-    cause: Cause | None
-    low: int | None
-    high: int | None
-    share: Fraction
-    container: str | None
-
-
-_Threads = tuple[Sequence[_Thread], Sequence[_Thread]]
+_Threads = tuple[Sequence[Thread], Sequence[Thread]]
 """Those of a resource, and the foreign ones."""
-
-
-def _thread(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> _Thread:
-    found = [_work(system, name, events, known) for name in unit]
-    causes = [one for one in found if isinstance(one, Cause)]
-    works = tuple(one for one in found if isinstance(one, Work))
-    priorities = [system.activities[name].priority for name in unit]
-    written = [one for one in priorities if one is not None]
-    return _Thread(
-        unit,
-        works,
-        united(causes) if causes else None,
-        min(written) if len(written) == len(priorities) else None,
-        max(written, default=None),
-        sum((utilisation(work.cost, work.streams) for work in works), Fraction(0)),
-        system.activities[unit[0]].container,
-    )
 
 
 def responses(
@@ -119,8 +70,8 @@ def responses(
     What has a higher priority than all that is stale is left out.
     """
     budget, stale = effort
-    threads = [_thread(system, unit, events, known) for unit in resource.units]
-    foreign = [_thread(system, unit, events, known) for unit in resource.foreign]
+    threads = [thread_of(system, unit, events, known) for unit in resource.units]
+    foreign = [thread_of(system, unit, events, known) for unit in resource.foreign]
     if stale is not None and resource.cores == 1:
         touched = max(
             (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1
@@ -139,13 +90,13 @@ def responses(
     return found
 
 
-def _high(thread: _Thread) -> int:
+def _high(thread: Thread) -> int:
     return -1 if thread.high is None else thread.high
 
 
 def _one_core(
-    _: System, __: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
-) -> Iterable[tuple[_Thread, Found]]:
+    _: System, __: Resource, threads: _Threads, wanted: Sequence[Thread], budget: Budget
+) -> Iterable[tuple[Thread, Found]]:
     everything = (*threads[0], *threads[1])
     ranked = _Ranked(everything)
     whole = _any_order(everything, budget) if any(thread.low is None for thread in wanted) else None
@@ -153,99 +104,149 @@ def _one_core(
         if whole is not None and thread.low is None:
             only = len(everything) == 1 and len(thread.unit) > 1
             yield thread, whole._replace(tier="executor") if only else whole
-        else:
-            yield thread, _by_priority(thread, ranked, budget)
+    above: Found | None = None
+    for thread in sorted((t for t in wanted if t.low is not None), key=lambda t: -(t.low or 0)):
+        above = _by_priority(thread, ranked, budget, above)
+        yield thread, above
 
 
 class _Ranked:
     """Threads by falling priority, with the share of a core that each takes together with all above it."""
 
-    def __init__(self, threads: Iterable[_Thread]) -> None:
+    def __init__(self, threads: Iterable[Thread]) -> None:
         self.threads = sorted((t for t in threads if t.high is not None), key=_rank)
-        self.shares = tuple(accumulate((thread.share for thread in self.threads), initial=Fraction(0)))
+        pairs = [thread.share.as_integer_ratio() for thread in self.threads]
+        self._whole = lcm(*[denominator for _, denominator in pairs])
+        self._shares = tuple(accumulate((above * (self._whole // below) for above, below in pairs), initial=0))
+        self.load = Load()
+        self._laid = self._busy = 0
+        self._causes: list[Cause] = []
+        self._asked = 0
 
     def down_to(self, priority: int) -> int:
         """Count the threads that may have this priority or a higher one."""
         return bisect_right(self.threads, -priority, key=_rank)
 
+    def share(self, count: int) -> Fraction:
+        """Give the share of a core that so many threads take."""
+        return Fraction(self._shares[count], self._whole)
 
-def _rank(thread: _Thread) -> int:
+    def cause(self, count: int) -> Cause | None:
+        """Say what is missing of so many threads; asked for in order of size."""
+        added = [thread.cause for thread in self.threads[self._asked : count] if thread.cause]
+        self._asked = max(count, self._asked)
+        if added:
+            self._causes = [united((*self._causes, *added))]
+        return self._causes[0] if self._causes else None
+
+    def busy(self, count: int, budget: Budget) -> int:
+        """Give the busy period of so many threads: asked for in order of size, each is at least the one before."""
+        if self._laid < count:
+            for thread in self.threads[self._laid : count]:
+                self.load.add(thread.works)
+            self._laid = count
+            self._busy = busy(self.load.demand(), budget, self._busy)
+        return self._busy
+
+
+def _rank(thread: Thread) -> int:
     return -(thread.high or 0)
 
 
-def _any_order(threads: Sequence[_Thread], budget: Budget) -> Found:
+def _any_order(threads: Sequence[Thread], budget: Budget) -> Found:
     """Bound the response under any scheduler that never idles: the longest busy period."""
-    if sum((thread.share for thread in threads), Fraction(0)) >= 1:
+    if added(thread.share for thread in threads) >= 1:
         return Found(None, "host", OVERLOAD)
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
         return Found(None, "host", united(causes))
     try:
-        return Found(busy([work for thread in threads for work in thread.works], budget), "host")
+        whole = Load(work for thread in threads for work in thread.works)
+        return Found(busy(whole.demand(), budget), "host")
     except DivergedError:
         return Found(None, "host", DIVERGED)
 
 
-def _by_priority(thread: _Thread, ranked: _Ranked, budget: Budget) -> Found:
-    """Analyse one thread below all that may have its priority or a higher one."""
+def _by_priority(thread: Thread, ranked: _Ranked, budget: Budget, above: Found | None) -> Found:
+    """Analyse one thread below all that may have its priority or a higher one.
+
+    Where the search for what is `above` did not end, this one, with more work in it, is not begun.
+    """
     count = ranked.down_to(thread.low or 0)
     tier: Tier = "priorities" if len(thread.unit) == 1 else "executor"
-    if ranked.shares[count] >= 1:
+    if ranked.share(count) >= 1:
         return Found(None, tier, OVERLOAD)
-    level = ranked.threads[:count]
-    causes = [one.cause for one in level if one.cause]
-    if causes:
-        return Found(None, tier, united(causes))
-    others, steps = demand(work for other in level if other is not thread for work in other.works)
+    cause = ranked.cause(count)
+    if cause is not None:
+        return Found(None, tier, cause)
+    if above is not None and above.cause == DIVERGED:
+        return Found(None, tier, DIVERGED)
     try:
+        whole = ranked.busy(count, budget)
         if len(thread.works) == 1:
-            return Found(worst(thread.works[0], others, steps, budget), tier)
-        return Found(busy(thread.works, budget, others, steps), tier)
+            others = without(ranked.load.demand(), Load(thread.works).demand())
+            whole = worst(thread.works[0], others, budget, whole)
+        return Found(whole, tier)
     except DivergedError:
         return Found(None, tier, DIVERGED)
 
 
 def _several(
-    system: System, resource: Resource, threads: _Threads, wanted: Sequence[_Thread], budget: Budget
-) -> Iterable[tuple[_Thread, Found]]:
+    system: System, resource: Resource, threads: _Threads, wanted: Sequence[Thread], budget: Budget
+) -> Iterable[tuple[Thread, Found]]:
     everything = (*threads[0], *threads[1])
-    total = sum((thread.share for thread in everything), Fraction(0))
-    causes = [thread.cause for thread in everything if thread.cause]
+    total = added(thread.share for thread in everything)
+    cause = united(causes) if (causes := [thread.cause for thread in everything if thread.cause]) else None
+    carried = _carried(everything)
+    whole = _Whole(everything, total, carried)
     for thread in wanted:
         if total >= resource.cores or thread.share >= 1:
             yield thread, Found(None, "cores", OVERLOAD)
-        elif causes:
-            yield thread, Found(None, "cores", united(causes))
+        elif cause is not None:
+            yield thread, Found(None, "cores", cause)
         else:
             try:
-                yield thread, _global(system, resource, thread, everything, budget)
+                yield thread, _global(system, resource, thread, whole, budget)
             except DivergedError:
                 yield thread, Found(None, "cores", DIVERGED)
 
 
-def _undisturbed(thread: _Thread, budget: Budget) -> Found:
+class _Whole(NamedTuple):
+    """All threads of some cores, their share, and the work that they carry into a window."""
+
+    threads: Sequence[Thread]
+    share: Fraction
+    carried: Demand
+
+
+def _carried(threads: Iterable[Thread]) -> Demand:
+    load = Load()
+    for thread in threads:
+        load.add_carried(thread.works)
+    return load.demand()
+
+
+def _undisturbed(thread: Thread, budget: Budget) -> Found:
     """Bound the response where there are no more threads than cores: nobody waits for anybody else."""
     if len(thread.works) == 1:
-        return Found(worst(thread.works[0], *_NO_DEMAND, budget), "cores")
-    return Found(busy(thread.works, budget), "executor")
+        return Found(worst(thread.works[0], NO_DEMAND, budget), "cores")
+    return Found(busy(Load(thread.works).demand(), budget), "executor")
 
 
-def _global(
-    system: System, resource: Resource, thread: _Thread, everything: Sequence[_Thread], budget: Budget
-) -> Found:
+def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, budget: Budget) -> Found:
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
+    everything, total, carried = whole
     threads = system.threads.get(thread.container) if thread.container else None
     narrow = min(threads, resource.cores) if threads else resource.cores
     beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
     if len(everything) <= resource.cores and len(beside) < (threads or resource.cores):
         return _undisturbed(thread, budget)
-    rest = [t for t in everything if t is not thread and t not in beside]
-    share = thread.share + sum((t.share for t in beside), Fraction(0)) / narrow
-    if share + sum((t.share for t in rest), Fraction(0)) / resource.cores >= 1:
+    around = added(t.share for t in beside)
+    if thread.share + around / narrow + (total - thread.share - around) / resource.cores >= 1:
         return Found(None, "cores", UNBOUNDED)
-    near, near_steps = carried(work for t in beside for work in t.works)
-    far, far_steps = carried(work for t in rest for work in t.works)
-    others, steps = shared(((near, narrow), (far, resource.cores))), near_steps + far_steps
+    own, near = _carried((thread,)), _carried(beside)
+    others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
     if len(thread.works) == 1:
-        return Found(worst(thread.works[0], others, steps, budget), "cores")
-    return Found(busy(thread.works, budget, others, steps), "cores" if rest else "executor")
+        return Found(worst(thread.works[0], others, budget), "cores")
+    alone_here = len(beside) + 1 == len(everything)
+    return Found(busy(together(Load(thread.works).demand(), others), budget), "executor" if alone_here else "cores")

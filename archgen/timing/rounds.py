@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.timing.network import Network
 from archgen.timing.rings import rings
 from archgen.timing.sums import bounded

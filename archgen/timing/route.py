@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.timing.network import Network
 from archgen.timing.paths import Region

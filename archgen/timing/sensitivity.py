@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.quantity import Quantity
 from archgen.model.timing import Timing

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import ceil
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.distro import is_ros_1
 from archgen.model.interfaces import Field, Interfaces

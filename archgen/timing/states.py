@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from archgen.frozen import dataclass
 from archgen.timing.rings import rings
 
 STATES = 20_000

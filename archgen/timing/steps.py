@@ -7,9 +7,10 @@ Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each element.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.source import Span
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis

@@ -7,13 +7,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
-from archgen.timing.value import Cause, Value, united
+from archgen.timing.value import Cause, Value, added, united
 
 UNBOUNDED = Value(None, assumptions=("unbounded",))
 NEVER = Value(Fraction(0), assumptions=("never fires",))
 BOUNDLESS = ("overload", "unbounded")
 """The assumptions of values that grow beyond any bound (a value that merely diverged, or is missing, is not known)."""
-_NOTHING = Fraction(0)
 
 
 def unknown(*missing: str) -> Value:
@@ -32,12 +31,12 @@ def total(values: Iterable[Value]) -> Value:
     if len(found) == 1:
         return found[0]
     if all(one.side == "exact" and one.value is not None and not one.assumptions for one in found):
-        return Value(sum([one.value for one in found if one.value], _NOTHING))
+        return Value(added([one.value for one in found if one.value]))
     reasons = _reasons(found)
     if any(one.value is None and one.complete for one in found):
         return replace(reasons, value=None, complete=True, side="exact")
     known = [one.value for one in found if one.value is not None]
-    return replace(reasons, value=sum(known, Fraction(0)) if known or not found else None)
+    return replace(reasons, value=added(known) if known or not found else None)
 
 
 def smallest(values: Iterable[Value]) -> Value:
@@ -79,7 +78,7 @@ def bounded(values: Iterable[Value], side: Literal["at least", "at most"] = "at 
     assumptions = tuple(dict.fromkeys(text for part in parts for text in part.assumptions))
     if any(boundless(part) for part in parts):
         return Value(None, all(known(part, side) or boundless(part) for part in parts), missing, assumptions)
-    known_sum = sum((part.value for part in parts if part.value is not None), Fraction(0))
+    known_sum = added(part.value for part in parts if part.value is not None)
     if all(known(part, side) for part in parts):
         exact = all(part.side == "exact" for part in parts)
         return Value(

@@ -6,10 +6,11 @@ All durations are integers of one unit for each project (`System.tick`, in ns): 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.node import Flow
 from archgen.model.timing import Behaviour
 from archgen.source import NOWHERE, Span

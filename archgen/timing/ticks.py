@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, lcm
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.quantity import Quantity
 from archgen.model.timing import Timing

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.timing.rings import components
 from archgen.timing.system import Activity, Arc, System
 

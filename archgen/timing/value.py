@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 from typing import Literal, NamedTuple
+
+from archgen.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +29,13 @@ class Value:
 UNKNOWN = Value(None, complete=False)
 ZERO = Value(Fraction(0))
 MOST_NAMED = 12
+
+
+def added(parts: Iterable[Fraction]) -> Fraction:
+    """Add up over one denominator: to bring each partial sum to lowest terms takes most of the time of all analyses."""
+    pairs = [part.as_integer_ratio() for part in parts]
+    whole = lcm(*[denominator for _, denominator in pairs])
+    return Fraction(sum([numerator * (whole // denominator) for numerator, denominator in pairs]), whole)
 
 
 class Cause(NamedTuple):

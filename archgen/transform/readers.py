@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input
 from archgen.model.mapping import flow_of

@@ -44,11 +44,6 @@ def maybe(value: str | None) -> Inlines:
     return (Text(value),) if value else UNKNOWN
 
 
-def ticked(said: str) -> Inlines:
-    """Make a run of text of a finding's words: what stands between ticks is code."""
-    return tuple(Text(part, code=bool(at % 2)) for at, part in enumerate(said.split("`")) if part)
-
-
 def joined(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Put a separator between runs of text."""
     runs = list(items)

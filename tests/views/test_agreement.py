@@ -178,7 +178,7 @@ def test_open_points(tmp_path: Path) -> None:
     assert f"Open points: {clash}" in lines(section(outline, "Finder · objects").blocks)
     points = lines(section(outline, "Open points").blocks)
     assert points[0] == "Planner · plan | definition of the message"
-    assert any("`planner_node` receives nothing" in line and "incompatible-qos" in line for line in points)
+    assert any("planner_node receives nothing" in line and "incompatible-qos" in line for line in points)
 
 
 def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:

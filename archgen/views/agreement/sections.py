@@ -138,4 +138,4 @@ def _rest(found: Terms) -> Iterator[tuple[str, Inlines]]:
     if found.requirements:
         yield "Requirements", words.lines(found.requirements)
     if found.points:
-        yield "Open points", words.lines(words.ticked(f"{point.severity}: {point.message}") for point in found.points)
+        yield "Open points", words.lines(words.spoken(f"{point.severity}: {point.message}") for point in found.points)

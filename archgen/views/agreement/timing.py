@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 
 from archgen.model.node import Endpoint
@@ -42,7 +41,7 @@ def facts(view: Index, named: activities.Names, interface: Interface) -> Iterato
         if size.bytes is not None:
             yield name, words.text(_sized(size))
         elif interface.flow == "topic":
-            yield name, tuple(replace(run, muted=True) for run in words.ticked(f"not known: {size.why}"))
+            yield name, words.spoken(f"not known: {size.why}", muted=True)
     if timed is not None and interface.flow == "topic":
         yield "Traffic", _traffic(timed, interface)
 

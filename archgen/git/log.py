@@ -1,0 +1,28 @@
+"""The line of commits that led to one, and the ids of what they hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.git.call import call
+from archgen.git.repository import Repository, resolve
+
+
+def first_parents(found: Repository, revision: str) -> tuple[tuple[str, str], ...]:
+    """Give hash and day (of the committer's clock) of a commit and its first parents, oldest first.
+
+    Raises what `resolve` raises. A shallow clone's line is as long as what it holds.
+    """
+    commit = resolve(found, revision)
+    done = call(found.top, "log", "--first-parent", "--reverse", "--format=%H %cs", "--end-of-options", commit)
+    rows = (line.partition(" ") for line in done.text.splitlines())
+    return tuple((commit, day) for commit, _, day in rows)
+
+
+def ids(found: Repository, names: Iterable[str]) -> tuple[str, ...]:
+    """Give the ids of objects by their names (`COMMIT:path`), empty where there is no such object."""
+    asked = [name if "\n" not in name else "" for name in names]
+    lines = "".join(f"{name}\n" for name in asked).encode("utf-8", "surrogateescape")
+    done = call(found.top, "cat-file", "--batch-check=%(objectname)", stdin=lines)
+    answers = done.text.splitlines()
+    return tuple("" if line.endswith((" missing", " ambiguous")) else line for line in answers)

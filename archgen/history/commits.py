@@ -1,0 +1,45 @@
+"""The commits to look at: along the main line's first parents, those that changed the project's files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from archgen import git
+from archgen.project import Tracked
+
+By = Literal["revision", "month"]
+
+
+@dataclass(frozen=True, slots=True)
+class Commit:
+    """A commit: its hash, the day of its committer's clock (`2026-03-12`), and the id of the project's tree or file in it."""
+
+    id: str
+    day: str
+    tree: str
+
+
+def commits(tracked: Tracked, by: By) -> tuple[Commit, ...]:
+    """Give the commits of HEAD's line that changed the project, oldest first; for months the last one of each.
+
+    Raises what `git.resolve` raises.
+    """
+    repository = tracked.objects.repository
+    folder, first = tracked.places[0]
+    single = first != "archgen.yaml"
+    place = "/".join(filter(None, (folder, first if single else "")))
+    lines = git.first_parents(repository, "HEAD")
+    trees = git.ids(repository, (f"{commit}:{place}" for commit, _ in lines))
+    every = (Commit(commit, day, tree) for (commit, day), tree in zip(lines, trees, strict=True) if tree)
+    changed = tuple(_changed(every))
+    return changed if by == "revision" else tuple({one.day[:7]: one for one in changed}.values())
+
+
+def _changed(every: Iterable[Commit]) -> Iterator[Commit]:
+    last = ""
+    for one in every:
+        if one.tree != last:
+            yield one
+        last = one.tree

@@ -1,0 +1,91 @@
+"""Count commits in this process, or in one for each core where there are many; each keeps the slices that it understood."""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from archgen import pipeline, project
+from archgen.history.commits import Commit
+from archgen.history.points import plain, point, read
+from archgen.model.history import Point
+from archgen.project.slices import Slices
+
+Progress = Callable[[int, int], None]
+_FEW = 8
+"""So many are counted sooner than another process starts."""
+_START = "import sys; sys.path.append({root!r}); from archgen.history.workers import main; main()"
+
+
+def count(path: Path | None, commits: Sequence[Commit], progress: Progress | None = None) -> tuple[Point, ...]:
+    """Count a project at commits, in their order."""
+    processes = min(os.cpu_count() or 1, 1 + len(commits) // _FEW)
+    done = [0]
+
+    def told(_: Point) -> None:
+        done[0] += 1
+        if progress:
+            progress(done[0], len(commits))
+
+    if processes < 2:  # noqa: PLR2004 - this one
+        return tuple(_counted(path, commits, told))
+    size = -(-len(commits) // processes)
+    parts = [commits[start : start + size] for start in range(0, len(commits), size)]
+    results: list[list[Point]] = [[] for _ in parts]
+    threads = [
+        threading.Thread(target=_elsewhere, args=(path, part, into, told))
+        for part, into in zip(parts[1:], results[1:], strict=True)
+    ]
+    for thread in threads:
+        thread.start()
+    results[0] = _counted(path, parts[0], told)
+    for thread in threads:
+        thread.join()
+    for part, into in zip(parts, results, strict=True):  # a process that was killed: what it left is counted here
+        into.extend(_counted(path, part[len(into) :], told))
+    return tuple(one for into in results for one in into)
+
+
+def _counted(path: Path | None, commits: Sequence[Commit], told: Callable[[Point], None]) -> list[Point]:
+    found = []
+    for one in _points(path, commits):
+        found.append(one)
+        told(one)
+    return found
+
+
+def _points(path: Path | None, commits: Sequence[Commit]) -> Iterator[Point]:
+    tracked, known = project.tracked(path), Slices()
+    for one in commits:
+        checked = pipeline.check_tracked(tracked, one.id, known)
+        yield point(checked, one.id, one.day)
+
+
+def _elsewhere(path: Path | None, commits: Sequence[Commit], into: list[Point], told: Callable[[Point], None]) -> None:
+    root = str(Path(__file__).resolve().parents[2])
+    command = (sys.executable, "-P", "-c", _START.format(root=root))
+    asked = {"path": None if path is None else str(path), "commits": [[one.id, one.day, one.tree] for one in commits]}
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ourselves
+        if process.stdin and process.stdout:
+            process.stdin.write(json.dumps(asked).encode())
+            process.stdin.close()
+            for line in process.stdout:
+                one = read(json.loads(line))
+                into.append(one)
+                told(one)
+
+
+def main() -> None:
+    """Be a worker: read what to count from standard input, write a line of JSON for each commit."""
+    gc.disable()
+    asked = json.loads(sys.stdin.buffer.read())
+    path = None if asked["path"] is None else Path(asked["path"])
+    for one in _points(path, [Commit(*words) for words in asked["commits"]]):
+        sys.stdout.write(json.dumps(plain(one)) + "\n")
+        sys.stdout.flush()

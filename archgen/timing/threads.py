@@ -1,0 +1,77 @@
+"""Units with their work: what one thread asks of a processor, its priorities, and what is not known of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from archgen.frozen import dataclass
+from archgen.timing.analysis import Tier
+from archgen.timing.placement import Unit
+from archgen.timing.streams import Streams
+from archgen.timing.system import System
+from archgen.timing.value import Cause, added, united
+from archgen.timing.windows import Work
+
+
+class Found(NamedTuple):
+    """A worst response in ticks, or why there is none."""
+
+    value: int | None
+    tier: Tier
+    cause: Cause = Cause()
+
+
+Events = Mapping[str, Streams | Cause]
+OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unbounded",)), Cause(notes=("diverged",))
+
+
+@lru_cache(1 << 14)
+def utilisation(cost: int, streams: Streams) -> Fraction:
+    """Give the share of a core that an activity takes."""
+    return added(stream.rate for stream in streams) * cost
+
+
+def work_of(system: System, name: str, events: Events, known: Mapping[str, Found]) -> Work | Cause:
+    """Give the work of an activity, or what is missing of it."""
+    cost, streams = system.activities[name].wcet, events[name]
+    if cost == 0:
+        return Work(0, () if isinstance(streams, Cause) else streams)
+    if cost is None or isinstance(streams, Cause):
+        unwritten = Cause((name,)) if cost is None else Cause()
+        return united((unwritten, streams)) if isinstance(streams, Cause) else unwritten
+    found = known.get(name)
+    return Work(cost, streams, (found.value or 0) if found else 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """A unit with its work: `low` and `high` are the least and greatest priority of its members, None for ordinary ones."""
+
+    unit: Unit
+    works: tuple[Work, ...]
+    cause: Cause | None
+    low: int | None
+    high: int | None
+    share: Fraction
+    container: str | None
+
+
+def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> Thread:
+    """Lay the work of a unit together."""
+    found = [work_of(system, name, events, known) for name in unit]
+    causes = [one for one in found if isinstance(one, Cause)]
+    works = tuple(one for one in found if isinstance(one, Work))
+    priorities = [system.activities[name].priority for name in unit]
+    written = [one for one in priorities if one is not None]
+    return Thread(
+        unit,
+        works,
+        united(causes) if causes else None,
+        min(written) if len(written) == len(priorities) else None,
+        max(written, default=None),
+        added(utilisation(work.cost, work.streams) for work in works),
+        system.activities[unit[0]].container,
+    )

@@ -1,0 +1,95 @@
+"""Tests of the quicker dataclasses: they do what those of the standard library do."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+from dataclasses import field
+
+import pytest
+
+from archgen.frozen import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Three fields, of which one is no part of what it is."""
+
+    file: str
+    line: int = 1
+    words: list[str] = field(default_factory=list, compare=False)
+    at: int = field(kw_only=True, default=0, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """A field that is worked out."""
+
+    parts: tuple[int, ...]
+    total: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Add up."""
+        object.__setattr__(self, "total", sum(self.parts))
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """One with words of its own."""
+
+    name: str
+
+    def __repr__(self) -> str:
+        """Say the name alone."""
+        return self.name
+
+
+@dataclass(slots=True)
+class Open:
+    """One that may change."""
+
+    count: int = 0
+
+
+def test_fields_defaults_and_keywords() -> None:
+    place = Place("a", at=3)
+    assert (place.file, place.line, place.words, place.at) == ("a", 1, [], 3)
+    assert Place("a").words is not place.words
+    assert repr(Place("a", 2, ["x"])) == "Place(file='a', line=2, words=['x'])"
+    assert not hasattr(place, "__dict__")
+    assert [one.name for one in dataclasses.fields(place)] == ["file", "line", "words", "at"]
+    assert dataclasses.replace(place, line=5) == Place("a", 5, at=3)
+    with pytest.raises(TypeError, match=r"missing 1 required positional argument: 'file'"):
+        Place()  # type: ignore[call-arg]
+
+
+def test_equality_and_hash_go_by_what_is_compared() -> None:
+    assert Place("a", 1, ["x"]) == Place("a", 1, ["y"])
+    assert hash(Place("a", 1, ["x"])) == hash(Place("a", 1, ["y"]))
+    assert Place("a") != Place("b")
+    assert Named("a") != Place("a")
+    assert len({Place("a"), Place("a"), Place("a", at=1)}) == 2
+
+
+def test_nothing_can_be_changed() -> None:
+    place = Place("a")
+    with pytest.raises(dataclasses.FrozenInstanceError, match="cannot assign to field 'line'"):
+        place.line = 2  # type: ignore[misc]
+    with pytest.raises(dataclasses.FrozenInstanceError, match="cannot delete field 'line'"):
+        del place.line
+    still_open = Open()
+    still_open.count = 2
+    assert still_open == Open(2)
+
+
+def test_what_the_class_says_itself_stays() -> None:
+    assert repr(Named("b")) == "b"
+    assert Sum((1, 2)).total == 3
+
+
+def test_copies_and_pickles() -> None:
+    place = Place("a", 2, ["x"], at=4)
+    for other in (copy.deepcopy(place), pickle.loads(pickle.dumps(place))):  # noqa: S301 - our own
+        assert other == place
+        assert other.words == ["x"]

@@ -1,0 +1,105 @@
+"""Busy windows of large hosts: exact, in bounded time, and where nothing ends that is said."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from random import Random
+
+import pytest
+
+from archgen.model.architecture import Architecture
+from archgen.timing.analyse import analyse
+from archgen.timing.streams import Stream, eta
+from archgen.timing.windows import Budget, DivergedError, Load, Work, busy, without, worst
+
+Derived = Callable[[str], Architecture]
+
+
+def _slow(own: int, works: Sequence[Work], jobs: int) -> int:
+    """Step through time for the end of the n-th job."""
+    window = 1
+    while jobs * own + sum(work.cost * eta(work.streams, window) for work in works) > window:
+        window += 1
+    return window
+
+
+def _worst(own: Work, works: Sequence[Work]) -> int:
+    """Look at each job in turn, until one ends before the next comes."""
+    (stream,) = own.streams
+    longest, jobs = 0, 0
+    while True:
+        jobs += 1
+        came, comes = (max((k * stream.period) - stream.jitter, k * stream.distance, 0) for k in (jobs - 1, jobs))
+        done = _slow(own.cost, works, jobs)
+        longest = max(longest, done - came)
+        if done <= comes:
+            return longest
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_searches_find_what_steps_of_one_find(seed: int) -> None:
+    chance = Random(seed)  # noqa: S311 - the same at each run
+    works = []
+    for _ in range(chance.randrange(1, 6)):
+        period = chance.randrange(8, 60)
+        stream = Stream(period, chance.choice((0, chance.randrange(2 * period))), chance.choice((0, 0, 3)))
+        works.append(Work(chance.randrange(1, 3), (stream,)))
+    own, others, load = works[0], works[1:], Load(works)
+    whole = busy(load.demand(), Budget())
+    assert whole == _slow(0, works, 0)
+    rest = without(load.demand(), Load((own,)).demand())
+    assert worst(own, rest, Budget(), whole) == worst(own, Load(others).demand(), Budget()) == _worst(own, others)
+
+
+def test_a_search_that_takes_too_long_leaves_steps_for_others() -> None:
+    budget = Budget()
+    endless = Load([Work(1, (Stream(1),))]).demand()._replace(size=500_000)
+    with pytest.raises(DivergedError):
+        busy(endless._replace(within=lambda window: window + 1), budget)
+    assert busy(Load([Work(2, (Stream(10),))]).demand(), budget) == 2
+
+
+def _host(share: int, priorities: str) -> str:
+    """Write a thousand elements of as many periods, with this many thousandths of a core together."""
+    chance = Random(share)  # noqa: S311 - the same
+    components, nodes = [], []
+    for number in range(1000):
+        period = chance.randrange(50_000, 1_000_000)
+        figures = f"period: {period} us, wcet: {period * share // 1000} ns{priorities.format(1000 - number)}"
+        components.append(f"      c{number}: {{outputs: {{out: std_msgs/msg/Empty}}}}")
+        nodes.append(f"  c{number}: {{implements: c{number}, host: pc, timing: {{{figures}}}}}")
+    return "\n".join(["groups:\n  g:\n    components:", *components, "nodes:", *nodes, "hosts: {pc: {cores: 1}}\n"])
+
+
+@pytest.mark.parametrize("priorities", ["", ", priority: {}"])
+def test_a_host_with_a_thousand_elements_and_95_per_cent(derived: Derived, priorities: str) -> None:
+    architecture = derived(_host(950, priorities))
+    found = analyse(architecture)
+    assert found.diverged == ()
+    assert float(found.hosts["pc"].utilisation.value or 0) == pytest.approx(0.95, rel=1e-4)
+    assert all(response.worst.complete and response.worst.value for response in found.responses.values())
+
+
+def test_what_has_no_end_is_given_up_in_time(derived: Derived) -> None:
+    """A hundred chains, each from one host to the other and back: each response makes the next jitter larger."""
+    rows = [(f"{letter}{number}", letter) for number in range(100) for letter in "abcd"]
+    before = {"b": "a", "c": "b", "d": "c"}
+    components = [
+        f"      {name}: {{inputs: {{i: {before[letter]}{name[1:]}.out}}, outputs: {{out: std_msgs/msg/Empty}}}}"
+        if letter in before
+        else f"      {name}: {{outputs: {{out: std_msgs/msg/Empty}}}}"
+        for name, letter in rows
+    ]
+    cost = {"a": "wcet: 1 us, period: 1 ms", "b": "wcet: 4500 ns", "c": "wcet: 4500 ns", "d": "wcet: 4500 ns"}
+    nodes = [
+        f"  {name}: {{implements: {name}, host: {'pq'['bd'.count(letter)]}, timing: {{{cost[letter]}}}}}"
+        for name, letter in rows
+    ]
+    end = "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q], latency: 0 ms}}\n"
+    architecture = derived("\n".join(["groups:\n  g:\n    components:", *components, "nodes:", *nodes, end]))
+    start = time.process_time()
+    found = analyse(architecture)
+    assert time.process_time() - start < 10
+    assert set(found.diverged) == {name for name, _ in rows}
+    assert {response.worst.value for response in found.responses.values()} == {None}
