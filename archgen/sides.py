@@ -39,8 +39,10 @@ def sides(first: str | None, second: str | None, path: Path | None = None) -> tu
         if dots == "...":
             return _side_at(_fork(left or "HEAD", right or "HEAD", path), path), side(right or "HEAD", path)
         return side(left or "HEAD", path), side(right or "HEAD", path)
-    before = left_main_line(path) if first is None else side(first, path)
-    return before, side(second, path)
+    if first is not None:
+        return side(first, path), side(second, path)
+    after = side(second, path)
+    return left_main_line(path, after.checked.architecture.review.main), after
 
 
 def side(words: str | None, path: Path | None = None) -> Side:
@@ -61,9 +63,9 @@ def side(words: str | None, path: Path | None = None) -> Side:
     return Side(words, pipeline.check(Path(words)))
 
 
-def left_main_line(path: Path | None = None) -> Side:
-    """Give the project as it was where the branch left its main line."""
-    return _side_at(git.base(project.tracked(path).objects.repository), path)
+def left_main_line(path: Path | None = None, main: str | None = None) -> Side:
+    """Give the project as it was where the branch left its main line: the one that is named, or what git knows of."""
+    return _side_at(git.base(project.tracked(path).objects.repository, main), path)
 
 
 def _side_at(base: git.Base, path: Path | None) -> Side:

@@ -2,7 +2,8 @@
 
 A ratio holds where seconds do not: machines differ, and so do their moods. Each figure is the median of several whole
 processes, after one that is not counted; one that fails ends the run. Usage: python benchmarks/run.py [NAME ...], to run
-only some of `example`, `check1000`, `since1000`, `check10000`, `build1000`. README.md has the figures of one machine.
+only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `build1000`. README.md has the figures of one
+machine.
 """
 
 from __future__ import annotations
@@ -97,6 +98,21 @@ def scale(verb: str, components: int) -> None:
         row(f"{verb}, {components} components", taken, base, f"largest process so far {memory} MB")
 
 
+def changes(components: int) -> None:
+    """Measure a diff with fifty changes, as a ratio to a check of the same project."""
+    with tempfile.TemporaryDirectory() as place:
+        old, new = Path(place) / "old", Path(place) / "new"
+        generate(components, old)
+        shutil.copytree(old, new)
+        for number, file in enumerate(sorted((new / "groups").glob("*.yaml"))[:50]):
+            text = file.read_text(encoding="utf-8")
+            old_words, new_words = (("wcet: ", "wcet: 1"), ("title: Component", "title: New component"))[number % 2]
+            file.write_text(text.replace(old_words, new_words, 1), encoding="utf-8")
+        check = seconds(archgen("check", old), 3)
+        taken = seconds(archgen("diff", old, new), 3)
+        print(f"{f'diff, {components} components, 50 changes':44} {taken:8.3f} s   {taken / check:8.1f} x check")
+
+
 def since(components: int) -> None:
     """Measure the comparison with a revision, as a ratio to a check in the same run: it reads the project twice."""
     with tempfile.TemporaryDirectory() as place:
@@ -124,6 +140,7 @@ def main() -> None:
         "check1000": lambda: scale("check", 1_000),
         "since1000": lambda: since(1_000),
         "check10000": lambda: scale("check", 10_000),
+        "diff1000": lambda: changes(1_000),
         "build1000": lambda: scale("build", 1_000),
     }
     with tempfile.TemporaryDirectory() as cache:

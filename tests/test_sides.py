@@ -46,6 +46,13 @@ def test_revisions_and_the_working_tree(robot: Path) -> None:
     assert told(*sides("main..", None)) == [("main", "later"), ("HEAD", "arm")]
 
 
+def test_the_main_line_that_the_project_names(robot: Path) -> None:
+    run(robot, "checkout", "-q", "-b", "wrist")
+    text = "archgen: 1\nproject: {id: r}\nhosts: {wrist: }\nreview: {main: arm}\n"
+    (robot / "archgen.yaml").write_text(text)
+    assert told(*sides(None, None)) == [("HEAD", "arm"), ("the working tree", "wrist")]
+
+
 def test_folders_and_files(robot: Path) -> None:
     (robot / "old").mkdir()
     (robot / "old" / "archgen.yaml").write_bytes(host("old")["archgen.yaml"].encode())  # type: ignore[union-attr]

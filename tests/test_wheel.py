@@ -22,7 +22,7 @@ from archgen import __version__
 from tests.running import REVISION, ROOT, contents, made_once
 
 NAME = f"archgen-{__version__}"
-DATA = ("backends", "schemas", "example_ramcip", "ros_type_mapper.yaml")
+DATA = ("backends", "schemas", "start", "example_ramcip", "ros_type_mapper.yaml")
 LEFT_OUT = {"__pycache__", "archgen-out"}
 
 
@@ -93,6 +93,8 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
         "_data/backends/report/template/word/styles.xml",
         "_data/backends/wiki/templates/home.md.j2",
         "_data/ros_type_mapper.yaml",
+        "_data/start/archgen.yaml.j2",
+        "_data/start/gitattributes",
         "_data/example_ramcip/archgen.yaml",
         "emit/fonts/DejaVuSans.ttf",
         "emit/fonts/LICENSE.DejaVu",

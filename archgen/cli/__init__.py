@@ -22,7 +22,8 @@ VERBS = {
     "owners": "Show who owns what, or write CODEOWNERS.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
-    "init": "Start a project.",
+    "init": "Start a project, or take one over from a spreadsheet.",
+    "new": "Add a group, a component or a node.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }

@@ -18,6 +18,7 @@ from archgen.diagnostic import Diagnostic, Severity
 if TYPE_CHECKING:
     from archgen.model.selector import Selection
     from archgen.pipeline import Checked
+    from archgen.source import Sources
 
 ERROR = Severity.ERROR
 
@@ -58,11 +59,16 @@ def report(checked: Checked, *, least: Severity = Severity.WARNING) -> None:
 
 def lines(shown: Sequence[Diagnostic], checked: Checked, stream: TextIO) -> None:
     """Print findings for people, as wide as the terminal is."""
+    excerpts(shown, checked.sources, stream)
+
+
+def excerpts(shown: Sequence[Diagnostic], sources: Sources, stream: TextIO) -> None:
+    """Print findings with the lines of these texts."""
     from archgen.findings import text
 
     colour = text.wants_colour(stream, os.environ)
     width = shutil.get_terminal_size().columns if stream.isatty() else text.WIDTH
-    stream.writelines(f"{line}\n" for line in text.render(shown, checked.sources, colour=colour, width=width))
+    stream.writelines(f"{line}\n" for line in text.render(shown, sources, colour=colour, width=width))
 
 
 def status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
@@ -119,6 +125,18 @@ def phrased() -> Iterator[None]:
         raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
 
 
+def read_bytes(path: Path, most: int) -> bytes:
+    """Read a file, or the standard input where it is `-`: one byte more than the most at the most."""
+    try:
+        if str(path) == "-":
+            return sys.stdin.buffer.read(most + 1)
+        with path.open("rb") as stream:
+            return stream.read(most + 1)
+    except OSError as error:
+        msg = f"cannot read {path}: {error.strerror or error}"
+        raise click.ClickException(msg) from None
+
+
 def counted(findings: Sequence[Diagnostic]) -> str:
     """Count findings in words; empty where there are none."""
     from archgen.findings.text import summary
@@ -135,11 +153,15 @@ def warn(said: str) -> None:
 
 def wrote(path: Path, detail: str = "") -> None:
     """Say what was written, relative to the current folder where that is shorter."""
+    click.echo(f"wrote {shown(path)}{f' ({detail})' if detail else ''}")
+
+
+def shown(path: Path) -> Path:
+    """Give a path relative to the current folder where that is shorter."""
     try:
-        shown = path.resolve().relative_to(Path.cwd())
+        return path.resolve().relative_to(Path.cwd())
     except ValueError:
-        shown = path
-    click.echo(f"wrote {shown}{f' ({detail})' if detail else ''}")
+        return path
 
 
 def progress(doing: str = "drawing") -> Callable[[int, int], None] | None:

@@ -4,8 +4,8 @@
 (`elements`), and what differs then is a change (`differences`), with its consequences (`wiring`) in words (`sentences`).
 """
 
-from archgen.compare.change import ChainChange, Change, Comparison
+from archgen.compare.change import Break, ChainChange, Change, Comparison
 from archgen.compare.compare import compare
 from archgen.compare.version import Version
 
-__all__ = ["ChainChange", "Change", "Comparison", "Version", "compare"]
+__all__ = ["Break", "ChainChange", "Change", "Comparison", "Version", "compare"]

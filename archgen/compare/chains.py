@@ -27,7 +27,9 @@ def chains(
     """Give the chains that came, went, or have another bound or deadline, in the order of the second version."""
     if not (before.chains or after.chains) or not any(map(_matters, changes)):
         return ()
-    old, new = _results(before), _results(after)
+    if before.lost or after.lost:  # of what could not be read nobody knows how long it takes
+        return ()
+    new, old = _results(after), _results(before)  # the analysis of the version judged last is still at hand
     pairs = [(names.back.get("chain", {}).get(name), name) for name in new]
     gone = [(name, None) for name in old if names.known("chain", name) is None]
     told = ((old.get(a) if a else None, new[b] if b else None) for a, b in (*pairs, *gone))
@@ -44,7 +46,7 @@ def _matters(change: Change) -> bool:
 
 
 def _results(found: Architecture) -> Mapping[str, ChainResult]:
-    return timing_chains.chains(analyse(found), found) if found.chains else {}
+    return timing_chains.chains(analyse(found, judging=True), found) if found.chains else {}
 
 
 def _differ(one: ChainResult | None, other: ChainResult | None) -> bool:

@@ -16,6 +16,7 @@ from archgen.compare.owners import owners
 from archgen.compare.told import Told
 from archgen.compare.version import Version
 from archgen.compare.wiring import wires
+from archgen.model.architecture import Architecture
 
 
 def compare(before: Version, after: Version) -> Comparison:
@@ -24,7 +25,7 @@ def compare(before: Version, after: Version) -> Comparison:
     listed = elements(before, names), elements(after, Names())
     old, new = wires(before.architecture, names), wires(after.architecture, Names())
     lost = before.architecture.lost, after.architecture.lost
-    told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost)
+    told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost, _unnamed(after.architecture))
     changes = Differences(*listed, names, told).all(old, new)
     appeared, cured = findings(before.findings, after.findings, names)
     return Comparison(
@@ -38,6 +39,13 @@ def compare(before: Version, after: Version) -> Comparison:
         chains(before.architecture, after.architecture, names, changes),
         owners(changes, told),
     )
+
+
+def _unnamed(found: Architecture) -> frozenset[str]:
+    """Give the outputs of written nodes whose topic, service or action nobody named."""
+    written = {node.id for node in found.nodes.values() if node.written}
+    ends = (end for end in found.endpoints if end.node in written and end.use in {"publishes", "serves"})
+    return frozenset(end.port for end in ends if end.port and not end.name_written)
 
 
 def _serving(listed: Mapping[Key, Element]) -> Mapping[str, frozenset[str]]:

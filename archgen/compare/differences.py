@@ -87,7 +87,7 @@ class Differences:
                 continue
             moved = sort == "component" and self._home(old) != there.parent
             change = Change("moved" if moved else "renamed", sort, name, was=old, confidence=confidence)
-            self.top.append(replace(change, text=sentences.renamed(change)))
+            self.top.append(replace(change, text=sentences.renamed(change, self.told)))
 
     def _home(self, component: str) -> Key:
         return "group", self.names.to("group", component.partition(".")[0])
@@ -96,8 +96,7 @@ class Differences:
         if old.values == new.values:
             return
         for key, before, after in keys.changed(old, new, self.before, self.after):
-            unread = self.told.lost[0] if before is None else self.told.lost[1] if after is None else frozenset()
-            if unread.isdisjoint(new.id.split(".")):
+            if not self.told.unread((new.sort, new.id), before, after):
                 self.top.append(self._changed(new, key, before, after))
 
     def _changed(self, element: Element, key: str, before: object, after: object) -> Change:

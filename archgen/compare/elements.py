@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from archgen.compare.features import own_messages
+from archgen.compare.described import own_messages
 from archgen.compare.names import Names
 from archgen.compare.nodes import behind, nodes, timing_values
 from archgen.compare.values import known, prose, title, words
@@ -16,6 +16,7 @@ from archgen.compare.version import Version
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.node import Node
+from archgen.model.review import Review
 
 SOME = "some"
 """The component has ports: they are elements of their own."""
@@ -67,9 +68,10 @@ def _project(version: Version, names: Names) -> Iterator[Element]:
         "shared_topics": words(found.shared_topics),
         "layout": found.layout.direction,
         "chapters": version.order,
+        **_review(found.review),
         **{f"rules.{rule}": severity for rule, severity in version.rules.items()},
     }
-    yield Element("project", project.id, project.id, known(values))
+    yield Element("project", names.to("project", project.id), project.id, known(values))
     for path, text in version.chapters.items():
         yield Element("chapter", path, path, {"text": prose(text)})
     for name in own_messages(found):
@@ -79,13 +81,24 @@ def _project(version: Version, names: Names) -> Iterator[Element]:
         yield Element("message", names.to("message", name), name, {"fields": fields, "parts": tuple(map(len, parts))})
 
 
+def _review(review: Review) -> dict[str, object]:
+    return {
+        "review.main": review.main,
+        "review.breaking": review.breaking and str(review.breaking),
+        "review.backends": words(review.backends),
+        **{
+            f"review.accepted.{name}": f"{one.reason} ({one.key})" if one.key else one.reason
+            for name, one in review.accepted.items()
+        },
+    }
+
+
 def _around(found: Architecture, names: Names) -> Iterator[Element]:
     for partner in found.partners.values():
         values: dict[str, object] = {
             "title": title(partner.id, partner.title),
             "description": prose(partner.description),
             "contact": partner.contact,
-            "reviewers": words(partner.reviewers),
         }
         name = names.to("partner", partner.id)
         yield Element("partner", name, partner.id, known(values), owner=name)
@@ -112,7 +125,6 @@ def _groups(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(group.id, group.title),
             "description": prose(group.description),
             "owner": owner,
-            "co_owners": words(names.to("partner", other) for other in group.co_owners),
             "tags": words(group.tags),
             "layout": group.layout.direction,
             **_urls(group.urls),
@@ -131,7 +143,6 @@ def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> 
         "functionality": prose(component.functionality),
         "description": prose(component.description),
         "owner": owner,
-        "co_owners": words(names.to("partner", other) for other in component.co_owners),
         "role": component.role,
         "requirements": words(names.to("requirement", use.text) for use in component.requirements),
         "tags": words(component.tags),

@@ -15,10 +15,11 @@ _CROWD = 64
 
 
 class Feature(NamedTuple):
-    """One side of an element: how much it counts, and what is compared."""
+    """One side of an element: how much it counts, and what is compared. What is `made` of the id, in both, says nothing."""
 
     weight: float
     marks: frozenset[str]
+    made: bool = False
 
 
 Features = Mapping[str, Feature]
@@ -27,9 +28,9 @@ Features = Mapping[str, Feature]
 def likeness(one: Features, other: Features) -> float:
     """Give the share of what both have in common, by weight; a side that neither says anything of does not count."""
     total, common = _DOUBT, 0.0
-    for name, (weight, marks) in one.items():
-        others = other[name].marks
-        if marks or others:
+    for name, (weight, marks, made) in one.items():
+        _, others, made_too = other[name]
+        if (marks or others) and not (made and made_too):
             total += weight
             common += weight * len(marks & others) / len(marks | others)
     return common / total

@@ -9,17 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 
 from archgen.compare import features
+from archgen.compare.described import IDS, Described
 from archgen.compare.likeness import Features, pairs
 from archgen.compare.names import Names
 from archgen.model.architecture import Architecture
 
-Describe = Callable[[features.Described, str], Features]
+Describe = Callable[[Described, str], Features]
 
 
 def match(before: Architecture, after: Architecture) -> Names:
     """Pair the elements of both versions."""
     names = Names()
-    left, right = features.Described(before, names.known), features.Described(after, _itself(names))
+    left, right = Described(before, names.known), Described(after, _itself(names))
+    names.pair("project", before.project.id, after.project.id)
     for sort, ids in _FIRST.items():
         _same(names, sort, ids(before), ids(after))
     _match(names, "partner", left, right, features.partner)
@@ -55,9 +57,9 @@ def _below(names: Names, sort: str, before: Iterable[str], after: Iterable[str],
             names.pair(sort, name, f"{here}.{own}")
 
 
-def _match(names: Names, sort: str, left: features.Described, right: features.Described, describe: Describe) -> None:
+def _match(names: Names, sort: str, left: Described, right: Described, describe: Describe) -> None:
     """Pair what is left over by likeness."""
-    ids = features.IDS[sort]
+    ids = IDS[sort]
     gone = {name: describe(left, name) for name in ids(left.found) if names.known(sort, name) is None}
     if not gone:
         return
@@ -66,9 +68,9 @@ def _match(names: Names, sort: str, left: features.Described, right: features.De
         names.pair(sort, one, other, confidence)
 
 
-def _ports(names: Names, sort: str, left: features.Described, right: features.Described, describe: Describe) -> None:
+def _ports(names: Names, sort: str, left: Described, right: Described, describe: Describe) -> None:
     """Pair ports: first by name, then by likeness inside each pair of components."""
-    ids = features.IDS[sort]
+    ids = IDS[sort]
     _below(names, sort, ids(left.found), ids(right.found), "component")
     gone: dict[str, dict[str, Features]] = {}
     for port in ids(left.found):
@@ -83,7 +85,7 @@ def _ports(names: Names, sort: str, left: features.Described, right: features.De
             names.pair(sort, one, other, confidence)
 
 
-_FIRST = {sort: ids for sort, ids in features.IDS.items() if sort not in {"component", "input", "output"}}
+_FIRST = {sort: ids for sort, ids in IDS.items() if sort not in {"component", "input", "output"}}
 _LATER: Mapping[str, Describe] = {
     "type": features.type,
     "message": features.message,

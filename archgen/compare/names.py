@@ -27,7 +27,7 @@ class Names:
         self.back.setdefault(sort, {})[after] = before
         if confidence is not None:
             self.confidence[sort, after] = confidence
-        if before != after:
+        if before != after and sort != "project":
             self._remember(before, after)
 
     def to(self, sort: str, before: str) -> str:

@@ -25,7 +25,6 @@ _NAMES = {
     "timing.bcet": "best case execution time",
     "timing.response": "stated response time",
     "use_cases": "use cases",
-    "co_owners": "further owners",
     "latency.best": "best latency",
     "latency.worst": "worst latency",
     "forbid.from": "forbidden source",
@@ -36,6 +35,16 @@ _NAMES = {
     "parameter_files": "parameter files",
     "execution_time": "execution time",
 }
+_VERBS = {
+    "implements": ("now implements", "no longer implements"),
+    "requirements": ("now serves", "no longer serves"),
+    "tags": ("now has the tag", "no longer has the tag"),
+    "connects": ("now connects", "no longer connects"),
+    "through": ("now leads through", "no longer leads through"),
+    "use_cases": ("now belongs to", "no longer belongs to"),
+    "kind": ("is now", "is no longer"),
+}
+"""Keys of lists that are told as what the element does with what was added, and removed."""
 _PATHS = frozenset({"component", "input", "output", "connection", "port"})
 """Sorts whose ids are paths that say enough."""
 _SORTS = {"use_case": "use case", "message": "message", "port": "port"}
@@ -50,14 +59,14 @@ def changed_key(change: Change) -> str:
         said = "the project"
     if key == "qos" and isinstance(before, Mapping) and isinstance(after, Mapping):
         return f"{said}: QoS {listed([f'{_blank(k)} {shown(before[k])} → {shown(after[k])}' for k in before])}"
-    if key in _PROSE:
+    if key in _PROSE and (key == "text" or not (_brief(before) and _brief(after))):
         return f"the {_blank(key)} of {said} {_rewritten(before, after)}"
     if change.sort in {"input", "output"} and key in {"type", "optional"}:
         return f"{said} {_of_port(change)}"
     if key in _FLAT and after is not None and before is not None:
         return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
     if isinstance(before, list) or isinstance(after, list):
-        return f"{said}: {_NAMES.get(key) or _blank(key)} {_sets(before, after)}"
+        return f"{said}{_sets(key, before, after)}"
     return f"{said}: {_values(_name(key), before, after)}"
 
 
@@ -94,21 +103,34 @@ def _instead(before: object, after: object, nothing: str) -> str:
     return shown(after) if before is None else f"{shown(after)} instead of {shown(before)}"
 
 
+def _brief(text: object) -> bool:
+    return isinstance(text, str) and len(text) <= _LONGEST and "\n" not in text
+
+
 def _rewritten(before: object, after: object) -> str:
     if before is None:
         return "is new"
     return "is gone" if after is None else "is rewritten"
 
 
-def _sets(before: object, after: object) -> str:
+def _sets(key: str, before: object, after: object) -> str:
+    """Say what a list gained and lost, with the key's own verbs where it has some."""
     old = before if isinstance(before, list) else []
     new = after if isinstance(after, list) else []
+    name = f": {_name(key)}"
     if len(old) == len(new) == 1:
-        return f"{shown(old[0])} → {shown(new[0])}"
+        return f"{name} {shown(old[0])} → {shown(new[0])}"
     gained = [shown(item) for item in new if item not in old]
     lost = [shown(item) for item in old if item not in new]
-    words = [f"{verb} {listed(_few(items))}" for verb, items in (("gains", gained), ("loses", lost)) if items]
-    return " and ".join(words) or f"are now {listed([shown(item) for item in new])}, in this order"
+    if not gained and not lost:
+        return f"{name} are now {listed([shown(item) for item in new])}, in this order"
+    if key in _VERBS:
+        words = [
+            f" {verb} {listed(_few(items))}" for verb, items in zip(_VERBS[key], (gained, lost), strict=True) if items
+        ]
+        return " and".join(words)
+    words = [f" {listed(_few(items))} {verb}" for verb, items in (("added", gained), ("removed", lost)) if items]
+    return name + ",".join(words)
 
 
 def _few(items: Sequence[str]) -> list[str]:

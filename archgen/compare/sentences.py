@@ -8,7 +8,9 @@ from archgen.compare.change import Change
 from archgen.compare.elements import Element
 from archgen.compare.phrases import changed_key, listed, short
 from archgen.compare.told import Told
+from archgen.compare.values import Title
 from archgen.compare.wiring import Rewired
+from archgen.transform import ros_names
 
 _WORDS = {
     "use_case": "use case",
@@ -23,9 +25,14 @@ def whole(change: Change, element: Element, told: Told) -> str:
     """Say that an element came or went, and what its connections meant to others."""
     verb = "is added" if change.kind == "added" else "is removed"
     sort = _WORDS.get(change.sort, change.sort)
-    said = f"{sort} `{short(change.element)}` {verb}{_with(change)}"
+    said = f"{sort} `{short(change.element)}`{_called(element)} {verb}{_with(change)}"
     effects = list(_effects(change, element, told))
     return "; ".join((said, *_some(effects)))
+
+
+def _called(element: Element) -> str:
+    title = element.values.get("title")
+    return f" ({short(title.text)})" if isinstance(title, Title) and not title.made else ""
 
 
 def _some(effects: Sequence[str]) -> Sequence[str]:
@@ -95,8 +102,8 @@ def _unserved(element: Element, told: Told) -> Iterator[str]:
                 yield f"no component serves `{requirement}` any more"
 
 
-def renamed(change: Change) -> str:
-    """Say that an element has another id or stands in another group."""
+def renamed(change: Change, told: Told) -> str:
+    """Say that an element has another id or stands in another group, and which names on the robot follow it."""
     sort = _WORDS.get(change.sort, change.sort)
     was = change.was or ""
     if change.kind == "moved":
@@ -108,40 +115,49 @@ def renamed(change: Change) -> str:
     else:
         said = f"{sort} `{short(was)}` is called `{short(change.element)}` now"
     sure = "" if change.confidence >= 0.9 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
-    return said + sure
+    return said + sure + _following(change, told)
+
+
+def _following(change: Change, told: Told) -> str:
+    """Say which topics, services and actions are called otherwise because nobody named them."""
+    if change.sort not in {"group", "component", "output"}:
+        return ""
+    inside = (port for port in told.unnamed if port == change.element or port.startswith(f"{change.element}."))
+    ports = sorted(port for port in inside if ("output", port) in told.before)
+    if not ports:
+        return ""
+    was = told.before["output", ports[0]].own
+    more = f", and {len(ports) - 1} more such names follow" if len(ports) > 1 else ""
+    return f"; `{ros_names.of_port(was)}` becomes `{ros_names.of_port(ports[0])}`{more}"
 
 
 def connection(each: Rewired, told: Told) -> str:
     """Say what an input reads now, and what that leaves behind."""
     reader = f"`{_shown('input', each.input, told)}`"
-    lost = [_shown("output", name, told) for name in sorted(each.lost)]
-    gained = sorted(each.gained)
     if told.gone("input", each.input):
         return _reader_went(each, reader, told)
-    if lost and gained:
-        said = f"{reader} now reads {_ticked(gained)} instead of {_ticked(lost)}"
-    elif lost:
-        said = f"{reader} no longer reads {_ticked(lost)}"
-        removed = [name for name in sorted(each.lost) if told.gone("output", name)]
-        if len(removed) == len(lost):
-            said += ", which was removed" if len(lost) == 1 else ", which were removed"
-        if not each.after:
-            said += "; it has no source any more"
-    else:
-        said = (
-            f"{reader} reads {_ticked(gained)}"
-            if told.come("input", each.input)
-            else f"{reader} now reads {_ticked(gained)}"
-        )
-        if not each.before and not told.come("input", each.input):
-            said += ", its first source" if len(gained) == 1 else ", its first sources"
+    said = _reads(each, reader, told)
     unread = [n for n in sorted(each.lost) if ("output", n) in told.after and not told.new.readers.get(n)]
-    first = [n for n in gained if ("output", n) in told.before and not told.old.readers.get(n)]
-    if unread:
-        said += f"; nobody reads {_ticked(unread)} any more"
-    if first:
-        said += f"; nobody read {_ticked(first)} before"
-    return said
+    first = [n for n in sorted(each.gained) if ("output", n) in told.before and not told.old.readers.get(n)]
+    said += f"; nobody reads {_ticked(unread)} any more" if unread else ""
+    return said + (f"; nobody read {_ticked(first)} before" if first else "")
+
+
+def _reads(each: Rewired, reader: str, told: Told) -> str:
+    """Say which sources an input gained and lost."""
+    lost = [_shown("output", name, told) for name in sorted(each.lost)]
+    gained = sorted(each.gained)
+    if lost and gained:
+        return f"{reader} now reads {_ticked(gained)} instead of {_ticked(lost)}"
+    if lost:
+        removed = all(told.gone("output", name) for name in each.lost)
+        why = f", which {'was' if len(lost) == 1 else 'were'} removed" if removed else ""
+        return f"{reader} no longer reads {_ticked(lost)}{why}{'' if each.after else '; it has no source any more'}"
+    if told.come("input", each.input):
+        return f"{reader} reads {_ticked(gained)}"
+    if each.before:
+        return f"{reader} now also reads {_ticked(gained)}"
+    return f"{reader} now reads {_ticked(gained)}, its first source{'s' if len(gained) > 1 else ''}"
 
 
 def _reader_went(each: Rewired, reader: str, told: Told) -> str:

@@ -23,12 +23,20 @@ class Told:
     lost: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The keys of what could not be read, before and after: nobody knows whether that came or went."""
 
+    unnamed: frozenset[str] = frozenset()
+    """Outputs that stand on topics, services or actions that are called after them, since no node says otherwise."""
+
     def unknown(self, key: Key) -> bool:
         """Say whether what is missing in one version may stand in a part of it that could not be read."""
         lost = self.lost[0 if key in self.after else 1]
         return bool(lost) and not lost.isdisjoint(
             word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
         )
+
+    def unread(self, key: Key, before: object, after: object) -> bool:
+        """Say whether a value that is missing in one version may stand in a part of it that could not be read."""
+        lost = self.lost[0] if before is None else self.lost[1] if after is None else frozenset()
+        return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint(key[1].split(".")))
 
     def gone(self, sort: str, name: str) -> bool:
         """Say whether an element was removed."""

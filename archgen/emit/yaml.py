@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 Place = tuple[str | int, ...]
@@ -71,6 +72,25 @@ def scalar(value: object) -> str:
         if isinstance(value, float)
         else json.dumps(value)
     )
+
+
+def flow(value: object) -> str:
+    """Write a value on one line: mappings in braces, lists in brackets."""
+    if isinstance(value, Mapping) and value:
+        return "{" + ", ".join(f"{scalar(key)}: {flow(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, (list, tuple)) and value:
+        return "[" + ", ".join(flow(item) for item in value) + "]"
+    return scalar(value)
+
+
+def paragraph(head: str, text: str, indent: str, width: int) -> Iterator[str]:
+    """Write long text: folded (`>-`) where it is words with single blanks between, else as `write` does."""
+    if text == " ".join(text.split()) and not _UNSAFE_BLOCK.search(text):
+        yield f"{head} >-"
+        for line in textwrap.wrap(text, width - len(indent), break_long_words=False, break_on_hyphens=False):
+            yield f"{indent}{line}"
+    else:
+        yield from _entry(head, text, indent[:-2], (), {})
 
 
 def _number(value: float) -> str:

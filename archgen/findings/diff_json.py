@@ -29,6 +29,11 @@ def document(found: Comparison, broken: Broken) -> dict[str, Any]:
         "findings": {"new": [record(each) for each in found.new], "cured": [record(each) for each in found.cured]},
         "chains": [_chain(each) for each in found.chains],
         "owners": list(found.owners),
+        "breaking": {
+            "severity": str(found.breaking),
+            "fails": found.failing,
+            "idle": [{"element": one.element, "key": one.key, "reason": one.reason} for one in found.idle],
+        },
         "broken": {"before": [record(each) for each in broken[0]], "after": [record(each) for each in broken[1]]},
     }
 
@@ -44,7 +49,9 @@ def change(each: Change) -> dict[str, Any]:
         "before": each.before,
         "after": each.after,
         "confidence": each.confidence,
-        "breaks": list(each.breaks),
+        "breaks": list(each.broken),
+        "because": [{"partner": one.partner, "why": one.why} for one in each.breaks],
+        "accepted": each.accepted,
         "text": each.text,
         "parts": [change(part) for part in each.parts],
     }

@@ -18,7 +18,8 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     if found.empty:
         yield "no changes"
         return
-    for part in telling.parts(found):
+    yield from _breaking(found, colour=colour)
+    for part in telling.parts([change for change in found.changes if not change.breaks], found):
         yield _paint(visible(part.heading), "1", colour=colour)
         for change in part.changes:
             yield from _change(change, colour=colour)
@@ -29,9 +30,24 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     yield visible(telling.summary(found))
 
 
+def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
+    """Give the changes that break a partner, with the reasons."""
+    breaking = [change for change in found.changes if change.breaks]
+    if not breaking:
+        return
+    yield _paint("Breaking changes", "1", colour=colour)
+    for change in breaking:
+        yield from _change(change, colour=colour)
+        for why in dict.fromkeys(each.why for each in change.breaks):
+            yield visible(f"      {why}")
+        if change.accepted is not None:
+            yield visible(f"      accepted: {change.accepted}")
+    yield ""
+
+
 def _change(change: Change, *, colour: bool) -> Iterator[str]:
     sign = _paint(_SIGNS[change.kind], _COLOURS[change.kind], colour=colour)
-    breaks = _paint(f"breaks {visible(', '.join(change.breaks))}: ", "1;31", colour=colour) if change.breaks else ""
+    breaks = _paint(f"breaks {visible(', '.join(change.broken))}: ", "1;31", colour=colour) if change.breaks else ""
     yield f"  {sign} {breaks}{visible(change.text)}"
 
 

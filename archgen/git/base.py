@@ -19,13 +19,14 @@ class Base(NamedTuple):
     name: str
 
 
-def base(found: Repository) -> Base:
+def base(found: Repository, setting: str | None = None) -> Base:
     """Give the commit at which HEAD left the main line; HEAD itself where it is on it, or where there is no other line.
 
-    Raises `NoCommitsError`, `ShallowError` where the clone does not reach that far back, `GitError` for unrelated lines.
+    `setting` is the main line that the project names. Raises `NoCommitsError`, `UnknownRevisionError` where there is no such
+    branch, `ShallowError` where the clone does not reach that far back, `GitError` for unrelated lines.
     """
     head = resolve(found, "HEAD")
-    main = _main_line(found)
+    main = _main_line(found, setting)
     branch = call(found.top, "symbolic-ref", "--quiet", "--short", "HEAD").text.strip()
     if branch and main in {branch, f"origin/{branch}"}:
         return Base(head, "HEAD")
@@ -49,8 +50,11 @@ def fork(found: Repository, left: str, right: str) -> Base:
     raise GitError(msg)
 
 
-def _main_line(found: Repository) -> str:
+def _main_line(found: Repository, setting: str | None) -> str:
     """Name the main line, empty where none is known."""
+    if setting:
+        named = next((name for name in (setting, f"origin/{setting}") if look_up(found, name)), "")
+        return named if named or found.shallow else resolve(found, setting)
     remote = call(found.top, "symbolic-ref", "--quiet", "--short", "refs/remotes/origin/HEAD").text.strip()
     names = (remote, *_MAIN_LINES) if remote else _MAIN_LINES
     return next((name for name in names if look_up(found, name)), "")

@@ -43,6 +43,11 @@ def expand(files: Files, pattern: str, skip: frozenset[str] = frozenset()) -> tu
     return tuple(sorted((f"{prefix}/{name}" if prefix else name for name in found), key=lambda name: name.split("/")))
 
 
+def matches(pattern: str, file: str) -> bool:
+    """Tell whether a pattern names a file, there or not."""
+    return is_inside(pattern) and re.fullmatch(_regex(PurePosixPath(pattern).parts), file) is not None
+
+
 def _walk(files: Files, top: str, skip: frozenset[str]) -> Iterator[str]:
     for below, folders, names in files.walk(top):
         if below and "archgen.yaml" in names:

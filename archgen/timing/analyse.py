@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
 from archgen.timing.bounds import all_responses, host_loads
@@ -21,7 +23,30 @@ def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
     For `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
     """
     system, notes = build(architecture)
-    return analyse_system(system, notes, judging=judging)
+    if not judging:
+        return analyse_system(system, notes)
+    global _judged  # noqa: PLW0603 - what was found last, for who judges many versions of one project
+    if _judged is None or not _same(_judged, system, notes):
+        _judged = analyse_system(system, notes, judging=True)
+    return _judged
+
+
+_judged: Analysis | None = None
+
+
+def _same(found: Analysis, system: System, notes: tuple[Reason, ...]) -> bool:
+    """Say whether an analysis is that of this system: every figure is the same, and stands at the same place."""
+    return (
+        found.system == system
+        and list(map(_activity_places, found.system.activities.values()))
+        == list(map(_activity_places, system.activities.values()))
+        and list(map(_arc_places, found.system.arcs)) == list(map(_arc_places, system.arcs))
+        and [(note, note.at) for note in found.notes] == [(note, note.at) for note in notes]
+    )
+
+
+_activity_places = attrgetter("at", "places")
+_arc_places = attrgetter("at", "queue_at")
 
 
 def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: bool = False) -> Analysis:

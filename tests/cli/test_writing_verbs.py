@@ -10,7 +10,6 @@ import pytest
 import yaml
 
 from archgen import resources
-from archgen.pipeline import check
 from tests.cli.conftest import Run
 
 
@@ -75,28 +74,3 @@ def test_files_of_others_stay(run: Run, first: Path, tmp_path: Path) -> None:
     assert ran.status == 2
     assert "holds files that archgen did not write: `notes.txt`" in ran.err
     assert [path.name for path in mine.iterdir()] == ["notes.txt"]
-
-
-def test_what_init_writes_has_no_error_and_no_warning(run: Run, tmp_path: Path) -> None:
-    for name, title in (("my-Robot", None), ("2nd robot", 'A: "b" #c'), ("größer", "yes")):
-        folder = tmp_path / name
-        assert run("init", folder, *(("--title", title) if title else ())).status == 0
-        assert [f"{d.rule} {d.span}" for d in check(folder).findings if d.severity != "note"] == []
-        assert title is None or check(folder).architecture.project.title == title
-
-
-def test_init_overwrites_nothing(run: Run, first: Path) -> None:
-    before = (first / "archgen.yaml").read_bytes()
-    ran = run("init", first)
-    assert ran.status == 2
-    assert ran.err == f"Error: {first / 'archgen.yaml'} is there already; nothing was written\n"
-    assert (first / "archgen.yaml").read_bytes() == before
-    assert run("init", first / "archgen.yaml").status == 2
-
-
-def test_init_where_nothing_can_be_written(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    ran = run("init", tmp_path / "file" / "below")
-    assert (ran.status, ran.out) == (2, "")
-    assert ran.err.startswith("Error: cannot write ")
-    assert "mistake in archgen" not in ran.err

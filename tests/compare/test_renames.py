@@ -75,9 +75,12 @@ def test_a_move_to_another_group(compared: Compared) -> None:
 
 
 def test_a_rename_and_what_changed_besides(told: Told) -> None:
-    after = _replaced(ROBOT, "camera", "eye").replace("in colour", "in colour and depth")
+    after = _replaced(ROBOT, "camera", "eye").replace("in colour", "in colour, and" + " far" * 20)
     assert told(ROBOT, after) == [
-        "renamed component sensing.eye: component `sensing.camera` is called `eye` now (recognised with 75 % confidence)",
+        (
+            "renamed component sensing.eye: component `sensing.camera` is called `eye` now (recognised with 74 % confidence); "
+            "`/sensing/camera/info` becomes `/sensing/eye/info`"
+        ),
         "changed component sensing.eye: the functionality of `sensing.eye` is rewritten",
     ]
 

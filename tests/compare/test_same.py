@@ -102,6 +102,13 @@ def test_comments_and_line_ends_are_no_change(ramcip: Version, tmp_path: Path) -
     assert_same(ramcip, read(target))
 
 
+def test_a_project_without_a_name_is_the_same_in_another_folder(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "archgen.yaml").write_text("archgen: 1\nhosts: {pc: PC}\n", encoding="utf-8")
+    assert_same(read(tmp_path / "one"), read(tmp_path / "two"))
+
+
 SHORT = """\
 groups:
   g:

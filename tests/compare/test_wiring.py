@@ -101,7 +101,7 @@ def test_a_reference_to_a_group_gains_what_the_group_gains(told: Told) -> None:
     before = "groups:\n  g: {components: {a: {outputs: {x: T}}}}\n  h: {components: {b: {inputs: {data: g}}}}\n"
     assert told(before, before.replace("{x: T}", "{x: T, y: T}")) == [
         "added output g.a.y: output `g.a.y` is added; `h.b.data` gets another source",
-        "  changed connection h.b.data: `h.b.data` now reads `g.a.y`",
+        "  changed connection h.b.data: `h.b.data` now also reads `g.a.y`",
     ]
 
 
@@ -121,7 +121,7 @@ def test_a_requirement_that_lost_its_last_component(told: Told) -> None:
     head = "requirements: {R-1: {title: One}}\ngroups:\n  g:\n    components:\n"
     before = f"{head}      a: {{title: A, requirements: [R-1]}}\n      b: {{title: B}}\n"
     assert told(before, before.replace(", requirements: [R-1]", "")) == [
-        "changed component g.a: `g.a`: requirements loses `R-1`; no component serves `R-1` any more"
+        "changed component g.a: `g.a` no longer serves `R-1`; no component serves `R-1` any more"
     ]
     assert told(before, f"{head}      b: {{title: B}}\n") == [
         "removed component g.a: component `g.a` is removed; no component serves `R-1` any more"

@@ -95,6 +95,18 @@ def test_the_remote_says_what_its_main_line_is(tmp_path: Path) -> None:
     assert git.base(git.repository(clone)) == (left, "where this branch left origin/develop")
 
 
+def test_the_project_says_what_the_main_line_is(tmp_path: Path) -> None:
+    repository(tmp_path, PROJECT)
+    run(tmp_path, "checkout", "-q", "-b", "develop")
+    left = commit(tmp_path, {"a": "1"})
+    run(tmp_path, "checkout", "-q", "-b", "arm")
+    commit(tmp_path, {"b": "1"})
+    found = git.repository(tmp_path)
+    assert git.base(found, "develop") == (left, "where this branch left develop")
+    with pytest.raises(git.UnknownRevisionError, match="there is no revision `devlop`: did you mean `develop`"):
+        git.base(found, "devlop")
+
+
 def test_unrelated_lines(tmp_path: Path) -> None:
     repository(tmp_path, PROJECT)
     run(tmp_path, "checkout", "-q", "--orphan", "other")

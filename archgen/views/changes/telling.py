@@ -57,11 +57,11 @@ class Part:
         return f"{self.id}: {self.title}" if self.id and self.title else self.title or self.id
 
 
-def parts(found: Comparison) -> Iterator[Part]:
-    """Put changes under the group that they stand in, then those that stand in none by sort."""
+def parts(changes: Iterable[Change], found: Comparison) -> Iterator[Part]:
+    """Put changes of a comparison under the group that they stand in, then those that stand in none by sort."""
     groups = {**found.before.architecture.groups, **found.after.architecture.groups}
     held: dict[tuple[bool, str], list[Change]] = {}
-    for change in found.changes:
+    for change in changes:
         name = _SECTIONS.get(change.sort)
         held.setdefault((name is not None, name or change.element.partition(".")[0]), []).append(change)
     for outside, name in sorted(key for key in held if not key[0]):
@@ -96,7 +96,7 @@ def counted(found: Comparison) -> str:
 
 def broken(changes: Iterable[Change]) -> tuple[str, ...]:
     """Name the partners for whom something breaks."""
-    return tuple(sorted({partner for change in changes for partner in change.breaks}))
+    return tuple(sorted({partner for change in changes for partner in change.broken}))
 
 
 def runs(text: str) -> Inlines:

@@ -1,0 +1,1 @@
+"""Start: the files of a new project, made from a few answers or from a spreadsheet."""

@@ -1,0 +1,221 @@
+"""`archgen init`: what it writes, asks and keeps; on a terminal and in a script."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+
+from archgen.emit import fresh, tree
+from archgen.pipeline import check
+from tests.cli.conftest import Run
+from tests.running import ROOT, contents
+
+FILES = [
+    ".archgen/archgen.schema.json",
+    ".gitattributes",
+    ".github/workflows/architecture.yml",
+    ".gitignore",
+    ".vscode/extensions.json",
+    ".vscode/settings.json",
+    "README.md",
+    "archgen.yaml",
+    "groups/driving.yaml",
+    "groups/sensing.yaml",
+]
+
+
+def findings(folder: Path) -> list[str]:
+    return [f"{d.rule} {d.span}" for d in check(folder).findings]
+
+
+def test_without_a_terminal_it_asks_nothing_and_checks_clean(run: Run, tmp_path: Path) -> None:
+    ran = run("init", tmp_path / "my-Robot")
+    assert (ran.status, ran.err) == (0, "")
+    assert "My robot: 2 groups, 3 components; archgen check says: no findings." in ran.out
+    assert list(contents(tmp_path / "my-Robot")) == FILES
+    assert findings(tmp_path / "my-Robot") == []
+
+
+@pytest.mark.parametrize(
+    ("name", "title"), [("my-Robot", None), ("2nd robot", 'A: "b" #c'), ("größer", "yes"), ("機械", "${{ x }} [[ y ]]")]
+)
+def test_any_name_and_title_checks_clean(name: str, title: str | None, run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / name
+    assert run("init", folder, *(("--title", title) if title else ())).status == 0
+    assert findings(folder) == []
+    assert title is None or check(folder).architecture.project.title == title
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_groups_and_owners_of_ones_own(count: int, run: Run, tmp_path: Path) -> None:
+    groups = [word for n in range(count) for word in ("--group", f"Part {n}=b")]
+    assert run("init", tmp_path / "r", "--partner", "a=Lab A", "--partner", "B", *groups, "--ci", "none").status == 0
+    assert findings(tmp_path / "r") == []
+    found = check(tmp_path / "r").architecture
+    assert [(g.id, g.title, g.owner) for g in found.groups.values()] == [
+        (f"part_{n}", f"Part {n}", "b") for n in range(count)
+    ]
+    assert {name: partner.title for name, partner in found.partners.items()} == {"a": "Lab A", "b": "B"}
+    assert len(found.edges) == len(found.components) - 1
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--partner", "A B=x"), "'A B' is no id: lower-case words joined by '_'; write 'a_b=x'"),
+        (("--partner", "a @-x"), "'@-x' is no handle: write @user, @organisation/team or an e-mail address"),
+        (("--partner", "a", "--partner", "A"), "two partners have the id 'a'"),
+        (("--group", "g=a"), "'a' is no partner's id (none is named with --partner)"),
+        (("--partner", "b", "--group", "g=a"), "'a' is no partner's id (b)"),
+        (("--group", "g", "--from", "x.csv"), "--from takes the groups from the table: leave out --group"),
+    ],
+)
+def test_wrong_flags(words: tuple[str, ...], said: str, run: Run, tmp_path: Path) -> None:
+    ran = run("init", tmp_path / "r", *words)
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.endswith(f"Error: {said}\n")
+    assert not (tmp_path / "r").exists()
+
+
+def test_codeowners_come_from_the_owners(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    words = ("--partner", "a=Lab A @lab/a", "--partner", "b=Lab B", "--group", "one=a", "--group", "two=b")
+    assert run("init", tmp_path / "r", *words).status == 0
+    lines = (tmp_path / "CODEOWNERS").read_text(encoding="utf-8").splitlines()
+    assert "/r/groups/one.yaml @lab/a" in lines
+    assert findings(tmp_path / "r") == []
+    ran = run("init", tmp_path / "s", *words)
+    assert f"kept {tmp_path / 'CODEOWNERS'}: it is there already" in ran.out
+    ran = run("init", tmp_path / "t", "--partner", "a")
+    assert "No CODEOWNERS yet: give the partners `reviewers`" in ran.out
+
+
+def test_a_project_is_never_overwritten(run: Run, first: Path) -> None:
+    before = contents(first)
+    ran = run("init", first)
+    assert ran.status == 2
+    assert ran.err == f"Error: {first / 'archgen.yaml'} is there already; nothing was written\n"
+    assert contents(first) == before
+    assert run("init", first / "archgen.yaml").status == 2
+
+
+def test_files_that_are_there_are_kept_and_named(run: Run, tmp_path: Path) -> None:
+    for name in ("README.md", ".gitignore", "docker.yaml"):
+        (tmp_path / name).write_text(f"{name}: mine\n", encoding="utf-8")
+    ran = run("init", tmp_path)
+    assert ran.status == 0
+    assert f"kept {tmp_path / 'README.md'}: it is there already" in ran.out
+    assert (tmp_path / "README.md").read_text(encoding="utf-8") == "README.md: mine\n"
+    assert (tmp_path / ".gitignore").read_text(encoding="utf-8") == ".gitignore: mine\n"
+    assert findings(tmp_path) == [], "other YAML files are not looked at"
+
+
+def test_a_group_s_file_that_is_there_stops_it(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "groups").mkdir()
+    (tmp_path / "groups/sensing.yaml").write_text("mine: 1\n", encoding="utf-8")
+    ran = run("init", tmp_path)
+    assert ran.status == 2
+    assert ran.err == f"Error: {tmp_path / 'groups/sensing.yaml'} would have to be replaced; nothing was written\n"
+    assert list(contents(tmp_path)) == ["groups/sensing.yaml"]
+
+
+def test_in_a_repository_the_workflow_goes_to_its_top(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    ran = run("init", tmp_path / "robots/one")
+    assert f"The repository begins at {tmp_path}: what the forge reads stands there." in ran.out
+    workflow = yaml.safe_load((tmp_path / ".github/workflows/architecture.yml").read_bytes())
+    assert workflow["jobs"]["check"]["steps"][1]["with"] == {"project": "robots/one"}
+    assert workflow[True]["pull_request"] == {"paths": ["robots/one/**"]}
+    assert not (tmp_path / "robots/one/.github").exists()
+
+
+def test_a_folder_with_strange_letters_is_quoted_in_the_workflow(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    assert run("init", tmp_path / "a: ${{ b }} *").status == 0
+    workflow = yaml.safe_load((tmp_path / ".github/workflows/architecture.yml").read_bytes())
+    assert workflow["jobs"]["check"]["steps"][1]["with"]["project"] == "a: ${{ '${{' }} b }} *"
+    assert workflow[True]["pull_request"] is None
+
+
+def test_the_workflow_names_inputs_that_the_action_has(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    run("init", tmp_path / "r")
+    steps = yaml.safe_load((tmp_path / ".github/workflows/architecture.yml").read_bytes())["jobs"]
+    inputs = yaml.safe_load((ROOT / "action.yml").read_bytes())["inputs"]
+    assert steps["check"]["steps"][1]["uses"] == "archgen/archgen@v0"
+    assert set(steps["check"]["steps"][1]["with"]) <= set(inputs)
+    assert (
+        ROOT / steps["comment"]["steps"][0]["uses"].split("@")[0].removeprefix("archgen/archgen/") / "action.yml"
+    ).exists()
+
+
+def test_gitlab(run: Run, tmp_path: Path) -> None:
+    assert run("init", tmp_path, "--ci", "gitlab").status == 0
+    made = yaml.safe_load((tmp_path / ".gitlab-ci.yml").read_bytes())
+    assert made["variables"] == {"ARCHGEN_PROJECT": "."}
+    assert (ROOT / made["include"][0]["remote"].partition("/v0/")[2]).exists()
+    assert not (tmp_path / ".github").exists()
+
+
+def test_settings_are_what_editors_and_git_read(run: Run, tmp_path: Path) -> None:
+    run("init", tmp_path)
+    settings = json.loads((tmp_path / ".vscode/settings.json").read_bytes())
+    (schema,) = settings["yaml.schemas"]
+    assert json.loads((tmp_path / schema).read_bytes())["$id"] == "urn:archgen:schema:1"
+    for file in ("archgen.yaml", "groups/sensing.yaml"):
+        line = (tmp_path / file).read_text(encoding="utf-8").splitlines()[0]
+        assert line.startswith("# yaml-language-server: $schema=")
+        assert ((tmp_path / file).parent / line.partition("=")[2]).resolve() == (tmp_path / schema).resolve()
+    attributes = (tmp_path / ".gitattributes").read_text(encoding="utf-8")
+    assert not any(word in attributes for word in ("filter", "diff=", "merge="))
+
+
+def test_where_nothing_can_be_written(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    ran = run("init", tmp_path / "file" / "below")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.startswith("Error: cannot write ")
+    assert "mistake in archgen" not in ran.err
+
+
+def test_a_link_that_leads_out_is_not_followed(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "r").mkdir()
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "r/.vscode").symlink_to(tmp_path / "elsewhere")
+    ran = run("init", tmp_path / "r")
+    assert ran.status == 2
+    assert "is a link that leads out of" in ran.err
+    assert contents(tmp_path / "elsewhere") == {}
+    assert [path.name for path in (tmp_path / "r").iterdir()] == [".vscode"]
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_a_failure_half_way_leaves_nothing(
+    error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "kept").mkdir()
+    placed: list[Path] = []
+    place = fresh._place  # noqa: SLF001 - the failing disk stands in its place
+
+    def failing(staged: Path, path: Path) -> None:
+        if len(placed) == 2:
+            raise error
+        placed.append(path)
+        place(staged, path)
+
+    monkeypatch.setattr(fresh, "_place", failing)
+    files = {tmp_path / "r" / name: b"x" for name in ("a", "b/c", "d/e")}
+    with pytest.raises(tree.OutputError if isinstance(error, OSError) else KeyboardInterrupt):
+        fresh.write_new(files, tmp_path / "r")
+    assert len(placed) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+
+
+def test_what_appears_meanwhile_is_not_replaced(tmp_path: Path) -> None:
+    (tmp_path / "b").write_text("mine", encoding="utf-8")
+    with pytest.raises(tree.OutputError, match="File exists"):
+        fresh.write_new({tmp_path / "a": b"1", tmp_path / "b": b"2"}, tmp_path)
+    assert contents(tmp_path) == {"b": b"mine"}
