@@ -86,12 +86,17 @@ def summary(found: Comparison) -> str:
 
 def counted(found: Comparison) -> str:
     """Count what changed."""
-    kinds = Counter(str(change.kind) for change in found.changes)
-    counts = ", ".join(f"{kinds[kind]} {kind}" for kind in SIGNS if kinds[kind])
+    counts = by_kind(found.changes)
     words = [plural(len(found.changes), "change") + (f" ({counts})" if counts else "")]
     words += [plural(len(found.new), "new finding")] if found.new else []
     words += [plural(len(found.cured), "cured finding")] if found.cured else []
     return ", ".join(words)
+
+
+def by_kind(changes: Iterable[Change]) -> str:
+    """Count changes by what happened: `1 added, 2 removed`."""
+    kinds = Counter(str(change.kind) for change in changes)
+    return ", ".join(f"{kinds[kind]} {kind}" for kind in SIGNS if kinds[kind])
 
 
 def broken(changes: Iterable[Change]) -> tuple[str, ...]:
@@ -123,7 +128,7 @@ def bound(result: ChainResult | None) -> str:
 
 def grown(each: ChainChange) -> str:
     """Say by how much a bound grew or shrank; empty where that is not known or nothing."""
-    old, new = (side.bound.value if side else None for side in (each.before, each.after))
+    old, new = (side.bound.value if side and side.bound.complete else None for side in (each.before, each.after))
     if old is None or new is None or old == new:
         return ""
     return f"{'+' if new > old else '-'}{duration(abs(new - old))}"

@@ -24,7 +24,9 @@ def folded(graph: Graph, budget: Budget) -> Graph:
         tried = _folded(graph, set(largest[:count])) if count else graph
         if fits(tried, budget):
             return tried
-    said = f"This picture is larger than {budget.boxes} boxes and {budget.arrows} arrows: `--select` shows a part of it."
+    said = (
+        f"This picture is larger than {budget.boxes} boxes and {budget.arrows} arrows: `--select` shows a part of it."
+    )
     return replace(tried, notes=(*tried.notes, said))
 
 
@@ -76,13 +78,12 @@ def _counts(inside: Sequence[Box]) -> list[tuple[Changed, int]]:
 
 def _merged(arrows: Sequence[Arrow], home: dict[str, str]) -> tuple[Arrow, ...]:
     """Draw one arrow for all that now have the same ends and went through the same."""
+    kept = [arrow for arrow in arrows if (home[arrow.tail], home[arrow.head]) == (arrow.tail, arrow.head)]
     bundles: dict[tuple[str, str, Changed | None], list[Arrow]] = {}
     for arrow in arrows:
-        bundles.setdefault((home[arrow.tail], home[arrow.head], arrow.change), []).append(arrow)
-    return tuple(
-        bundle[0] if (bundle[0].tail, bundle[0].head) == (tail, head) else _joined(bundle, tail, head, change)
-        for (tail, head, change), bundle in bundles.items()
-    )
+        if arrow not in kept:
+            bundles.setdefault((home[arrow.tail], home[arrow.head], arrow.change), []).append(arrow)
+    return (*kept, *(_joined(bundle, *key) for key, bundle in bundles.items()))
 
 
 def _joined(bundle: Sequence[Arrow], tail: str, head: str, change: Changed | None) -> Arrow:

@@ -53,7 +53,9 @@ def functional(found: Comparison, budget: Budget) -> Graph | None:
     near = {end for line in both.lines if not core.isdisjoint(line.ends) for end in line.ends} - core
     beside = {end for line in both.lines if not both.subjects.isdisjoint(line.ends) for end in line.ends} - core
     shown = core | beside if len(core | beside) <= budget.around else core
-    drawn = [line for line in both.lines if shown.issuperset(line.ends) and (line.change or _at(line, both, shown, core))]
+    drawn = [
+        line for line in both.lines if shown.issuperset(line.ends) and (line.change or _at(line, both, shown, core))
+    ]
     left = len(near - shown)
     notes = (f"{plural(left, 'unchanged neighbour')} not drawn.",) if left else ()
     graph = Graph(
@@ -73,7 +75,11 @@ def functional(found: Comparison, budget: Budget) -> Graph | None:
 
 def _at(line: Line, both: _Both, shown: set[str], core: set[str]) -> bool:
     """Say whether an unchanged connection is worth its line: it touches what changed, or joins two that are drawn anyway."""
-    return not both.subjects.isdisjoint(line.ends) or (shown == core and core.issuperset(line.ends)) or len(shown) <= len(core)
+    return (
+        not both.subjects.isdisjoint(line.ends)
+        or (shown == core and core.issuperset(line.ends))
+        or len(shown) <= len(core)
+    )
 
 
 def _exists(both: _Both, name: str) -> bool:
@@ -130,7 +136,9 @@ def _box(both: _Both, name: str) -> Box:
 
 
 def _gone(both: _Both, name: str) -> Box:
-    return replace(boxes.component(both.before, both.before.architecture.components[_old(both, name) or name]), badge=None)
+    return replace(
+        boxes.component(both.before, both.before.architecture.components[_old(both, name) or name]), badge=None
+    )
 
 
 def _frames(both: _Both, shown: set[str]) -> Iterator[Cluster]:
@@ -149,7 +157,11 @@ def _alt(both: _Both) -> str:
         kind: [titles[name][2:] for name in titles if both.told.components[name] == kind]
         for kind in ("added", "removed", "changed", "renamed")
     }
-    said = [f"{kind}: {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}" for kind, names in by_kind.items() if names]  # noqa: PLR2004
+    said = [
+        f"{kind}: {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}"
+        for kind, names in by_kind.items()
+        if names
+    ]  # noqa: PLR2004
     counts = {kind: sum(line.change == kind for line in both.lines) for kind in ("added", "removed", "changed")}
     said += [f"{plural(count, 'connection')} {kind}" for kind, count in counts.items() if count]
     return "; ".join(said) + "."
