@@ -14,17 +14,36 @@ from archgen.emit.graphviz.labels import declutter
 from archgen.emit.graphviz.scene import Frame, Part, Scene, placed
 
 _PAD = 14
+_PAGE = (1000.0, 700.0)
+_DIRECTIONS = {"left-right": ("LR", "TB"), "top-bottom": ("TB", "LR")}
+"""The one that is asked for counts where both are as good."""
 
 
 def framed(drafted: Draft) -> Scene:
-    """Lay out boxes in frames, then set the texts on the arrows."""
+    """Lay out boxes in frames, then set the texts on the arrows. The better of two directions is taken."""
+    tries = [_laid_out(drafted, direction) for direction in _DIRECTIONS[drafted.graph.direction]]
+    return min(tries, key=lambda scene: (_lost(drafted, scene), _scale(scene)))
+
+
+def _lost(drafted: Draft, scene: Scene) -> int:
+    """Count the texts that found no place."""
+    return len(drafted.labels) - sum(part.kind == "label" for part in scene.parts)
+
+
+def _scale(scene: Scene) -> float:
+    """Say how many times too large a drawing is for a page on a screen."""
+    left, bottom, right, top = scene.bounds()
+    return max((right - left) / _PAGE[0], (top - bottom) / _PAGE[1])
+
+
+def _laid_out(drafted: Draft, direction: str) -> Scene:
     graph = drafted.graph
     headings = [title(cluster) for cluster in graph.clusters]
     sizes = measure(headings)
     lines = list(_clusters(drafted, sizes))
     lines += [drafted.node(item) for item in graph.boxes if item.cluster not in _names(drafted)]
     lines += [drafted.edge(at, item, text=False) for at, item in enumerate(graph.arrows)]
-    layout = engine.layout(document(_settings(drafted), lines))
+    layout = engine.layout(document(_settings(drafted, direction), lines))
     scene = placed(layout, drafted.boxes, drafted.arrows)
     found: Mapping[str, Any] = {item["name"]: item for item in layout.get("objects", [])}
     rims, titles = [], []
@@ -56,9 +75,8 @@ def _clusters(drafted: Draft, sizes: tuple[tuple[float, float], ...]) -> Iterato
         yield f'subgraph "cluster_{at}" {{ graph [label={room} labeljust="l" margin="{_PAD}"]; {boxes} }}'
 
 
-def _settings(drafted: Draft) -> str:
+def _settings(drafted: Draft, direction: str) -> str:
     """Leave room between the ranks for the longest line of a text."""
     longest = max((len(line) for arrow in drafted.graph.arrows for line in arrow.label.split("\n")), default=0)
-    direction = "LR" if drafted.graph.direction == "left-right" else "TB"
     ranksep = min(0.5 + 0.065 * longest, 1.8) if direction == "LR" else 0.7
     return f'rankdir="{direction}" nodesep="0.28" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'

@@ -18,7 +18,11 @@ _CLASSES: dict[Changed, str] = {
     "renamed": "stroke:#2f81c7,stroke-width:3px,stroke-dasharray:2 3",
 }
 """Lines that stand out from a light and from a dark page."""
-_LINKS: dict[Changed, str] = {**_CLASSES, "added": "stroke:#2e8b57,stroke-width:3px"}
+_LINKS: dict[Changed | None, str] = {
+    **_CLASSES,
+    "added": "stroke:#2e8b57,stroke-width:3px",
+    None: "stroke:#8a8a8a,stroke-width:1px",
+}
 _ARROWS = {"service": "-.->", "action": "==>", "physical": "-.->"}
 
 
@@ -55,7 +59,7 @@ def _styles(graph: Graph) -> Iterator[str]:
     yield from (f"  classDef {kind} {style}" for kind, style in _CLASSES.items() if kind in kinds)
     if any(box.emphasis == "neighbour" and not box.change for box in graph.boxes):
         yield "  classDef neighbour stroke:#8a8a8a,stroke-width:1px"
-    for kind, style in _LINKS.items():
+    for kind, style in _LINKS.items() if any(arrow.change for arrow in graph.arrows) else ():
         lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind]
         if lines:
             yield f"  linkStyle {','.join(lines)} {style}"

@@ -160,11 +160,18 @@ def _node(both: _Both, name: str) -> Box:
         item = both.before.architecture.nodes[both.names.back.get("node", {}).get(name, name)]
     drawn = nodes.node(view, item)
     common = replace(drawn, id=f"node {name}", status=None, ref="changes:Nodes")
-    kind = both.kinds.get(name)
+    kind = both.kinds.get(name) or _planned(both, name)
     if kind is None:
         return replace(common, emphasis="neighbour", badge=None)
     tooltip = "\n".join((*both.said.get(name, ()), drawn.tooltip))
     return replace(common, title=f"{SIGNS[kind]} {drawn.title}", change=kind, tooltip=tooltip)
+
+
+def _planned(both: _Both, name: str) -> Changed | None:
+    """Say whether a node that nobody wrote came or went with its component."""
+    was = both.names.back.get("node", {}).get(name, name)
+    old, new = was in both.before.architecture.nodes, name in both.after.architecture.nodes
+    return None if old and new else "added" if new else "removed"
 
 
 def _topic(both: _Both, name: str) -> Box:
