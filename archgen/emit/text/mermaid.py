@@ -19,8 +19,9 @@ _CLASSES: dict[Changed, str] = {
 }
 """Lines that stand out from a light and from a dark page."""
 _LINKS: dict[Changed | None, str] = {
-    **_CLASSES,
     "added": "stroke:#2e8b57,stroke-width:3px",
+    "removed": _CLASSES["removed"],
+    "changed": _CLASSES["changed"],
     None: "stroke:#8a8a8a,stroke-width:1px",
 }
 _ARROWS = {"service": "-.->", "action": "==>", "physical": "-.->"}

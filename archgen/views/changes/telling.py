@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -154,8 +154,3 @@ def verdict(each: ChainChange) -> str:
     if not new:
         return ""
     return f"{new} (was {old})" if old and old != new else new
-
-
-def weightiest(changes: Sequence[Change]) -> list[Change]:
-    """Put what breaks somebody first, what only concerns texts last; else the order stays."""
-    return sorted(changes, key=lambda change: (not change.breaks, textual(change)))

@@ -18,6 +18,7 @@ from archgen.views.shapes import Box, Changed, Cluster, Graph
 from archgen.views.words import plural
 
 NAME = "changes/components"
+_NAMED = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +94,7 @@ def _old(both: _Both, name: str) -> str | None:
 
 
 def _lines(found: Comparison, told: Happened) -> Iterator[Line]:
-    """Give all connections of both versions, with what happened to them."""
+    """Give all connections of both versions, with what happened to them; not those of which the comparison tells nothing."""
     old = edges(found.before.architecture, found.names)
     new = edges(found.after.architecture, type(found.names)())
     unknown = found.told.unknown
@@ -102,10 +103,10 @@ def _lines(found: Comparison, told: Happened) -> Iterator[Line]:
         if key in new and key in old:
             said = tuple(flows_changed(found.after.architecture, edge, told))
             yield _line(edge, "changed" if said else None, said)
-        elif not (unknown(("output", edge.output)) or unknown(("input", edge.input))):
+        elif unknown(("output", edge.output)) or unknown(("input", edge.input)):
+            yield from [_line(edge, None, ())] if key in new else []
+        elif edge.input in told.said or not told.components.keys().isdisjoint((edge.tail, edge.head)):
             yield _line(edge, "added" if key in new else "removed", tuple(told.said.get(edge.input, ())))
-        elif key in new:
-            yield _line(edge, None, ())
 
 
 def _line(edge: Edge, change: Changed | None, said: tuple[str, ...]) -> Line:
@@ -158,10 +159,10 @@ def _alt(both: _Both) -> str:
         for kind in ("added", "removed", "changed", "renamed")
     }
     said = [
-        f"{kind}: {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}"
+        f"{kind}: {', '.join(names[:_NAMED])}{', ...' if len(names) > _NAMED else ''}"
         for kind, names in by_kind.items()
         if names
-    ]  # noqa: PLR2004
+    ]
     counts = {kind: sum(line.change == kind for line in both.lines) for kind in ("added", "removed", "changed")}
     said += [f"{plural(count, 'connection')} {kind}" for kind, count in counts.items() if count]
     return "; ".join(said) + "."

@@ -18,7 +18,6 @@ from archgen.views.graphs.changes.lines import Line, arrows
 from archgen.views.graphs.legend import with_legend
 from archgen.views.index import Index, index
 from archgen.views.shapes import Box, Changed, Graph
-from archgen.views.words import plural
 
 NAME = "changes/nodes"
 Key = tuple[str, str, str]
