@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import gc
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -48,6 +48,8 @@ class Checked:
     chapters: Chapters
     findings: tuple[Diagnostic, ...]
     """Settled and sorted; those that a comment silences are left out."""
+    silenced: tuple[Diagnostic, ...] = ()
+    """What a comment or a setting of the project keeps out of the findings."""
 
     @property
     def root(self) -> Path:
@@ -167,8 +169,18 @@ def judge(loaded: Loaded) -> Checked:
     )
     ignores = [ignore for found in loaded.ignores.values() for ignore in found]
     first_lines = suppress.first_lines(architecture) if ignores else {}
-    kept = suppress.suppress(raw, ignores, _BY_NAME, first_lines)
-    return Checked(loaded, merged, architecture, read, settle(kept, _BY_NAME, loaded.rules))
+    kept = settle(suppress.suppress(raw, ignores, _BY_NAME, first_lines), _BY_NAME, loaded.rules)
+    silenced = _silenced(raw, kept, loaded.rules) if ignores or Severity.OFF in loaded.rules.values() else ()
+    return Checked(loaded, merged, architecture, read, kept, silenced)
+
+
+def _silenced(
+    raw: Iterable[Diagnostic], kept: Iterable[Diagnostic], settings: Mapping[str, Severity]
+) -> tuple[Diagnostic, ...]:
+    """Give the findings that there would be without comments and rules that are switched off."""
+    shown = frozenset(kept)
+    every = settle(raw, _BY_NAME, {rule: severity for rule, severity in settings.items() if severity != Severity.OFF})
+    return tuple(finding for finding in every if finding not in shown)
 
 
 def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagnostic, ...]]:

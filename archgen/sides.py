@@ -91,6 +91,7 @@ def version(checked: Checked) -> Version:
     return Version(
         architecture=checked.architecture,
         findings=checked.findings,
+        silenced=checked.silenced,
         rules={rule: str(severity) for rule, severity in checked.loaded.rules.items()},
         chapters={path: chapter.text for path, chapter in checked.chapters.texts.items()},
         order=checked.chapters.order,

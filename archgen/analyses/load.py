@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
 from archgen.timing.bounds import share
+from archgen.timing.placement import homeless
+from archgen.timing.sums import total
 from archgen.timing.wording import duration, number
 
 if TYPE_CHECKING:
@@ -51,8 +53,10 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
     """
     for host, load in found.hosts.items():
         for place, cores, used in load.places:
-            if used.value is not None and used.value >= cores:
+            # What is just full may do.
+            if used.value is not None and used.value >= cores and load.verdict == "overload":
                 yield _overload(architecture, found, host, load, (place, cores, used.value))
+    yield from _overloaded_containers(architecture, found)
     full = {host for host, load in found.hosts.items() if load.verdict == "overload"}
     for name, pace in found.paces.items():
         activity = found.system.activities[name]
@@ -64,6 +68,22 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
                 f"`{name}` takes {number(100 * alone)} % of a core: it is fired again before it is done",
                 activity.places.get("wcet", activity.at),
                 help="fire it less often (`every`, `throttle`), or make it quicker",
+                element=name,
+            )
+
+
+def _overloaded_containers(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
+    """Look at containers without a host whose members share fewer threads than they are."""
+    for name, members in homeless(found.system).items():
+        threads = found.system.threads.get(name) or 1
+        used = total(share(found.system, one.id, found.paces[one.id]) for one in members).value
+        if used is not None and used >= threads:
+            several = "its thread" if threads == 1 else f"its {threads} threads"
+            yield Diagnostic(
+                "overloaded-host",
+                f"`{name}` is overloaded: what runs there takes {number(100 * used / threads)} % of {several}",
+                architecture.containers[name].at,
+                help="give it more threads, move something out, or let it run less often",
                 element=name,
             )
 
@@ -93,8 +113,8 @@ def _cores(count: int) -> str:
 def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
     """A component's node takes longer than the execution time that its performance asks for.
 
-    Why: `performance` says what the component promises to others. Its node's worst case execution time (or the response that
-    it declares) is above that, even where nothing else gets in its way.
+    Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
+    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found.
 
     Bad:
         groups:
@@ -118,23 +138,29 @@ def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diag
     """
     for activity in found.system.activities.values():
         component = architecture.components.get(activity.component or "")
-        needed = activity.response if activity.response is not None else activity.wcet
-        if component is None or needed is None:
-            continue
+        worst = found.responses[activity.id].worst.value
+        if component is None or worst is None:
+            continue  # an overload is reported as such
         for indicator in component.performance:
             asked = indicator.execution_time
-            if asked is not None and needed * found.system.tick > asked.value:
-                yield _slow(component, indicator, activity, needed * found.system.tick)
+            if asked is not None and worst > asked.value:
+                alone = activity.response is not None or worst == (activity.wcet or 0) * found.system.tick
+                yield _slow(component, indicator, activity, worst, alone=alone)
 
 
-def _slow(component: Component, indicator: Indicator, activity: Activity, needed: Fraction) -> Diagnostic:
+def _slow(
+    component: Component, indicator: Indicator, activity: Activity, worst: Fraction, *, alone: bool
+) -> Diagnostic:
     place = activity.places.get("wcet" if activity.response is None else "response", activity.at)
+    others = "" if alone or activity.host is None else f" with all that works on `{activity.host}`"
     return Diagnostic(
         "slow-component",
-        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {duration(needed)}",
+        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {duration(worst)}{others}",
         indicator.at,
-        labels=(Label(place, "takes longer"),) if place != NOWHERE else (),
-        help="make the node quicker, or correct what the performance promises",
+        labels=(Label(place, "takes longer" if alone else "takes longer with what gets in its way"),)
+        if place != NOWHERE
+        else (),
+        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
         element=component.id,
     )
 
@@ -188,8 +214,8 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
     """A service takes longer, with all its callers waiting, than one of them has before it runs again.
 
     Why: Each caller may find the calls of all others before its own: with K callers an answer takes up to K times the
-    server's execution time. A periodic caller that waits for its answers is late then, and skips a period. Actions, which
-    nobody waits for, are not meant here.
+    server's execution time, and more where others work on the server's host. A periodic caller that waits for its answers
+    is late then, and skips a period. Actions, which nobody waits for, are not meant here.
 
     Bad:
         groups:
@@ -215,14 +241,16 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
           control: {implements: control, timing: {period: 200 ms}}
           watch: {implements: watch, timing: {period: 1 s}}
     """
+    seen: set[tuple[str, str]] = set()
     for arc in found.system.arcs:
-        if arc.role != "request" or arc.flow != "service":
+        if arc.role != "request" or arc.flow != "service" or (arc.source, arc.target) in seen:
             continue
+        seen.add((arc.source, arc.target))
         load, caller = found.services[arc.target], found.system.activities[arc.source]
-        calls = caller.calls.get(arc.output, Fraction(1))
-        if load.worst.value is None or caller.period is None:
+        waited = load.waits[caller.id].value
+        if waited is None or caller.period is None:
             continue
-        waited, there_is = load.worst.value * calls, caller.period * found.system.tick
+        there_is = caller.period * found.system.tick
         if waited > there_is:
             server = found.system.activities[arc.target]
             yield _late(load, caller, server, (waited, there_is), arc.at)

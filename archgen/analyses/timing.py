@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostic import Diagnostic, Label, Severity
 from archgen.source import NOWHERE
+from archgen.timing.edges import fires
 from archgen.timing.ticks import SECOND, period
 from archgen.timing.wording import number, rate
 
@@ -162,11 +163,11 @@ def lost_samples(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
 
 
 def short_queue(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
-    """A periodic element keeps a queue that overflows before it is read.
+    """An element keeps a queue that overflows before it is read.
 
     Why: Whoever asks for a queue of several messages means to read all of them. Until a periodic reader has been through once
-    more, its largest gap and its response time pass; what comes in that time must fit in, or the oldest is lost without a
-    sign. A queue of one (only the newest counts), and a depth that nobody wrote, are not meant here.
+    more, its largest gap and its response time pass, and the response of what each message fires; what comes in that time
+    must fit in, or the oldest is lost without a sign. A queue of one (only the newest counts), and a depth that nobody wrote, are not meant here.
 
     Bad:
         groups:
@@ -199,7 +200,7 @@ def short_queue(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
         if not edge.arc.depth_written or depth is None or depth < 2 or needed is None or needed <= depth:  # noqa: PLR2004
             continue
         target = found.system.activities[edge.arc.target]
-        if target.behaviour == "periodic":
+        if target.behaviour == "periodic" or fires(found.system, edge.arc):
             yield _overflow(edge, target, depth, needed)
 
 

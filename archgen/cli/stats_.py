@@ -60,14 +60,15 @@ def _now(project: Path | None, form: str) -> None:
 
 
 def _over_time(project: Path | None, form: str, by: By) -> None:
-    from archgen import git, outputs
+    from archgen import git
+    from archgen.emit import kept
     from archgen.findings import history_text
     from archgen.findings.escape import json_text
     from archgen.history import history
     from archgen.project import ProjectNotFoundError
 
     try:
-        found = history(project, by, cache=outputs.cache_folder(), progress=run.progress("reading"))
+        found = history(project, by, cache=kept.folder(), progress=run.progress("reading"))
     except (git.GitError, ProjectNotFoundError) as error:
         raise click.UsageError(str(error)) from None
     if form == "json":

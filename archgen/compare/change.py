@@ -70,7 +70,8 @@ class ChainChange:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """All that differs. `cured` findings speak of the first version, `new` ones of the second.
+    """All that differs. `cured` and `silenced` findings speak of the first version, `new` ones of the second. A silenced one
+    is not cured: a comment or a setting keeps it quiet now.
 
     `breaking` is how much a change matters that breaks a partner: what the stricter version says. `idle` are the accepted
     entries of the second version that name no breaking change here.
@@ -85,6 +86,7 @@ class Comparison:
     cured: tuple[Diagnostic, ...]
     chains: tuple[ChainChange, ...]
     owners: tuple[str, ...]
+    silenced: tuple[Diagnostic, ...] = ()
     breaking: Severity = Severity.WARNING
     idle: tuple[Accepted, ...] = ()
 
@@ -96,4 +98,4 @@ class Comparison:
     @property
     def empty(self) -> bool:
         """Say whether nothing differs."""
-        return not (self.changes or self.new or self.cured or self.chains)
+        return not (self.changes or self.new or self.cured or self.silenced or self.chains)

@@ -27,17 +27,18 @@ def compare(before: Version, after: Version) -> Comparison:
     lost = before.architecture.lost, after.architecture.lost
     told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost, _unnamed(after.architecture))
     changes = Differences(*listed, names, told).all(old, new)
-    appeared, cured = findings(before.findings, after.findings, names)
+    judged = findings(before, after, names)
     return Comparison(
         before,
         after,
         names,
         told,
         changes,
-        appeared,
-        cured,
+        judged.new,
+        judged.cured,
         chains(before.architecture, after.architecture, names, changes),
         owners(changes, told),
+        judged.silenced,
     )
 
 

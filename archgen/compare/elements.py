@@ -15,6 +15,7 @@ from archgen.compare.values import known, prose, title, words
 from archgen.compare.version import Version
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
+from archgen.model.interfaces import Interface
 from archgen.model.node import Node
 from archgen.model.review import Review
 
@@ -76,9 +77,13 @@ def _project(version: Version, names: Names) -> Iterator[Element]:
         yield Element("chapter", path, path, {"text": prose(text)})
     for name in own_messages(found):
         definition = found.interfaces.definitions.get(name)
-        parts = definition.parts if definition else ()
-        fields = tuple(" ".join((f"{f.type}{f.array}", f.name)) for part in parts for f in part)
-        yield Element("message", names.to("message", name), name, {"fields": fields, "parts": tuple(map(len, parts))})
+        yield Element("message", names.to("message", name), name, {"fields": _fields(definition) if definition else ()})
+
+
+def _fields(definition: Interface) -> tuple[str, ...]:
+    """Give the fields as ROS writes them, `---` between the parts of a service or action."""
+    parts = [[f"{field.type}{field.array} {field.name}" for field in part] for part in definition.parts]
+    return tuple(parts[0]) + tuple(line for part in parts[1:] for line in ("---", *part)) if parts else ()
 
 
 def _review(review: Review) -> dict[str, object]:
@@ -99,6 +104,7 @@ def _around(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(partner.id, partner.title),
             "description": prose(partner.description),
             "contact": partner.contact,
+            "reviewers": words(partner.reviewers),
         }
         name = names.to("partner", partner.id)
         yield Element("partner", name, partner.id, known(values), owner=name)
@@ -125,6 +131,7 @@ def _groups(found: Architecture, names: Names) -> Iterator[Element]:
             "title": title(group.id, group.title),
             "description": prose(group.description),
             "owner": owner,
+            "co_owners": words(names.to("partner", other) for other in group.co_owners),
             "tags": words(group.tags),
             "layout": group.layout.direction,
             **_urls(group.urls),
@@ -143,6 +150,7 @@ def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> 
         "functionality": prose(component.functionality),
         "description": prose(component.description),
         "owner": owner,
+        "co_owners": words(names.to("partner", other) for other in component.co_owners),
         "role": component.role,
         "requirements": words(names.to("requirement", use.text) for use in component.requirements),
         "tags": words(component.tags),

@@ -3,16 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from typing import NamedTuple
 
 from archgen.compare.names import Names
+from archgen.compare.version import Version
 from archgen.diagnostic import Diagnostic
 from archgen.identity import identity, partners
 
 
-def findings(
+class Told(NamedTuple):
+    """Findings that appeared, that were cured, and that are there still but kept quiet."""
+
+    new: tuple[Diagnostic, ...]
+    cured: tuple[Diagnostic, ...]
+    silenced: tuple[Diagnostic, ...]
+
+
+def findings(before: Version, after: Version, names: Names) -> Told:
+    """Tell findings apart. One that only gives another figure is none of these."""
+    new, gone = _apart(before.findings, after.findings, names)
+    _, cured = _apart(gone, after.silenced, names)
+    kept = set(map(id, cured))
+    return Told(new, cured, tuple(each for each in gone if id(each) not in kept))
+
+
+def _apart(
     before: Sequence[Diagnostic], after: Sequence[Diagnostic], names: Names
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Give the new and the cured findings. One that only gives another figure is neither."""
+    """Give what stands only in the second, and only in the first."""
     old = partners([_keys(each, Names()) for each in after], [_keys(each, names) for each in before])
     gone = set(range(len(before))).difference(old)
     new = tuple(each for each, was in zip(after, old, strict=True) if was is None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from archgen.compare.change import Change
@@ -108,6 +109,11 @@ def _brief(text: object) -> bool:
 
 
 def _rewritten(before: object, after: object) -> str:
+    if isinstance(before, str) and isinstance(after, str) and "\n" in before + after:
+        old, new = Counter(before.splitlines()), Counter(after.splitlines())
+        counts = ((new - old).total(), "added"), ((old - new).total(), "removed")
+        words = [f"{n} line{'s' if n > 1 else ''} {verb}" for n, verb in counts if n]
+        return f"changed: {' and '.join(words)}" if words else "has its lines in another order"
     if before is None:
         return "is new"
     return "is gone" if after is None else "is rewritten"

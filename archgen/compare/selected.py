@@ -24,6 +24,7 @@ def selected(found: Comparison, before: Selection, after: Selection) -> Comparis
         changes=changes,
         new=tuple(filter(_about(wanted, found.told.after), found.new)),
         cured=tuple(filter(_about(old | wanted, found.told.before), found.cured)),
+        silenced=tuple(filter(_about(old | wanted, found.told.before), found.silenced)),
         chains=tuple(c for c, way in zip(found.chains, ways, strict=True) if not nodes.isdisjoint(_parts(way))),
         owners=owners(changes, found.told),
     )

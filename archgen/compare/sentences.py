@@ -190,26 +190,28 @@ def port(kind: str, element: Element) -> str:
 
 def changed(change: Change, told: Told) -> str:
     """Say what one key of an element was and is, and whom that concerns."""
-    said = changed_key(change)
-    if change.sort == "output" and change.key == "type":
-        readers = sorted(told.new.readers.get(change.element, frozenset()))
-        said += f"; it is read by {_ticked(readers)}" if readers else ""
-    if change.sort == "type" and change.key in {"message", "size"}:
-        outputs = [
-            name
-            for (sort, name), e in told.after.items()
-            if sort == "output" and e.values.get("type") == change.element
-        ]
-        said += f"; {_ticked(sorted(outputs))} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
-    if change.sort == "component" and change.key == "requirements":
-        before, after = told.serving
-        unserved = [
-            r
-            for r in sorted(before)
-            if r not in after and change.element in before[r] and ("requirement", r) in told.after
-        ]
-        said += f"; no component serves {_ticked(unserved)} any more" if unserved else ""
-    return said
+    return "; ".join(filter(None, (changed_key(change), _concerns(change, told))))
+
+
+def _concerns(change: Change, told: Told) -> str:
+    """Name who is at the other end of a change: readers, carriers, requirements that nobody serves any more."""
+    name = change.element
+    match change.sort, change.key:
+        case "output", "type":
+            readers = sorted(told.new.readers.get(name, frozenset()))
+            return f"it is read by {_ticked(readers)}" if readers else ""
+        case "type", "message" | "size":
+            outputs = told.using("output", "type", name)
+            return f"{_ticked(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+        case "message", _:
+            types = told.using("type", "message", name)
+            return f"it carries {_ticked(types)}" if types else ""
+        case "component", "requirements":
+            before, after = told.serving
+            lost = [one for one in sorted(before) if one not in after and name in before[one]]
+            unserved = [one for one in lost if ("requirement", one) in told.after]
+            return f"no component serves {_ticked(unserved)} any more" if unserved else ""
+    return ""
 
 
 def _ticked(names: Iterable[str]) -> str:

@@ -21,4 +21,6 @@ class Version:
     rules: Mapping[str, str] = field(default_factory=dict)
     chapters: Mapping[str, str] = field(default_factory=dict)
     order: tuple[str, ...] = ()
+    silenced: tuple[Diagnostic, ...] = ()
+    """What a comment or a setting keeps out of the findings."""
     unnamed: frozenset[str] = frozenset()

@@ -10,23 +10,28 @@ import contextlib
 import hashlib
 import json
 import os
-import sys
 import tempfile
 import zlib
 from collections.abc import Callable, Mapping
-from functools import cache
-from importlib import metadata
 from pathlib import Path
 
-from archgen import resources
 from archgen.emit.picture import Picture
+from archgen.emit.program import writers
 from archgen.views.shapes import Outline
 
 Written = tuple[bytes, tuple[str, ...]]
 ChapterFiles = Callable[[str], bytes | None]
 _MOST = 4
 """So many reports are kept."""
-_LIBRARIES = ("lxml", "markdown-it-py")
+
+
+def folder() -> Path | None:
+    """Give the folder in which pictures, reports and stamps are kept, None where there is no place for it."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return Path(base) / "archgen" if base else Path.home() / ".cache" / "archgen"
+    except RuntimeError:  # nobody's home
+        return None
 
 
 def report(  # noqa: PLR0913 - all that a report depends on, and how to write it
@@ -59,7 +64,7 @@ def report(  # noqa: PLR0913 - all that a report depends on, and how to write it
 
 
 def _key(outline: Outline, pictures: Mapping[str, Picture], template: bytes | None) -> str:
-    digest = hashlib.sha256(f"{_version()}\n{outline!r}\n".encode("utf-8", "surrogatepass"))
+    digest = hashlib.sha256(f"{writers()}\n{outline!r}\n".encode("utf-8", "surrogatepass"))
     _add(digest, template)
     for name, each in pictures.items():
         _add(digest, repr((name, each.id, each.width, each.height, each.warning)).encode("utf-8", "surrogatepass"))
@@ -72,18 +77,6 @@ def _add(digest: hashlib._Hash, data: bytes | None) -> None:
     """Add bytes with their length before them, so that no two lists of parts run into one."""
     digest.update(b"none " if data is None else b"%d " % len(data))
     digest.update(data or b"")
-
-
-@cache
-def _version() -> str:
-    """Stamp the code that writes reports, its template, and the libraries that it stands on."""
-    digest = hashlib.sha256()
-    code = Path(__file__).resolve().parent
-    for file in (*sorted(code.rglob("*.py")), *sorted(resources.path("backends", "report").rglob("*"))):
-        if file.is_file():
-            digest.update(file.name.encode() + b"\n" + file.read_bytes())
-    libraries = [f"{name} {metadata.version(name)}" for name in _LIBRARIES]
-    return f"{digest.hexdigest()} {sys.version} {zlib.ZLIB_RUNTIME_VERSION} {libraries}"
 
 
 def _digest(data: bytes | None) -> str | None:

@@ -107,6 +107,19 @@ def write_file(path: Path, data: bytes) -> None:
             shutil.rmtree(staged, ignore_errors=True)
 
 
+def manifest_digest(folder: Path, *, sure: bool = False) -> str | None:
+    """Digest the manifest of a folder that holds what archgen wrote, all of it and nothing else; None for any other.
+
+    With `sure`, who asks has written the folder just now, and its files are not read again.
+    """
+    if not sure:
+        manifest, own = _read_manifest(folder), dict[str, str]()
+        if any(_sort_out(folder, manifest, own)) or {(digest, path) for path, digest in own.items()} != manifest:
+            return None
+    place = folder / MANIFEST
+    return hashlib.sha256(place.read_bytes()).hexdigest() if place.is_file() else None
+
+
 def _replace(
     folder: Path, changed: Mapping[str, bytes], stale: Iterable[str], old: set[tuple[str, str]], new: Mapping[str, str]
 ) -> None:

@@ -26,7 +26,11 @@ def document(found: Comparison, broken: Broken) -> dict[str, Any]:
     return {
         "version": VERSION,
         "changes": [change(each) for each in found.changes],
-        "findings": {"new": [record(each) for each in found.new], "cured": [record(each) for each in found.cured]},
+        "findings": {
+            "new": [record(each) for each in found.new],
+            "cured": [record(each) for each in found.cured],
+            "silenced": [record(each) for each in found.silenced],
+        },
         "chains": [_chain(each) for each in found.chains],
         "owners": list(found.owners),
         "breaking": {

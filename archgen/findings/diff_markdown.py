@@ -79,6 +79,7 @@ def _heading(found: Comparison, broken: Broken) -> str:
         new = sum(each not in broken[1] for each in found.new)
         counts = [plural(new, "new finding")] if new else []
         counts += [plural(len(found.cured), "cured finding")] if found.cured else []
+        counts += [plural(len(found.silenced), "silenced finding")] if found.silenced else []
         counts += [plural(len(found.chains), "chain") + " with another bound"] if found.chains else []
         return f"### No change of the architecture{unsure}" + (f", but {' and '.join(counts)}" if counts else "")
     losers = telling.broken(found.changes)
@@ -101,6 +102,7 @@ def _counts(found: Comparison) -> str:
     new = ", ".join(plural(severities[name], name) for name in ("error", "warning", "note") if severities[name])
     said += [f"new: {new}"] if new else []
     said += [plural(len(found.cured), "finding") + " cured"] if found.cured else []
+    said += [plural(len(found.silenced), "finding") + " silenced"] if found.silenced else []
     return f": {'; '.join(said)}" if said else ""
 
 
@@ -198,6 +200,9 @@ def _findings(comment: Comment, found: Comparison, told: Collection[Diagnostic])
     noun = "note" if shown == grave else "finding"
     left = plural(len(new) - shown, f"{'more' if shown else 'new'} {noun}")
     comment.items("", [_finding(each) for each in new], left, shown)
+    if found.silenced:
+        comment.add("#### Silenced findings")
+        comment.items("", [_finding(each) for each in found.silenced], "{} more findings", _OPEN)
     if found.cured:
         comment.items("", [_finding(each) for each in found.cured], plural(len(found.cured), "cured finding"), 0)
 

@@ -25,7 +25,8 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
             yield from _change(change, colour=colour)
         yield ""
     yield from _chains(found.chains, colour=colour)
-    for heading, findings in (("New findings", found.new), ("Cured findings", found.cured)):
+    judged = (("New findings", found.new), ("Cured findings", found.cured), ("Silenced findings", found.silenced))
+    for heading, findings in judged:
         yield from _findings(heading, findings, colour=colour)
     yield visible(telling.summary(found))
 

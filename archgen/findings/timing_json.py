@@ -38,6 +38,7 @@ def document(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Plain:
             name: {
                 "utilisation": quantity(load.utilisation),
                 "rate_monotonic_bound": quantity(load.rate_monotonic_bound),
+                "earliest_deadline_bound": quantity(load.earliest_deadline_bound),
                 "cores": load.cores,
                 "verdict": load.verdict,
             }
@@ -59,6 +60,15 @@ def document(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Plain:
                 "size": quantity(load.size),
             }
             for name, load in analysis.topics.items()
+        },
+        "services": {
+            name: {
+                "callers": list(load.callers),
+                "answer": time(load.worst),
+                "waits": {caller: time(wait) for caller, wait in load.waits.items()},
+                "synchronous_response": {caller: time(whole) for caller, whole in load.synchronous.items()},
+            }
+            for name, load in analysis.services.items()
         },
     }
 

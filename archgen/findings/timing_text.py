@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from archgen.findings.escape import visible, width
 from archgen.timing import wording
-from archgen.timing.analysis import Analysis, ChainResult, Term
+from archgen.timing.analysis import Analysis, ChainResult, HostLoad, Term
 from archgen.timing.chains import Found
 from archgen.timing.rounds import Round
 from archgen.timing.value import Value
@@ -22,6 +22,9 @@ def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterab
     yield from _section("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
     yield from _section("Hosts", _host_rows(analysis))
     yield from _section("Links", _link_rows(analysis))
+    yield from _section(
+        "Services and actions: longest time from a call until it is worked off", _service_rows(analysis)
+    )
     yield from _section("Elements", _element_rows(analysis))
     yield from _section("Loops: latency of one round", _loop_rows(loops))
     yield from _faults(analysis)
@@ -44,7 +47,17 @@ def _chain_rows(chains: Iterable[ChainResult]) -> Iterator[Row]:
 def _host_rows(analysis: Analysis) -> Iterator[Row]:
     for name, load in analysis.hosts.items():
         cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
-        yield name, cores, f"load {figure(load.utilisation, wording.share)}", load.verdict, without(load.utilisation)
+        used = f"load {figure(load.utilisation, wording.share)}"
+        yield name, cores, used, load.verdict, without(load.utilisation) or _bounds(load)
+
+
+def _bounds(load: HostLoad) -> str:
+    """Say where the bounds of Liu and Layland lie, on one core."""
+    by_rate, by_deadline = load.rate_monotonic_bound.value, load.earliest_deadline_bound.value
+    if by_rate is None or by_deadline is None or len(load.parts) < 2:  # noqa: PLR2004 - one alone needs no order
+        return ""
+    rounded_down = Fraction(by_rate * 1000 // 1, 1000)
+    return f"priorities by rate are sure to do up to {wording.share(rounded_down)}, deadlines up to {wording.share(by_deadline)}"
 
 
 def _link_rows(analysis: Analysis) -> Iterator[Row]:
@@ -52,6 +65,12 @@ def _link_rows(analysis: Analysis) -> Iterator[Row]:
         traffic = figure(load.traffic, lambda count: f"{wording.size(count)}/s")
         share = f"{figure(load.share, wording.share)} of it" if load.share.value is not None else "share unknown"
         yield name, traffic, share, without(load.traffic)
+
+
+def _service_rows(analysis: Analysis) -> Iterator[Row]:
+    for name, load in analysis.services.items():
+        many = len(load.callers)
+        yield name, f"{many} caller{'s' if many != 1 else ''}", figure(load.worst), without(load.worst)
 
 
 def _element_rows(analysis: Analysis) -> Iterator[Row]:
@@ -81,8 +100,9 @@ def _faults(analysis: Analysis) -> Iterator[str]:
 def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
     """Give a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
-    yield from table(_term_rows(result.terms))
-    yield ""
+    if result.terms:
+        yield from table(_term_rows(result.terms))
+        yield ""
     rows: list[Row] = [("largest reaction time = largest data age", figure(result.bound), gaps(result))]
     if age != result.bound:
         rows = [("largest reaction time, from the event on", figure(result.bound), gaps(result))]
@@ -98,7 +118,7 @@ def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] 
     if result.deadline:
         rows.append(("deadline", figure(result.deadline), _SIGNS[result.verdict]))
     yield from table(rows)
-    for assumption in result.bound.assumptions:
+    for assumption in result.bound.assumptions if result.terms else ():
         yield f"  assumes: {assumption}"
 
 
@@ -135,7 +155,7 @@ def gaps(result: ChainResult) -> str:
             said.append(f"{what} of {wording.listed(names)} unknown")
     named = {name for term in result.terms for v in (term.sampling, term.response, term.link) for name in v.missing}
     elsewhere = tuple(name for name in result.bound.missing if name not in named)
-    if elsewhere:
+    if elsewhere and result.terms:
         said.append(f"on other ways, figures of {wording.listed(elsewhere)} unknown")
     said += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
     return f"{_basis(result)}no bound: {'; '.join(said)}" if said else "no bound"

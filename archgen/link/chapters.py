@@ -61,10 +61,17 @@ class Chapters:
     texts: Mapping[str, Chapter] = field(default_factory=dict)
     packed: Mapping[str, bytes] = field(default_factory=dict)
     """Pictures that a packed project holds itself."""
+    asked: dict[str, bytes | None] = field(default_factory=dict, compare=False, repr=False)
+    """What was read so far: each picture is read once, and all outputs see the same bytes."""
 
     def picture(self, path: str) -> bytes | None:
         """Read a picture that a chapter shows, by its path in the project; None where there is none inside it."""
         clean = posixpath.normpath(path)
+        if clean not in self.asked:
+            self.asked[clean] = self._picture(clean)
+        return self.asked[clean]
+
+    def _picture(self, clean: str) -> bytes | None:
         if clean in self.packed:
             return self.packed[clean]
         if clean.startswith(("/", "../")) or clean == ".." or "\\" in clean or "\0" in clean:

@@ -124,16 +124,15 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
         sense.no_entry(below, "through", "element", name, references.found)
-        through = (
-            (references.follow(written, _WAY, name), written.at) for written in reading.scalars(below, "through")
-        )
+        through = [(references.follow(one, _WAY, name), one) for one in reading.scalars(below, "through")]
         found[name] = Chain(
             id=name,
             title=reading.title(below, name),
-            through=tuple(Waypoint(e.kind, e.id, at) for e, at in through if e),  # type: ignore[arg-type]
+            through=tuple(Waypoint(e.kind, e.id, one.at) for e, one in through if e),  # type: ignore[arg-type]
             deadline=sense.positive(below, "deadline", "duration", name, references.found),
             requirements=reading.texts(below, "requirements"),
             at=entry.at,
+            unresolved=tuple(one.text for e, one in through if e is None),
         )
     return found
 

@@ -9,6 +9,7 @@ from archgen.diagnostic import Diagnostic
 from archgen.link import reading, sense
 from archgen.link.references import Ports
 from archgen.model.timing import OutputTiming, Timing, Trigger
+from archgen.source import Span
 from archgen.syntax.tree import Entry, Listing, Scalar, Table
 
 _NUMBER_LENGTH = 40
@@ -22,6 +23,7 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         return None
     below = entry.value
     behaviour = reading.text(below, "behaviour")
+    calls = list(_calls(below, ports))
     timing = Timing(
         behaviour=behaviour if behaviour in {"periodic", "event", "on_demand", "once"} else None,  # type: ignore[arg-type]
         period=reading.measure(below, "period", "duration"),
@@ -33,11 +35,11 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         every=reading.whole(below, "every"),
         throttle=reading.measure(below, "throttle", "duration"),
         outputs=dict(_outputs(below, ports, found)),
-        calls=dict(_calls(below, ports)),
+        calls={port: count for port, count, _ in calls},
         priority=reading.whole(below, "priority"),
         core=reading.whole(below, "core"),
         response=reading.measure(below, "response", "duration"),
-        places={e.key: e.value.at for e in below},
+        places={e.key: e.value.at for e in below} | {f"calls {port}": at for port, _, at in calls},
         at=entry.at,
     )
     return sense.sound(timing, ports.owner, found)
@@ -75,12 +77,12 @@ def _outputs(below: Table, ports: Ports, found: list[Diagnostic]) -> Iterator[tu
             yield port, OutputTiming(reading.flag(parts, "conditional"), max_gap, entry.at)
 
 
-def _calls(below: Table, ports: Ports) -> Iterator[tuple[str, Fraction]]:
+def _calls(below: Table, ports: Ports) -> Iterator[tuple[str, Fraction, Span]]:
     for entry in reading.table(below, "calls"):
         port = ports.follow(entry.key, entry.at, "input")
         count = _fraction(entry.value.text) if type(entry.value) is Scalar else None
         if port and count is not None:
-            yield port, count
+            yield port, count, entry.at
 
 
 def _fraction(text: str) -> Fraction | None:

@@ -81,6 +81,8 @@ class Chain:
     deadline: Quantity | None = None
     requirements: tuple[str, ...] = ()
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+    unresolved: tuple[str, ...] = ()
+    """What was written in `through` and names nothing: of such a chain nothing can be said."""
 
 
 @dataclass(frozen=True, slots=True)

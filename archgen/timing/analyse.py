@@ -8,13 +8,13 @@ from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
 from archgen.timing.bounds import all_responses, host_loads
 from archgen.timing.build import system as build
-from archgen.timing.edges import Known, edge_paces, service_loads
+from archgen.timing.edges import Known, edge_paces
 from archgen.timing.paces import paces
 from archgen.timing.placement import resources
-from archgen.timing.propagate import propagate
+from archgen.timing.queueing import settled
+from archgen.timing.services import service_loads
 from archgen.timing.system import System
 from archgen.timing.traffic import link_loads, topic_loads
-from archgen.timing.triggers import triggers
 
 
 def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
@@ -51,8 +51,7 @@ _arc_places = attrgetter("at", "queue_at")
 
 def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: bool = False) -> Analysis:
     """Find all that follows from a system."""
-    firing = triggers(system)
-    state = propagate(system, firing)
+    system, firing, state = settled(system)
     places = resources(system)
     responses = all_responses(state, places)
     found = paces(state, responses)
@@ -63,7 +62,7 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: b
         outputs={(a.id, key): found.outputs[a.id, key] for a in system.activities.values() for key in a.outputs},
         responses=responses,
         hosts=host_loads(system, places, found.of, responses),
-        links=link_loads(state, found.outputs),
+        links=link_loads(state, found),
         topics={} if judging else topic_loads(system, found.outputs),
         edges=edge_paces(known, judging=judging),
         endless=firing.endless,
@@ -74,6 +73,6 @@ def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: b
             if name in state.diverged or "diverged" in responses[name].worst.assumptions
         ),
         derived=found.derived,
-        services=service_loads(known),
+        services=service_loads(state, found.of, responses),
         notes=notes,
     )

@@ -100,14 +100,16 @@ class EdgePace:
 
 @dataclass(frozen=True, slots=True)
 class ServiceLoad:
-    """A server (by activity id): who calls it, and how long K callers wait at most if each waits for its answer, K C, in ns.
+    """A server (by activity id): who calls it, and how long an answer takes at most, in ns: with K callers, one call each
+    and nothing else in the way, K C.
 
-    `synchronous` is what a caller's response becomes where it waits for the answers of one activation: its own R + K C for
-    each of its calls and the links both ways.
+    `waits` is how long one activation of a caller waits if it waits for each answer: for each of its calls the answer and
+    the links both ways. `synchronous` is what its response becomes then: its own R and that.
     """
 
     callers: tuple[str, ...]
     worst: Value
+    waits: Mapping[str, Value]
     synchronous: Mapping[str, Value]
 
 

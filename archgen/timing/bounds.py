@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 from typing import Literal
 
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
@@ -14,12 +15,13 @@ from archgen.timing.sums import times, total, unknown
 from archgen.timing.system import Activity, System
 from archgen.timing.threads import Found
 from archgen.timing.ticks import SECOND
-from archgen.timing.value import Value
+from archgen.timing.value import ZERO, Value
 
 _DIGITS = 10**9
 _LN_2 = Fraction(693_147_180, _DIGITS)
 """The bound for any number of elements, rounded down."""
 _MANY = 64
+_ONE_CORE = Value(None, assumptions=("one core only",))
 Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
 _WORDS = {
     "declared": "declared as the worst case",
@@ -69,7 +71,8 @@ def host_loads(
     """Give the utilisation of every host, place by place."""
     by_host: dict[str, list[Resource]] = {host: [] for host in system.cores}
     for resource in resources:
-        by_host.setdefault(resource.host, []).append(resource)
+        if resource.host is not None:
+            by_host.setdefault(resource.host, []).append(resource)
     return {host: _host(system, host, several, paces, found) for host, several in by_host.items()}
 
 
@@ -93,35 +96,50 @@ def _host(
     return HostLoad(
         utilisation=total(parts.values()),
         cores=cores,
-        rate_monotonic_bound=Value(rate_monotonic_bound(working))
-        if cores == 1
-        else Value(None, assumptions=("one core only",)),
-        verdict=_verdict(loads, working, tuple(parts), paces, found),
+        rate_monotonic_bound=Value(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE,
+        verdict=_verdict(system, loads, tuple(parts), paces, found),
         parts=tuple(parts.items()),
         places=loads,
-        earliest_deadline_bound=Value(Fraction(cores)),
+        earliest_deadline_bound=Value(Fraction(1)) if cores == 1 else _ONE_CORE,
     )
 
 
 def _verdict(
+    system: System,
     loads: tuple[tuple[str, int, Value], ...],
-    working: int,
     members: tuple[str, ...],
     paces: Mapping[str, Pace],
     found: Mapping[str, Response],
 ) -> Verdict:
     if any(_too_much(load, cores) for _, cores, load in loads):
         return "overload"
+    full = any(load.value == cores for _, cores, load in loads)
     if any(not load.complete or load.value is None for _, _, load in loads):
-        return "unknown"
-    if len(loads) == 1 and loads[0][1] == 1 and is_below_bound(loads[0][2].value or Fraction(0), working):
+        return "overload" if full else "unknown"
+    if all(_in_time(paces[name], found[name]) for name in members):
         return "schedulable"
-    return "schedulable" if all(_in_time(paces[name], found[name]) for name in members) else "undecided"
+    if full:
+        return "overload"
+    one_core = len(loads) == 1 and loads[0][1] == 1
+    return "schedulable" if one_core and _below_bound(system, members, loads[0][2], paces) else "undecided"
 
 
 def _too_much(load: Value, cores: int) -> bool:
     unbounded = load.value is None and load.complete
-    return unbounded or (load.value is not None and load.value >= cores)
+    return unbounded or (load.value is not None and load.value > cores)
+
+
+def _below_bound(system: System, members: Iterable[str], load: Value, paces: Mapping[str, Pace]) -> bool:
+    """Say whether priorities by rate are sure to do, and nobody wrote others. Jitter is not in Liu and Layland's bound."""
+    working = [system.activities[name] for name in members if paces[name].rate.value and system.activities[name].wcet]
+    if any(paces[activity.id].jitter != ZERO for activity in working):
+        return False
+    by_rate = sorted(working, key=lambda activity: -(paces[activity.id].rate.value or 0))
+    written = [activity.priority for activity in by_rate]
+    ordered = all(one is not None and two is not None and one > two for one, two in pairwise(written))
+    return (ordered or not any(one is not None for one in written)) and is_below_bound(
+        load.value or Fraction(0), len(working)
+    )
 
 
 def _in_time(pace: Pace, response: Response) -> bool:

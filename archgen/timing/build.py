@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.timing import sizes
 from archgen.timing.activities import activities, key, names, owner
 from archgen.timing.analysis import Reason
 from archgen.timing.arcs import arcs
-from archgen.timing.system import Activity, Arc, System
+from archgen.timing.system import Activity, System, grouped
 from archgen.timing.ticks import ticks
 
 _BYTE = 8
@@ -29,8 +28,8 @@ def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
         tick=unit.tick,
         activities=made,
         arcs=joined,
-        into=_grouped((arc.target, arc) for arc in joined),
-        out_of=_grouped((arc.source, arc) for arc in joined),
+        into=grouped((arc.target, arc) for arc in joined),
+        out_of=grouped((arc.source, arc) for arc in joined),
         external=dict(_external(architecture, made)),
         optional=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
@@ -49,13 +48,6 @@ def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
         sizes=sizes.of_topics(architecture),
     )
     return built, notes
-
-
-def _grouped(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
-    found: dict[str, list[Arc]] = defaultdict(list)
-    for name, arc in pairs:
-        found[name].append(arc)
-    return {name: tuple(several) for name, several in found.items()}
 
 
 def _external(architecture: Architecture, made: Mapping[str, Activity]) -> Iterator[tuple[str, tuple[str, ...]]]:

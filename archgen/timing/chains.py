@@ -11,7 +11,7 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
-from archgen.timing import route
+from archgen.timing import route, wording
 from archgen.timing.analysis import Analysis, ChainResult, Term
 from archgen.timing.network import Aim, Network
 from archgen.timing.paths import Way, Ways, ways
@@ -106,10 +106,11 @@ def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> 
     deadline = Value(asked.deadline.value) if asked.deadline else None
     found = _ways(network, regions, "bound") if regions else None
     way = next(found.best(), None) if found else None
-    if found is None or way is None:
+    if asked.unresolved or found is None or way is None:
         named = tuple(point.id for point in asked.through)
-        return ChainResult(asked.id, named, (), NO_WAY, NO_WAY, NO_WAY, NO_WAY, deadline, "open")
-    bound = _whole(network, found, way, "bound")
+        none = _nameless(asked.unresolved) if asked.unresolved else NO_WAY
+        return ChainResult(asked.id, named, (), none, none, none, none, deadline, "open")
+    bound = _from_event(network, way, _whole(network, found, way, "bound"))
     return ChainResult(
         id=asked.id,
         through=(network.names[way.start], *(network.arcs[at].target for at in way.arcs)),
@@ -121,6 +122,21 @@ def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> 
         deadline=deadline,
         verdict=verdict(bound, deadline),
     )
+
+
+def _nameless(words: tuple[str, ...]) -> Value:
+    return Value(None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words))
+
+
+def _from_event(network: Network, way: Way, bound: Value) -> Value:
+    """Say of a chain that an event starts that its two largest figures differ, by how much."""
+    first = network.names[way.start]
+    if network.steps.analysis.system.activities[first].behaviour not in {"event", "on_demand"}:
+        return bound
+    gap = network.steps.arrivals.gap(first)
+    longer = wording.duration(gap.value) if gap.value is not None and known(gap) else f"unknown for {first}"
+    said = f"the reaction counts from the event that fires {first}; data age is larger by its largest gap ({longer})"
+    return replace(bound, assumptions=(*bound.assumptions, said))
 
 
 def data_age(network: Network, result: ChainResult) -> Value:

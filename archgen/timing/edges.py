@@ -1,17 +1,17 @@
-"""How producers and consumers fit together: samples lost and read again, beats, queues; and services with many callers."""
+"""How producers and consumers fit together: samples lost and read again, beats, queues."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import field, replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import EdgePace, Pace, Response, ServiceLoad
+from archgen.timing.analysis import EdgePace, Pace, Response
 from archgen.timing.propagate import State, arriving
 from archgen.timing.streams import eta
-from archgen.timing.sums import because, times, total, unknown
-from archgen.timing.system import Activity, Arc, System
+from archgen.timing.sums import because, total
+from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
 
@@ -28,8 +28,8 @@ class Known:
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
     """Found once for each reader."""
-    fits: dict[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = field(default_factory=dict)
-    """Loss and reads of each sample, found once for each pair of rates."""
+    fits: dict[tuple[Fraction, Fraction, int], tuple[Fraction, Fraction]] = field(default_factory=dict)
+    """Loss and reads of each sample, found once for each pair of rates and number of messages that are read at once."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -43,7 +43,7 @@ def _judged(system: System, arc: Arc) -> bool:
     """Say whether the rules on lost samples and short queues look at an arc at all."""
     target = system.activities[arc.target]
     return (target.mode == "all" and arc.input in target.triggers) or (
-        arc.depth_written and target.behaviour == "periodic"
+        arc.depth_written and (target.behaviour == "periodic" or fires(system, arc))
     )
 
 
@@ -58,14 +58,14 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
     if known.state.system.activities[arc.source].behaviour == "once":
         return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
     if fires(known.state.system, arc):
-        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
+        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, _queue(known, arc))
     sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
         return EdgePace(arc, why, why, why, _queue(known, arc))
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
         return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
-    rates = sent.value, read.value
+    rates = sent.value, read.value, _at_once(known, arc)
     fit = known.fits.get(rates)
     if fit is None:
         fit = known.fits[rates] = _fit(*rates)
@@ -73,10 +73,29 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
     return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
 
 
-def _fit(sent: Fraction, read: Fraction) -> tuple[Fraction, Fraction]:
+def _fit(sent: Fraction, read: Fraction, at_once: int) -> tuple[Fraction, Fraction]:
     """Give the share of samples that is lost, and how often each is read."""
     each = read / sent if sent else Fraction(1)
-    return max(1 - each, Fraction(0)), max(each, Fraction(1))
+    return max(1 - at_once * each, Fraction(0)), max(each, Fraction(1))
+
+
+def _at_once(known: Known, arc: Arc) -> int:
+    """Give how many messages a reader takes at a time: only the newest, or all of a queue that somebody asked for."""
+    polls = known.state.system.activities[arc.target].behaviour == "periodic"
+    return arc.depth if polls and arc.depth_written and arc.depth else 1
+
+
+def _dropped(known: Known, arc: Arc) -> Value:
+    """Give the share of triggers that `every` and `throttle` leave out."""
+    system = known.state.system
+    target = system.activities[arc.target]
+    if not target.throttle:
+        return ZERO if target.every == 1 else Value(1 - Fraction(1, target.every))
+    firing = [a for a in system.into.get(target.id, ()) if a.role == "data" and fires(system, a)]
+    sent, read = total(known.outputs[a.source, a.output].rate for a in firing), known.paces[target.id].rate
+    if not sent.value or read.value is None or not (sent.complete and read.complete):
+        return _either(sent, read) if sent.value is None or read.value is None else ZERO
+    return _like(max(1 - read.value / sent.value, Fraction(0)), sent, read)
 
 
 def _either(sent: Value, read: Value) -> Value:
@@ -121,33 +140,3 @@ def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: 
         return replace(waiting, value=None, side="exact")
     (above, below), tick = waiting.value.as_integer_ratio(), known.state.system.tick
     return max(-(-above * tick.denominator // (below * tick.numerator)), 1)
-
-
-def service_loads(known: Known) -> dict[str, ServiceLoad]:
-    """Give for each server how long its callers wait, each for one call."""
-    system = known.state.system
-    calls: dict[str, list[Arc]] = {}
-    for arc in system.arcs:
-        if arc.role == "request":
-            calls.setdefault(arc.target, []).append(arc)
-    return {server: _service(known, system.activities[server], arcs) for server, arcs in calls.items()}
-
-
-def _service(known: Known, server: Activity, arcs: Iterable[Arc]) -> ServiceLoad:
-    system = known.state.system
-    callers = tuple(dict.fromkeys(arc.source for arc in arcs))
-    once = unknown(server.id) if server.wcet is None else Value(server.wcet * system.tick)
-    if server.response is not None:
-        once = Value(server.response * system.tick, assumptions=("assumed",))
-    worst = times(once, len(callers))
-    synchronous = {arc.source: _waiting(known, worst, arc) for arc in arcs}
-    return ServiceLoad(callers, worst, synchronous)
-
-
-def _waiting(known: Known, worst: Value, arc: Arc) -> Value:
-    """Give a caller's response where it waits for the answers that one activation asks for."""
-    system = known.state.system
-    calls = system.activities[arc.source].calls.get(arc.output, Fraction(1))
-    number = -(-calls.numerator // calls.denominator)
-    way = unknown(arc.link or arc.source) if arc.worst is None else Value(2 * arc.worst * system.tick)
-    return total((known.responses[arc.source].worst, times(worst, number), times(way, number)))

@@ -50,8 +50,9 @@ def _arriving(found: Paces, arc: Arc) -> Beat:
 def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> tuple[Beat, list[Reason]]:
     """Give what arrives at an input: any of its sources fires it."""
     beats = [_arriving(found, arc) for arc in arcs]
+    twice = len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
-        Reason(f"{key} brings {told(rate, 'Hz')} from {arc.source}", arc.at)
+        Reason(f"{key} brings {told(rate, 'Hz')} from {arc.source}{f' on {arc.topic}' if twice else ''}", arc.at)
         for arc, (rate, _) in zip(arcs, beats, strict=True)
     ]
     if not arcs or key in found.state.system.external.get(activity.id, ()):

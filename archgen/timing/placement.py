@@ -21,7 +21,7 @@ class Resource:
     """Cores that some units share. `foreign` are units that are analysed elsewhere, and may run here."""
 
     id: str
-    host: str
+    host: str | None
     cores: int
     units: tuple[Unit, ...]
     foreign: tuple[Unit, ...] = ()
@@ -34,12 +34,35 @@ class Resource:
 
 
 def resources(system: System) -> tuple[Resource, ...]:
-    """Give the cores of all hosts. What has no host has a core of its own, and stands in none of them."""
+    """Give the cores of all hosts, then those of containers without one.
+
+    What has neither has a core of its own, and stands in none of them; so has each thread of a container without a host.
+    """
     by_host: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():
         if activity.host is not None:
             by_host[activity.host].append(activity)
-    return tuple(one for host, members in by_host.items() for one in _of_host(system, host, members))
+    on_hosts = (one for host, members in by_host.items() for one in _of_host(system, host, members))
+    return (*on_hosts, *_of_threads(system))
+
+
+def homeless(system: System) -> dict[str, list[Activity]]:
+    """Give the members of each container without a host that has fewer threads than members."""
+    found: dict[str, list[Activity]] = defaultdict(list)
+    for activity in system.activities.values():
+        if activity.host is None and activity.container is not None:
+            found[activity.container].append(activity)
+    return {
+        name: members for name, members in found.items() if len(members) > (system.threads.get(name) or len(members))
+    }
+
+
+def _of_threads(system: System) -> Iterable[Resource]:
+    for name, members in homeless(system).items():
+        threads = system.threads.get(name) or 1
+        units = (tuple(one.id for one in members),) if threads == 1 else tuple((one.id,) for one in members)
+        said = f"assuming {'a dedicated core' if threads == 1 else f'{threads} dedicated cores'} for container {name}"
+        yield Resource(name, None, threads, units, assumptions=(said,))
 
 
 def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable[Resource]:
@@ -50,8 +73,8 @@ def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable
         return (Resource(host, host, 1, tuple(units), assumptions=said),)
     pinned: dict[int, list[Unit]] = defaultdict(list)
     loose: list[Unit] = []
-    for unit, core in units.items():
-        (loose if core is None else pinned[core]).append(unit)
+    for unit, core in units.items():  # what is pinned to a core that is not there may run anywhere
+        (loose if core is None or core >= cores else pinned[core]).append(unit)
     return _shared(host, cores, pinned, tuple(loose))
 
 

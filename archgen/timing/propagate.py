@@ -13,7 +13,7 @@ from fractions import Fraction
 from archgen.timing.placement import Resource, resources
 from archgen.timing.response import Effort, alone, responses
 from archgen.timing.rings import components
-from archgen.timing.streams import Stream, Streams, all_of, called, every, late, throttled, together, written
+from archgen.timing.streams import Stream, Streams, all_of, apart, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
 from archgen.timing.threads import DIVERGED, Found
 from archgen.timing.triggers import Triggers, states_itself
@@ -22,6 +22,8 @@ from archgen.timing.windows import Budget
 
 _SWEEPS = 300
 _ONCE = Fraction(1)
+_LATER = {"overload": "unbounded"}
+"""What an overload is to those who read what comes out of it."""
 
 
 @dataclass(slots=True)
@@ -245,11 +247,14 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
     if response.value is None:
-        return response.cause
+        return Cause(response.cause.missing, tuple(_LATER.get(note, note) for note in response.cause.notes))
     if arc.worst is None:
         return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
     best = 0 if from_start else source.bcet or 0
-    return late(events, max(response.value - best, 0) + arc.worst - (arc.best or 0))
+    done = late(events, max(response.value - best, 0))
+    if source.response is None:  # what is only declared may rest on several cores at once
+        done = apart(done, best)
+    return late(done, arc.worst - (arc.best or 0))
 
 
 def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:

@@ -1,6 +1,7 @@
 """Response times on one resource, by the tiers: any scheduler, fixed priorities, executor, several cores.
 
-Utilisation of one or more on a core is overload. Nothing is ever given that rests on a figure nobody wrote.
+Utilisation of one or more on a core is overload; with fixed priorities exactly one is bearable where all is strictly
+periodic (Burns and Wellings' process set C). Nothing is ever given that rests on a figure nobody wrote.
 """
 
 from __future__ import annotations
@@ -54,6 +55,8 @@ def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
         return Found(None, "dedicated", DIVERGED)
 
 
+_MOST_JOBS = 20_000
+"""Jobs in one round of a core that is busy all the time."""
 _Threads = tuple[Sequence[Thread], Sequence[Thread]]
 """Those of a resource, and the foreign ones."""
 
@@ -103,7 +106,9 @@ def _one_core(
     for thread in wanted:
         if whole is not None and thread.low is None:
             only = len(everything) == 1 and len(thread.unit) > 1
-            yield thread, whole._replace(tier="executor") if only else whole
+            once = sum(work.cost for work in thread.works if not work.streams)
+            found = _any_order(everything, budget, once) if once and whole.value is not None else whole
+            yield thread, found._replace(tier="executor") if only else found
     above: Found | None = None
     for thread in sorted((t for t in wanted if t.low is not None), key=lambda t: -(t.low or 0)):
         above = _by_priority(thread, ranked, budget, above)
@@ -153,8 +158,8 @@ def _rank(thread: Thread) -> int:
     return -(thread.high or 0)
 
 
-def _any_order(threads: Sequence[Thread], budget: Budget) -> Found:
-    """Bound the response under any scheduler that never idles: the longest busy period."""
+def _any_order(threads: Sequence[Thread], budget: Budget, once: int = 0) -> Found:
+    """Bound the response under any scheduler that never idles: the longest busy period, with what works `once` on top."""
     if added(thread.share for thread in threads) >= 1:
         return Found(None, "host", OVERLOAD)
     causes = [thread.cause for thread in threads if thread.cause]
@@ -162,7 +167,7 @@ def _any_order(threads: Sequence[Thread], budget: Budget) -> Found:
         return Found(None, "host", united(causes))
     try:
         whole = Load(work for thread in threads for work in thread.works)
-        return Found(busy(whole.demand(), budget), "host")
+        return Found(busy(together(whole.demand(), Demand(lambda _: once)), budget, once), "host")
     except DivergedError:
         return Found(None, "host", DIVERGED)
 
@@ -174,7 +179,8 @@ def _by_priority(thread: Thread, ranked: _Ranked, budget: Budget, above: Found |
     """
     count = ranked.down_to(thread.low or 0)
     tier: Tier = "priorities" if len(thread.unit) == 1 else "executor"
-    if ranked.share(count) >= 1:
+    share = ranked.share(count)
+    if share > 1 or (share == 1 and not _comes_to_rest(ranked.threads[:count])):
         return Found(None, tier, OVERLOAD)
     cause = ranked.cause(count)
     if cause is not None:
@@ -189,6 +195,16 @@ def _by_priority(thread: Thread, ranked: _Ranked, budget: Budget, above: Found |
         return Found(whole, tier)
     except DivergedError:
         return Found(None, tier, DIVERGED)
+
+
+def _comes_to_rest(level: Iterable[Thread]) -> bool:
+    """Say whether work that takes all of a core is done at the end of each common multiple of the periods, and when."""
+    works = [work for thread in level for work in thread.works if work.cost]
+    streams = [stream for work in works for stream in work.streams]
+    if any(stream.jitter or stream.distance or stream.number != 1 for stream in streams):
+        return False
+    whole = lcm(*(stream.period for stream in streams))
+    return sum(whole // stream.period for stream in streams) <= _MOST_JOBS
 
 
 def _several(

@@ -15,9 +15,17 @@ from archgen.source import Span
 from archgen.timing import wording
 from archgen.timing.analysis import Analysis
 from archgen.timing.arrivals import Arrivals
+from archgen.timing.selective import selective
 from archgen.timing.sums import UNBOUNDED, bounded, known, nameless
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
+
+_SENT = {
+    "data": "{0} publishes {1} for this very input",
+    "request": "{0} calls {1} in this very activation",
+    "answer": "{0} answers {2} on {1} in this very activation",
+}
+"""What is assumed of an activity that does not send at each activation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +86,13 @@ class Steps:
         gap = self.arrivals.sent_gap(arc)
         if not self.arrivals.fires(arc):
             return gap
+        late = self.arrivals.time(reader.jitter) if arc.role == "data" else ZERO
         if self.arrivals.waits_for_all(reader):
             options = [value for value in (gap, self.arrivals.others(reader, arc)) if known(value)]
-            return min(options, key=lambda value: value.value or Fraction(0)) if options else gap
-        return ZERO if self.arrivals.sole(arc) else gap
+            waited = min(options, key=lambda value: value.value or Fraction(0)) if options else gap
+        else:
+            waited = ZERO if self.arrivals.sole(arc) else gap
+        return waited if late is ZERO else bounded((waited, late))
 
     def response(self, name: str, *, worst: bool = True) -> Value:
         """Give R, the largest response time, or the smallest."""
@@ -105,12 +116,18 @@ class Steps:
 
     def _linked(self, arc: Arc, ticks: int, *, worst: bool) -> Value:
         value = self.arrivals.time(ticks)
+        if worst and arc.link in self.analysis.system.queued:
+            return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
         load = self.analysis.links.get(arc.link or "")
         queueing = load.queueing.value if load and worst else None
         if not queueing:
             return value
-        covered = f"queueing on link {arc.link} (up to {wording.duration(queueing)}) is within its latency"
-        return replace(value, assumptions=(covered,))
+        waits = wording.duration(queueing)
+        if value.value is not None and queueing > value.value:
+            said = f"link {arc.link} keeps its written latency, though {waits} of traffic can wait for it"
+        else:
+            said = f"queueing on link {arc.link} (up to {waits}) is within its latency"
+        return replace(value, assumptions=(said,))
 
     def _unlinked(self, arc: Arc) -> tuple[str, ...]:
         """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
@@ -133,17 +150,13 @@ class Steps:
 
     def _condition(self, arc: Arc) -> Value:
         """Give what an output adds that is not published each time: its promised gap, or the assumption that it is."""
-        source = self.analysis.system.activities[arc.source]
-        if arc.role == "request":
-            if source.calls.get(arc.output, 1) >= 1:
-                return ZERO
-            return Value(Fraction(0), assumptions=(f"{arc.source} calls {arc.topic} in this very activation",))
-        if arc.output not in source.conditional:
+        system = self.analysis.system
+        if selective(system, arc):
+            return Value(Fraction(0), assumptions=(_SENT[arc.role].format(arc.source, arc.topic, arc.target),))
+        source = system.activities[arc.source]
+        if arc.role != "data" or arc.output not in source.conditional:
             return ZERO
-        promised = source.max_gaps.get(arc.output)
-        if promised is not None:
-            return self.arrivals.time(promised)
-        return Value(Fraction(0), assumptions=(f"{arc.source} publishes {arc.topic} for this very input",))
+        return self.arrivals.time(source.max_gaps[arc.output])
 
 
 def _strange(activity: Activity) -> Delay:

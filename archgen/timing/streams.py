@@ -77,6 +77,13 @@ def late(streams: Streams, more: int) -> Streams:
     return tuple(s._replace(jitter=s.jitter + more, distance=max(s.distance - more, 0)) for s in streams)
 
 
+def apart(streams: Streams, least: int) -> Streams:
+    """Keep events apart that would come together: an activity takes its best case at least from one end to the next."""
+    if not least or len(streams) != 1 or streams[0].spacing or streams[0].size != 1:
+        return streams
+    return (streams[0]._replace(distance=least),)
+
+
 def together(streams: Iterable[Stream]) -> Streams:
     """Lay streams beside one another; too many are made one."""
     found = tuple(streams)
@@ -116,9 +123,9 @@ def all_of(inputs: Sequence[Streams], *, complete: bool) -> Streams:
     if (
         complete
         and len({(one.period, one.number, one.size) for one in ones}) == 1
-        and not any(one.distance for one in ones)
+        and all(one.distance <= one.period for one in ones)
     ):
-        return (calmest._replace(jitter=max(one.jitter for one in ones)),)
+        return (calmest._replace(jitter=max(one.jitter for one in ones), distance=0),)
     extra = -(-calmest.period // calmest.number)
     spacing = min(one.spacing for one in ones) if complete else 0
     return (calmest._replace(jitter=calmest.jitter + extra, distance=spacing),)

@@ -5,7 +5,8 @@ All durations are integers of one unit for each project (`System.tick`, in ns): 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
 from typing import Literal
@@ -111,3 +112,13 @@ class System:
     """Who publishes on each topic: activities and output keys."""
     sizes: Mapping[str, int | None] = field(default_factory=dict)
     """Bytes of a message on each topic."""
+    queued: frozenset[str] = frozenset()
+    """Links whose latency nobody wrote: it was computed from bandwidth and traffic."""
+
+
+def grouped(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
+    """Gather arcs by one of their ends."""
+    found: dict[str, list[Arc]] = defaultdict(list)
+    for name, arc in pairs:
+        found[name].append(arc)
+    return {name: tuple(several) for name, several in found.items()}

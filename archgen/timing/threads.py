@@ -39,9 +39,11 @@ def work_of(system: System, name: str, events: Events, known: Mapping[str, Found
     cost, streams = system.activities[name].wcet, events[name]
     if cost == 0:
         return Work(0, () if isinstance(streams, Cause) else streams)
-    if cost is None or isinstance(streams, Cause):
-        unwritten = Cause((name,)) if cost is None else Cause()
-        return united((unwritten, streams)) if isinstance(streams, Cause) else unwritten
+    if cost is None:  # that what fires it comes at any time says nothing of how long it takes
+        late = Cause(streams.missing) if isinstance(streams, Cause) else Cause()
+        return united((Cause((name,)), late))
+    if isinstance(streams, Cause):
+        return streams
     found = known.get(name)
     return Work(cost, streams, (found.value or 0) if found else 0)
 
@@ -61,7 +63,9 @@ class Thread:
 
 def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> Thread:
     """Lay the work of a unit together."""
-    found = [work_of(system, name, events, known) for name in unit]
+    # What never fires, or only at the start, is in nobody's way, even if nobody knows how long it takes.
+    idle = {name for name in unit if events[name] == () and system.activities[name].wcet is None}
+    found = [Work(0, ()) if name in idle else work_of(system, name, events, known) for name in unit]
     causes = [one for one in found if isinstance(one, Cause)]
     works = tuple(one for one in found if isinstance(one, Work))
     priorities = [system.activities[name].priority for name in unit]

@@ -61,6 +61,8 @@ def _durations(architecture: Architecture) -> Iterator[Fraction]:
             yield from _of_timing(timing)
     for link in architecture.links.values():
         yield from _values((link.best, link.worst))
+        if link.bandwidth is not None and link.bandwidth.value:
+            yield 8 * SECOND / link.bandwidth.value  # a byte: what waits in front of a link is counted in these
 
 
 def _of_timing(timing: Timing) -> Iterator[Fraction]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from heapq import merge
 
 from archgen.timing.analysis import LinkLoad, Pace, TopicLoad
-from archgen.timing.propagate import State, arriving
+from archgen.timing.pacing import Paces
+from archgen.timing.propagate import State
+from archgen.timing.queueing import longest
+from archgen.timing.sending import sent
 from archgen.timing.streams import Streams, arrivals, eta
-from archgen.timing.sums import UNBOUNDED, times, total, unknown
+from archgen.timing.sums import UNBOUNDED, because, times, total, unknown
 from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
@@ -48,29 +50,34 @@ def _bytes(name: str, size: int | None, rates: Iterable[Value]) -> Value:
     return unknown(name) if size is None else times(rate, size)
 
 
-def link_loads(state: State, outputs: Outputs) -> dict[str, LinkLoad]:
-    """Give the traffic of each link. Each reader on another host has its own copy sent."""
+def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
+    """Give the traffic of each link. Each reader on another host has its own copy sent; calls and answers count as well."""
     crossing: dict[str, list[Arc]] = {link: [] for link in state.system.bandwidths}
     for arc in state.system.arcs:
-        if arc.link is not None and arc.role == "data":
+        if arc.link is not None:
             crossing[arc.link].append(arc)
-    return {link: _link(state, link, arcs, outputs) for link, arcs in crossing.items()}
+    return {link: _link(state, link, arcs, found) for link, arcs in crossing.items()}
 
 
-def _link(state: State, link: str, arcs: Sequence[Arc], outputs: Outputs) -> LinkLoad:
-    by_topic: dict[str, list[Arc]] = defaultdict(list)
+def _link(state: State, link: str, arcs: Sequence[Arc], found: Paces) -> LinkLoad:
+    by_topic: dict[str, list[Value]] = defaultdict(list)
     for arc in arcs:
-        by_topic[arc.topic].append(arc)
-    parts = {
-        topic: _bytes(topic, several[0].size, (outputs[arc.source, arc.output].rate for arc in several))
-        for topic, several in by_topic.items()
-    }
+        by_topic[arc.topic].append(_bytes(arc.topic, arc.size, (_rate(found, arc),)))
+    parts = {topic: total(several) for topic, several in by_topic.items()}
     traffic = total(parts.values())
     bandwidth = state.system.bandwidths[link]
     share = times(traffic, 1 / bandwidth) if bandwidth else unknown(link)
-    burst = _burst(state, arcs, bandwidth)
-    queueing = times(burst, SECOND / bandwidth) if bandwidth else unknown(link)
-    return LinkLoad(traffic, share, burst, queueing, tuple(parts.items()))
+    waits = longest(state, link, arcs)
+    queueing = because(waits) if isinstance(waits, Cause) else Value(waits * state.system.tick)
+    return LinkLoad(traffic, share, _burst(state, arcs, bandwidth), queueing, tuple(parts.items()))
+
+
+def _rate(found: Paces, arc: Arc) -> Value:
+    """Give how often something is sent: an answer as often as its client asks."""
+    if arc.role == "data":
+        return found.outputs[arc.source, arc.output].rate
+    client, asked = (arc.source, arc.output) if arc.role == "request" else (arc.target, arc.input)
+    return times(found.of[client].rate, found.state.system.activities[client].calls.get(asked, Fraction(1)))
 
 
 def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Value:
@@ -78,11 +85,11 @@ def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Val
     missing: dict[str, None] = {}
     known: list[tuple[int, Streams]] = []
     for arc in arcs:
-        events = arriving(state, replace(arc, link=None, best=0, worst=0), state.events[arc.source])
+        events = sent(state, arc)
         if isinstance(events, Cause):
             missing |= dict.fromkeys(events.missing or (arc.source,))
         elif arc.size is None:
-            missing[arc.topic] = None
+            missing |= dict.fromkeys((arc.topic,) if events else ())
         else:
             known.append((arc.size, events))
     if missing or bandwidth is None:

@@ -23,7 +23,10 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A row of a chart: a title, a bar that begins at `start`, and its figure at the right. `mark` is a tick on it."""
+    """A row of a chart: a title, a bar that begins at `start`, and its figure at the right. `mark` is a tick on it.
+
+    What is `around` belongs to the sum but not to the part that is shown: its texts are grey.
+    """
 
     title: str
     stretches: tuple[Stretch, ...]
@@ -32,6 +35,7 @@ class Bar:
     mark: float | None = None
     strong: bool = False
     ref: str | None = None
+    around: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,9 @@ from archgen.views.index import Index
 def drawings(
     view: Index, selection: Selection | None, level: Literal["functional", "implementation"]
 ) -> dict[str, Drawing]:
-    """Make the drawings of one level, or of a part. Charts are of the whole, so a part has none."""
+    """Make the drawings of one level, or of a part: of charts those that it has a share in."""
     made = graphs.all_graphs(view.architecture, selection, view.findings, view.timed)
-    bars = charts.all_charts(view) if selection is None else ()
+    bars = charts.all_charts(view)
     found: dict[str, Drawing] = {graph.id: graph for graph in made} | {chart.id: chart for chart in bars}
     return found if level == "implementation" else {name: one for name, one in found.items() if not _is_low(name)}
 

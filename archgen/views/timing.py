@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from archgen.source import Span
 from archgen.timing.analysis import Pace
 from archgen.timing.system import Activity
-from archgen.views import charts, figures, paces, words
+from archgen.views import figures, loads, paces, words
 from archgen.views.index import Index
 from archgen.views.shapes import (
-    Block,
-    Bullets,
     Column,
     Inlines,
-    Paragraph,
     Table,
     Text,
     without_empty_columns,
@@ -31,6 +26,8 @@ TIERS = {
     "cores": "several cores",
     "unknown": "",
 }
+_SHORT = {**TIERS, "declared": "declared", "dedicated": "own core", "host": "any scheduler", "priorities": "priorities"}
+"""As a table of all activities says it, where each line more makes a page more."""
 _VERDICTS = {
     "schedulable": "in time",
     "overload": "overloaded",
@@ -43,35 +40,6 @@ _QUIET = Text("unknown", muted=True)
 def figure(text: str) -> Inlines:
     """Write a figure; what is unknown is muted."""
     return (_QUIET,) if text == figures.UNKNOWN else words.text(text) if text else ()
-
-
-def summary(view: Index, timed: Timed) -> Paragraph:
-    """Say in a few sentences how the architecture stands."""
-    found = timed.analysis.paces.values()
-    known = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in found)
-    said = [f"Of {words.plural(len(found), 'activity')}, {known} have a known rate or run on demand or once."]
-    if timed.chains:
-        counts = [(name, sum(result.verdict == name for result in timed.chains)) for name in ("met", "missed", "open")]
-        told = ", ".join(f"{count} {name}" for name, count in counts if count)
-        said.append(f"Of {words.plural(len(timed.chains), 'chain')} of effect: {told}.")
-    over = [view.architecture.hosts[h].title for h, load in timed.analysis.hosts.items() if load.verdict == "overload"]
-    said += [f"Overloaded: {', '.join(over)}."] if over else []
-    said.append("All bounds are safe for the figures written; what they rest on beside them stands with each.")
-    return Paragraph(words.text(" ".join(said)))
-
-
-def troubles(timed: Timed) -> Iterator[Block]:
-    """List the rings of triggers that never end or never start, and what has no fixed point."""
-    found = timed.analysis
-    kinds = (
-        ("An event that enters circulates for ever among", found.endless),
-        ("Each waits for the other, and none ever starts:", found.deadlocked),
-        ("No bound was found, since each step made the next one larger:", tuple((name,) for name in found.diverged)),
-    )
-    for lead, rings in kinds:
-        if rings:
-            yield Paragraph(words.text(lead), "error")
-            yield Bullets(tuple(words.joined((named(timed, name) for name in ring), " → ") for ring in rings))
 
 
 def steps(view: Index, timed: Timed) -> Table | None:
@@ -122,7 +90,7 @@ def _element(timed: Timed, activity: Activity, origin: tuple[str, ...]) -> tuple
         figure(figures.duration(pace.gap)) if pace.behaviour not in {"on_demand", "once"} else (),
         source(timed, activity, pace, origin),
         figure(figures.duration(response.worst)) if response else (_QUIET,),
-        words.text(TIERS[response.tier]) if response and TIERS[response.tier] else (),
+        words.text(_SHORT[response.tier]) if response and _SHORT[response.tier] else (),
     )
 
 
@@ -160,8 +128,9 @@ def hosts(view: Index, timed: Timed) -> Table | None:
         (
             words.text(Text(view.architecture.hosts[name].title, ref=f"host:{name}")),
             words.text(str(load.cores)),
-            figure(figures.share(charts.of_cores(load.utilisation, load.cores))),
+            figure(figures.share(loads.of_cores(load.utilisation, load.cores))),
             figure(figures.share(load.rate_monotonic_bound)) if load.cores == 1 else (),
+            figure(figures.share(load.earliest_deadline_bound)) if load.cores == 1 else (),
             words.text(_VERDICTS[load.verdict]),
             words.text(figures.missing(load.utilisation, timed.analysis, 3)),
         )
@@ -172,10 +141,11 @@ def hosts(view: Index, timed: Timed) -> Table | None:
         Column("Cores", 0.5, "right"),
         Column("Load of all cores", 0.9, "right"),
         Column("Rate-monotonic bound", 0.8, "right"),
+        Column("Earliest-deadline bound", 0.8, "right"),
         Column("Verdict", 1.1),
         Column("Missing", 1.6),
     )
-    return _tidy(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
+    return tidy(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
 
 
 def links(view: Index, timed: Timed) -> Table | None:
@@ -199,7 +169,7 @@ def links(view: Index, timed: Timed) -> Table | None:
         Column("Longest queueing", 0.9, "right"),
         Column("Missing", 1.5),
     )
-    return _tidy(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
+    return tidy(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
 
 
 def topics(view: Index, timed: Timed) -> Table | None:
@@ -229,32 +199,8 @@ def _shown(view: Index, name: str) -> bool:
     return any(view.scope.node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
 
 
-def chains(view: Index, timed: Timed) -> Table | None:
-    """List chains with bound, best case and verdict."""
-    rows = tuple(
-        (
-            words.text(Text(view.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-            figure(figures.duration(result.bound)),
-            figure(figures.least(result.best)),
-            figure(figures.duration(result.deadline)) if result.deadline else (),
-            words.text(Text(result.verdict, strong=result.verdict != "met")),
-            words.text(figures.missing(result.bound, timed.analysis, 3)),
-        )
-        for result in timed.chains
-        if result.id in view.architecture.chains
-    )
-    columns = (
-        Column("Chain", 1.6),
-        Column("At the latest", 0.9, "right"),
-        Column("At the earliest", 0.9, "right"),
-        Column("Deadline", 0.8, "right"),
-        Column("Verdict", 0.7),
-        Column("Missing", 1.6),
-    )
-    return _tidy(Table("table:chains", "Chains of effect: bounds and deadlines", columns, rows)) if rows else None
-
-
-def _tidy(table: Table) -> Table:
+def tidy(table: Table) -> Table:
+    """Leave out columns in which nothing stands."""
     rows = tuple(tuple(() if blank(cell) else cell for cell in row) for row in table.rows)
     return without_empty_columns(Table(table.anchor, table.caption, table.columns, rows))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.views import tables, timing, timing_of, words
+from archgen.views import tables, timing, timing_between, timing_of, timing_verdicts, words
 from archgen.views.bars import Drawing
 from archgen.views.index import Index
 from archgen.views.shapes import Block, Figure, Paragraph, Section
@@ -23,6 +23,8 @@ def sections(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[S
     found = (
         Section("timing:groups", "Group by group", groups),
         Section("timing:rates", "Rates and responses", _present(timing.elements(view, timed))),
+        Section("timing:edges", "Where rates differ", tuple(timing_between.edges(view, timed))),
+        Section("timing:services", "Services", tuple(timing_between.services(view, timed))),
         Section("timing:hosts", "Load of the hosts", (*loads, *_present(timing.hosts(view, timed)))),
         Section(
             "timing:network",
@@ -36,14 +38,20 @@ def sections(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[S
 def blocks(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[Block, ...]:
     """Give the summary with the picture of the whole."""
     table = _present(timing.steps(view, timed))
-    return (timing.summary(view, timed), *timing.troubles(timed), *table, *figures(drawn, "timing"))
+    return (
+        timing_verdicts.summary(timed),
+        *timing_verdicts.late(view, timed),
+        *timing_verdicts.troubles(timed),
+        *table,
+        *figures(drawn, "timing"),
+    )
 
 
 def chain_blocks(view: Index) -> tuple[Block, ...]:
     """Give the table of all chains, with their bounds where timing found them."""
     table = tables.chains(view, view.architecture.chains.values())
     if view.timed is not None and view.timed.chains:
-        table = timing.chains(view, view.timed)
+        table = timing_verdicts.chains(view, view.timed)
     lead = Paragraph(words.text("From what the robot senses to what it does, with the time that it may take."))
     return (lead, table) if table else ()
 

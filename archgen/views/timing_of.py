@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
-from archgen.timing.analysis import ChainResult
+from archgen.timing.analysis import ChainResult, Tier
 from archgen.timing.system import Activity
 from archgen.timing.value import Value
-from archgen.views import charts, figures, paces, timing, words
+from archgen.views import charts, figures, loads, paces, timing, words
 from archgen.views.index import Index
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
 from archgen.views.timed import Timed
@@ -47,14 +47,16 @@ def chain_blocks(view: Index, timed: Timed, result: ChainResult) -> tuple[Block,
 
 
 def _assumed(timed: Timed, result: ChainResult) -> Iterator[str]:
-    """Give what a bound rests on, in words; the tiers of the responses say most of it."""
-    yield from (word for word in result.bound.assumptions)
-    tiers: dict[str, list[str]] = {}
+    """Give what a bound rests on, in words; what the tiers of the responses say with names is not said again without."""
+    tiers: dict[Tier, list[str]] = {}
     for term in result.terms:
         response = timed.analysis.responses.get(term.activity)
         if response and response.tier in {"declared", "dedicated"}:
-            tiers.setdefault(timing.TIERS[response.tier], []).append(term.activity)
-    yield from (f"{tier}: {', '.join(dict.fromkeys(names))}" for tier, names in tiers.items())
+            tiers.setdefault(response.tier, []).append(term.activity)
+    said = {f"the response of {name} is as declared" for name in tiers.get("declared", ())}
+    said |= {"assuming a dedicated core"} if "dedicated" in tiers else set()
+    yield from (word for word in result.bound.assumptions if word not in said)
+    yield from (f"{timing.TIERS[tier]}: {', '.join(dict.fromkeys(names))}" for tier, names in tiers.items())
 
 
 def _term(timed: Timed, result: ChainResult, at: int) -> tuple[Inlines, ...]:
@@ -117,7 +119,7 @@ def host_blocks(view: Index, host: str) -> tuple[Block, ...]:
     if load is None or not load.parts:
         return ()
     title = f"{view.architecture.hosts[host].title}: load by activity"
-    return (Figure(f"figure:load/{host}", f"load/{host}", title, charts.load_verdict(load)),)
+    return (Figure(f"figure:load/{host}", f"load/{host}", title, loads.load_verdict(load)),)
 
 
 def topic_facts(view: Index, name: str) -> list[tuple[str, Inlines]]:

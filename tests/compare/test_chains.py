@@ -89,6 +89,21 @@ def test_a_finding_that_moved_or_follows_a_rename_is_the_same(compared: Compared
     assert said(compared, unread, renamed.replace("[a, b]", "[camera, b]")) == ([], [])
 
 
+def test_a_finding_that_was_silenced_is_not_cured(compared: Compared) -> None:
+    unread = ROBOT.replace("a: {outputs: {x: sensor_msgs/msg/Image}}", "a: {outputs: {x: sensor_msgs/msg/Image, y: T}}")
+    for quiet in (
+        unread.replace("y: T}}", "y: T}} # archgen: ignore[unread-output] later"),
+        unread + "rules: {unread-output: off}\n",
+    ):
+        found = compared(unread, quiet)
+        assert [d.rule for d in found.silenced] == ["unread-output"]
+        assert (found.new, found.cured) == ((), ())
+        assert not found.empty
+        back = compared(quiet, unread)
+        assert [d.rule for d in back.new] == ["unread-output"]
+        assert (back.cured, back.silenced) == ((), ())
+
+
 def test_a_finding_with_another_figure_is_the_same(compared: Compared) -> None:
     late = ROBOT.replace("300 ms", "50 ms")
     assert said(compared, ROBOT, late) == (["late-chain see"], [])

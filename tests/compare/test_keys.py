@@ -37,6 +37,7 @@ project: {id: robot, title: Robot}
         ("wcet: 2 ms", "wcet: 3 ms", "component g.a", "timing.wcet", "2 ms", "3 ms", None),
         ("host: pc\n    p", "host: arm\n    p", "node na", "host", "pc", "arm", "node `na` now runs on `arm` instead of `pc`"),
         ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` now belongs to `sssa` instead of `certh`"),
+        ("owner: certh", "owner: [certh, sssa]", "group g", "co_owners", None, ["sssa"], "group `g`: further owners `sssa` added"),
         ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "`g.b`: functionality `Does it.` → `Does that.`"),
         ("cores: 4", "cores: 2", "host pc", "cores", 4, 2, "host `pc`: cores 4 → 2"),
         ("threads: 1", "threads: 2", "container box", "threads", 1, 2, "container `box`: threads 1 → 2"),
@@ -85,6 +86,21 @@ def test_a_type_at_a_port_names_the_readers(told: Told) -> None:
     assert told(ROBOT, ROBOT.replace("outputs: {x: T}", "outputs: {x: U}")) == [
         "changed output g.a.x: `g.a.x` now carries `U` instead of `T`; it is read by `g.b.x`"
     ]
+
+
+def test_the_fields_of_a_message_concern_who_carries_it(compared: Compared) -> None:
+    text = ROBOT.replace("sensor_msgs/msg/Image", "own_msgs/msg/Image")
+    text += (
+        'ros: {definitions: {own_msgs/msg/Image: "int32 a\\nint32 b", own_msgs/srv/Do: "int32 x\\n---\\nint32 y"}}\n'
+    )
+    found = compared(text, text.replace("int32 b", "int64 b   # wider"))
+    (change,) = found.changes
+    assert (change.sort, change.element, change.key) == ("message", "own_msgs/msg/Image", "fields")
+    assert (change.before, change.after) == (["int32 a", "int32 b"], ["int32 a", "int64 b"])
+    assert change.text == "message `own_msgs/msg/Image`: fields `int64 b` added, `int32 b` removed; it carries `T`"
+    assert found.owners == ("certh",)
+    (change,) = compared(text, text.replace("int32 x\\n---", "---\\nint32 x")).changes
+    assert (change.before, change.after) == (["int32 x", "---", "int32 y"], ["---", "int32 x", "int32 y"])
 
 
 def test_a_long_or_hostile_text_stays_on_one_line(told: Told) -> None:

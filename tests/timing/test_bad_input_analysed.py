@@ -55,3 +55,16 @@ def test_the_rest_is_analysed(tmp_path: Path, seer: str) -> None:
     assert found["good"].bound.value == (3 + 2 + 1 + 20 + 3) * MS
     assert found["good"].deadline is None
     assert found["backwards"].bound.value is None
+
+
+@pytest.mark.parametrize("through", ["[camera, nobody, mover]", "[nobody, mover]", "[camera, mover, nobody]"])
+def test_of_a_chain_through_what_is_not_there_nothing_is_said(tmp_path: Path, through: str) -> None:
+    file = tmp_path / "robot.yaml"
+    text = PROJECT.replace("{SEER}", "{wcet: 1 ms}").replace("[camera, mover]", through).replace("0 ms}", "1 s}")
+    file.write_text(text, encoding="utf-8")
+    checked = check(file)
+    result = chains(analyse(checked.architecture), checked.architecture)["good"]
+    assert result.verdict == "open"
+    for value in (result.bound, result.best, result.reduced_reaction, result.reduced_age):
+        assert (value.value, value.complete, value.missing) == (None, False, ("nobody",))
+    assert result.bound.assumptions == ("`nobody` is not resolved",)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import archgen
+from archgen.findings import timing_json
 from archgen.timing import duerr
 
 S1 = {"a": (10, 1), "b": (20, 2)}
@@ -99,7 +100,11 @@ def test_what_is_sent_on_a_condition_is_sent_for_the_stimulus(tmp_path: Path) ->
     result = _project(tmp_path, CONDITIONAL % "").chains()["ring"]
     assert result.bound.value == 131 * 10**6
     assert result.verdict == "met"
-    assert "watch publishes /g/watch/alarm for this very input" in result.bound.assumptions
+    said = "watch publishes /g/watch/alarm for this very input"
+    assert said in result.bound.assumptions
+    plain = timing_json.chain(result)
+    assert all(said in plain[figure]["assumptions"] for figure in ("bound", "reduced_reaction"))
+    assert said in plain["terms"][-1]["sampling"]["assumptions"]
 
 
 def test_a_promised_gap_needs_no_such_assumption(tmp_path: Path) -> None:

@@ -99,6 +99,25 @@ def test_a_conditional_output_may_never_come(derived: Derived) -> None:
     assert of_two(derived, "trigger: [one]", a=promised).paces["c"].gap.value == 2000 * MS
 
 
+def test_two_topics_of_one_source_are_told_apart(derived: Derived) -> None:
+    text = """
+groups:
+  g:
+    components:
+      a: {outputs: {left: std_msgs/msg/Empty, right: std_msgs/msg/Empty}}
+      b: {inputs: {both: a}}
+nodes:
+  a: {implements: a, timing: {rate: 10 Hz}}
+  b: {implements: b}
+"""
+    pace = analyse(derived(text)).paces["b"]
+    assert pace.rate.value == 20
+    assert [reason.text for reason in pace.reasons] == [
+        "g.b.both brings 10 Hz from a on /g/a/left",
+        "g.b.both brings 10 Hz from a on /g/a/right",
+    ]
+
+
 _SERVICE = """
 groups:
   g:
@@ -118,8 +137,8 @@ def test_a_server_is_asked_as_often_as_its_callers_call(derived: Derived) -> Non
     pace = found.paces["server"]
     assert (pace.behaviour, pace.rate.value, pace.gap.value) == ("on_demand", 25, None)
     service = found.services["server"]
-    assert (service.callers, service.worst.value) == (("a", "b"), 20 * MS)
-    assert {name: value.value for name, value in service.synchronous.items()} == {"a": 45 * MS, "b": 25 * MS}
+    assert (service.callers, service.worst.value) == (("a", "b"), 30 * MS)  # a may ask twice at once
+    assert {name: value.value for name, value in service.synchronous.items()} == {"a": 65 * MS, "b": 35 * MS}
 
 
 def test_a_stated_rate_is_used_and_the_derived_one_kept(derived: Derived) -> None:

@@ -2,39 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
 
+from archgen.analyses.load import overloaded_host
 from archgen.model.architecture import Architecture
 from archgen.timing.analyse import analyse
-from archgen.timing.analysis import Analysis
+from tests.timing.task_sets import MS, periodic, tasks, worst
 
-MS = 10**6
 Derived = Callable[[str], Architecture]
-
-
-def tasks(rows: Mapping[str, str], *, host: str = "cores: 1") -> str:
-    """Write independent elements on one computer, in the order of falling priority where `{p}` stands in a row."""
-    components = "\n".join(f"      {name}: {{outputs: {{out: std_msgs/msg/Empty}}}}" for name in rows)
-    nodes = "\n".join(
-        f"  {name}: {{implements: {name}, host: pc, timing: {{{row.format(p=len(rows) - place)}}}}}"
-        for place, (name, row) in enumerate(rows.items())
-    )
-    return f"groups:\n  g:\n    components:\n{components}\nnodes:\n{nodes}\nhosts: {{pc: {{{host}}}}}\n"
-
-
-def periodic(period: str, cost: str, more: str = "priority: {p}") -> str:
-    return f"behaviour: periodic, period: {period} ms, wcet: {cost} ms, {more}"
-
-
-def worst(found: Analysis) -> dict[str, object]:
-    """Give the worst responses in ms, or what is said instead."""
-    return {
-        name: response.worst.value / MS if response.worst.value is not None else response.worst.assumptions
-        for name, response in found.responses.items()
-    }
 
 
 @pytest.mark.parametrize(
@@ -49,9 +27,6 @@ def worst(found: Analysis) -> dict[str, object]:
         # Lehoczky, Fixed priority scheduling of periodic task sets with arbitrary deadlines (RTSS 1990): seven jobs
         # of the second task respond in 114, 102, 116, 104, 118, 106, 94; the worst is the fifth.
         ({"one": ("70", "26"), "two": ("100", "62")}, {"one": 26, "two": 118}),
-        # Liu and Layland's theorem at work: harmonic periods, and three tasks of the textbook of Burns and Wellings.
-        ({"c": ("7", "3"), "b": ("12", "3"), "a": ("20", "5")}, {"c": 3, "b": 6, "a": 20}),
-        ({"c": ("20", "5"), "b": ("40", "10"), "a": ("80", "40")}, {"c": 5, "b": 15, "a": ("overload",)}),
     ],
 )
 def test_fixed_priorities(derived: Derived, sets: dict[str, tuple[str, str]], expected: dict[str, object]) -> None:
@@ -61,7 +36,7 @@ def test_fixed_priorities(derived: Derived, sets: dict[str, tuple[str, str]], ex
 
 
 def test_jitter_of_what_has_a_higher_priority_adds_jobs(derived: Derived) -> None:
-    """Tindell, Burns, Wellings (1994): w = 30 + ceil((w + 15)/40) 10 gives 50 where without jitter it gives 40."""
+    """Worked by hand: w = 30 + ceil((w + 15)/40) 10 gives 50 where without jitter it gives 40."""
     rows = {"high": periodic("40", "10", "jitter: 15 ms, priority: {p}"), "low": periodic("100", "30")}
     assert worst(analyse(derived(tasks(rows))))["low"] == 50
     rows["high"] = periodic("40", "10")
@@ -116,6 +91,14 @@ def test_pinned_work_is_analysed_core_by_core(derived: Derived) -> None:
     assert found.responses["c"].worst.assumptions == ("cores to which something is pinned are kept for it",)
 
 
+def test_a_core_that_is_not_there_pins_nothing(derived: Derived) -> None:
+    rows = {"a": periodic("10", "2", "core: 2"), "b": periodic("20", "4", "core: 3"), "c": periodic("50", "30", "")}
+    loose = {"a": periodic("10", "2", ""), "b": periodic("20", "4", ""), "c": periodic("50", "30", "")}
+    assert worst(analyse(derived(tasks(rows, host="cores: 2")))) == worst(
+        analyse(derived(tasks(loose, host="cores: 2")))
+    )
+
+
 def test_an_executor_runs_one_after_the_other(derived: Derived) -> None:
     text = tasks({"a": periodic("10", "2", ""), "b": periodic("20", "4", "")}, host="cores: 4")
     text = text.replace("host: pc", "container: c") + "containers: {c: {host: pc, threads: 1}}\n"
@@ -124,10 +107,47 @@ def test_an_executor_runs_one_after_the_other(derived: Derived) -> None:
     assert {response.tier for response in found.responses.values()} == {"executor"}
 
 
+def test_an_executor_without_a_host_runs_one_after_the_other_all_the_same(derived: Derived) -> None:
+    text = tasks({"a": periodic("10", "2", ""), "b": periodic("20", "4", "")})
+    text = text.replace("host: pc", "container: c")
+    found = analyse(derived(text + "containers: {c: {threads: 1}}\n"))
+    assert worst(found) == {"a": 6, "b": 6}
+    assert {response.tier for response in found.responses.values()} == {"executor"}
+    assert found.responses["a"].worst.assumptions == ("assuming a dedicated core for container c",)
+    assert set(found.hosts) == {"pc"}
+
+
+def test_more_members_than_threads_wait_for_one(derived: Derived) -> None:
+    """As three on two cores: 2 + (4 + 4)/2 = 6; with a thread for each nobody waits."""
+    text = tasks({name: periodic("10", "2", "") for name in "abc"}).replace("host: pc", "container: c")
+    assert worst(analyse(derived(text + "containers: {c: {threads: 2}}\n"))) == {"a": 6, "b": 6, "c": 6}
+    assert worst(analyse(derived(text + "containers: {c: {threads: 3}}\n"))) == {"a": 2, "b": 2, "c": 2}
+
+
+def test_a_container_without_a_host_can_be_overloaded(derived: Derived) -> None:
+    text = tasks({"a": periodic("10", "6", ""), "b": periodic("10", "5", "")}).replace("host: pc", "container: c")
+    architecture = derived(text + "containers: {c: {threads: 1}}\n")
+    found = analyse(architecture)
+    assert worst(found) == {"a": ("overload", "assuming a dedicated core for container c")} | {
+        "b": ("overload", "assuming a dedicated core for container c")
+    }
+    (finding,) = overloaded_host(architecture, found)
+    assert finding.message == "`c` is overloaded: what runs there takes 110 % of its thread"
+
+
 def test_what_is_not_known_is_named(derived: Derived) -> None:
     rows = {"a": periodic("10", "2", ""), "b": "behaviour: periodic, period: 20 ms"}
     response = analyse(derived(tasks(rows))).responses["a"].worst
     assert (response.value, response.complete, response.missing, response.side) == (2 * MS, False, ("b",), "at least")
+
+
+def test_what_works_only_at_the_start_is_in_nobodys_way(derived: Derived) -> None:
+    rows = {"a": periodic("10", "2", ""), "map": "behaviour: once", "grid": "behaviour: once, wcet: 50 ms"}
+    found = analyse(derived(tasks(rows)))
+    assert found.responses["a"].worst.value == 2 * MS
+    assert found.responses["grid"].worst.value == 64 * MS  # 50 + 7 times 2 in 64
+    assert (found.responses["map"].worst.value, found.responses["map"].worst.missing) == (None, ("map",))
+    assert found.hosts["pc"].verdict == "schedulable"
 
 
 def test_a_declared_response_is_used_as_it_is(derived: Derived) -> None:
@@ -185,6 +205,29 @@ links: {lan: {connects: [p, q], latency: 0 ms}}
     found = analyse(derived(text))
     assert found.diverged == ("a", "b", "c", "d")
     assert worst(found) == dict.fromkeys("abcd", ("diverged",))
+
+
+def test_who_reads_what_an_overload_sends_is_not_overloaded(derived: Derived) -> None:
+    text = """
+groups:
+  g:
+    components:
+      a: {outputs: {out: std_msgs/msg/Empty}}
+      b: {inputs: {one: a.out}, outputs: {out: std_msgs/msg/Empty}}
+      c: {inputs: {one: a.out}}
+nodes:
+  a: {implements: a, host: pc, timing: {period: 10 ms, wcet: 12 ms}}
+  b: {implements: b, host: pc3, timing: {behaviour: event}}
+  c: {implements: c, host: pc2, timing: {behaviour: event, wcet: 1 ms}}
+hosts: {pc: {cores: 1}, pc2: {cores: 1}, pc3: {cores: 1}}
+links: {lan: {connects: [pc, pc2, pc3], latency: 0 ms}}
+"""
+    architecture = derived(text)
+    found = analyse(architecture)
+    assert found.responses["a"].worst.assumptions == ("overload",)
+    assert (found.responses["b"].worst.missing, found.responses["b"].worst.assumptions) == (("b",), ())
+    assert "overload" not in found.responses["c"].worst.assumptions
+    assert [finding.element for finding in overloaded_host(architecture, found)] == ["pc"]
 
 
 def test_many_tasks_are_quick_and_exact(derived: Derived) -> None:

@@ -38,5 +38,6 @@ def test_data_of_an_event_is_the_newest_until_the_next_event_comes() -> None:
     network = Network.of(found)
     from_event = chains(found, architecture(("cam", "det", "act"), "det", "act"))["c"]
     from_world = chains(found, architecture(("cam", "det", "act"), "cam", "act"))["c"]
-    assert (from_event.bound, data_age(network, from_event)) == (ms(42), ms(42 + 105))
+    age = data_age(network, from_event)
+    assert (from_event.bound.value, age.value) == (ms(42).value, ms(42 + 105).value)
     assert data_age(network, from_world) == from_world.bound

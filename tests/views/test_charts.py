@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline, resources
 from archgen.timing.analysis import HostLoad
 from archgen.timing.value import UNKNOWN, Value
-from archgen.views import charts
+from archgen.views import charts, loads
 from archgen.views.bars import Chart
 from archgen.views.index import index
 from archgen.views.timed import Timed
@@ -92,15 +92,15 @@ LOADS = [
 
 @pytest.mark.parametrize(("load", "verdict", "parts", "said"), LOADS)
 def test_loads(load: Value, verdict: str, parts: tuple[tuple[str, Value], ...], said: str) -> None:
-    assert charts.load_verdict(HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts)) == said  # type: ignore[arg-type]
+    assert loads.load_verdict(HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts)) == said  # type: ignore[arg-type]
 
 
 def test_a_full_core_is_seen_on_a_host_that_is_not_full() -> None:
     places = (("onboard_pc core 7", 1, exact(Fraction(11, 10))), ("onboard_pc", 7, exact(Fraction(7, 10))))
     load = HostLoad(exact(Fraction(9, 5)), 8, UNKNOWN, "overload", (("a", exact(Fraction(9, 5))),), places)
-    assert charts.load_verdict(load) == "Overloaded (core 7): 22.5 % of 8 cores."
+    assert loads.load_verdict(load) == "Overloaded (core 7): 22.5 % of 8 cores."
     architecture = pipeline.check(resources.path("example_ramcip")).architecture
-    chart = charts.load_of(index(architecture), timed(architecture), "onboard_pc", load)
+    chart = loads.load_of(index(architecture), timed(architecture), "onboard_pc", load)
     alone = [(bar.title, bar.value, bar.stretches[0].kind) for bar in chart.bars[-2:]]
     assert alone == [("core 7", "110 %", "missed"), ("the other 7 cores", "10 %", "best")]
 

@@ -61,8 +61,8 @@ def word_width(word: str) -> float:
 
 @lru_cache(maxsize=65536)
 def word_widths(text: str) -> tuple[float, ...]:
-    """Give the widths of a text's words, in units of the type size."""
-    return tuple([word_width(word) for word in text.split()])
+    """Give the widths of a text's words, in units of the type size; a blank that holds belongs to its word."""
+    return tuple([word_width(word) for word in text.replace("\u00a0", "_").split()])
 
 
 @lru_cache(maxsize=65536)

@@ -7,21 +7,23 @@ title or text meets another. Pictures are light; see `svg` and `dark_rules` for 
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
 from archgen.emit.graphviz import cache as store
 from archgen.emit.graphviz.palette import dark_rules
-from archgen.emit.graphviz.pool import MissingGraphviz, Progress
+from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch, Worker, idle
 from archgen.emit.graphviz.pool import draw as draw_all
 from archgen.emit.graphviz.worker import Task
 from archgen.emit.picture import Picture
 from archgen.views.bars import Chart, Drawing
 
-__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw"]
+__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw", "early"]
 
 FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
 """The formats that can be asked for, by Picture's fields; `dot` is always there."""
@@ -35,10 +37,11 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     cache: Path | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    ready: Sequence[Worker] = (),
 ) -> dict[str, Picture]:
     """Draw graphs and charts in some formats. `link` gives the address for a ref, None where its target is not in the output.
 
-    `cache` is a folder that archgen may fill. Raises MissingGraphviz where nothing can be drawn and not all is cached.
+    `cache` is a folder that archgen may fill; `ready` is what `early` gives. Raises MissingGraphviz where nothing can be drawn and not all is cached.
     """
     cache = cache if cache and _writable(cache) else None
     wanted = tuple(form for form in FORMATS if form in formats)
@@ -48,11 +51,32 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     missing = [at for at in range(len(graphs)) if at not in found]
     if missing:
         tasks = [Task(graphs[at], linked[at], wanted) for at in missing]
-        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, progress)
+
+        def keep(at: int, picture: Picture) -> None:
+            if cache and picture.warning is None:
+                with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
+                    store.store(cache, keys[missing[at]], picture, wanted)
+
+        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, Watch(progress, keep), ready)
         found.update(zip(missing, drawn, strict=True))
         if cache:
-            _keep(cache, {keys[at]: found[at] for at in missing}, wanted, len(graphs))
+            store.prune(cache, len(graphs))
     return {graph.id: found[at] for at, graph in enumerate(graphs)}
+
+
+@contextmanager
+def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
+    """Start the processes that draw before it is known what: the first time, when no picture is kept, all are needed."""
+    workers: list[Worker] = []
+    if cache and _writable(cache) and not any(cache.glob("*.picture")):
+        workers = [idle(cache) for _ in range(os.cpu_count() or 1)]
+    try:
+        for each in workers:
+            each.begin()
+        yield workers
+    finally:
+        for each in workers:
+            each.stop()
 
 
 def _writable(folder: Path) -> bool:
@@ -65,18 +89,13 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _draw(tasks: Sequence[Task], cache: Path | None, workers: int, progress: Progress | None) -> tuple[Picture, ...]:
+def _draw(
+    tasks: Sequence[Task], cache: Path | None, workers: int, watch: Watch, ready: Sequence[Worker]
+) -> tuple[Picture, ...]:
     if cache:
-        return draw_all(tasks, cache, workers=workers, progress=progress)
+        return draw_all(tasks, cache, workers=workers, watch=watch, ready=ready)
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
-        return draw_all(tasks, Path(folder), workers=workers, progress=progress)
-
-
-def _keep(cache: Path, drawn: dict[str, Picture], formats: Sequence[str], count: int) -> None:
-    for name, picture in drawn.items():
-        if picture.warning is None:
-            store.store(cache, name, picture, formats)
-    store.prune(cache, count)
+        return draw_all(tasks, Path(folder), workers=workers, watch=watch)
 
 
 def _links(graph: Drawing, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:

@@ -12,11 +12,10 @@ import os
 import tempfile
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
-from importlib import metadata
 from pathlib import Path
 
 from archgen.emit.picture import Picture
+from archgen.emit.program import writers
 from archgen.views.bars import Drawing
 
 _SURPLUS = 4
@@ -25,21 +24,8 @@ _SURPLUS = 4
 
 def key(graph: Drawing, links: Mapping[str, str]) -> str:
     """Name what a picture depends on: the graph, its addresses, and this program."""
-    text = f"{_version()}\n{graph!r}\n{sorted(links.items())!r}"
+    text = f"{writers()}\n{graph!r}\n{sorted(links.items())!r}"
     return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
-
-
-@cache
-def _version() -> str:
-    """Stamp the code that draws, and the library that it draws with."""
-    digest = hashlib.blake2b(digest_size=16)
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
-    try:
-        library = metadata.version("pygraphviz")
-    except metadata.PackageNotFoundError:
-        library = ""
-    return f"{digest.hexdigest()} {library}"
 
 
 def load(folder: Path, name: str, formats: Sequence[str]) -> Picture | None:

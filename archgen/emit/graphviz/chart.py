@@ -8,7 +8,7 @@ hatched with a question mark. Grid and limit lie below and above the bars as thi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.graphviz import palette
@@ -68,8 +68,13 @@ class _Scale:
 
 def chart(item: Chart, link: Link) -> Scene:
     """Lay out a chart."""
-    titles = [_words(_rows(bar.title, strong=bar.strong), "left", link, bar.ref, bar.title) for bar in item.bars]
-    values = [_words(_rows(bar.value, strong=bar.strong), "right", link) for bar in item.bars]
+    inks = [palette.MUTED if bar.around else palette.TEXT for bar in item.bars]
+    named = [(_rows(bar.title, strong=bar.strong), _rows(bar.value, strong=bar.strong)) for bar in item.bars]
+    titles = [
+        _words(name, "left", link, bar.ref, bar.title, ink=ink)
+        for (name, _), bar, ink in zip(named, item.bars, inks, strict=True)
+    ]
+    values = [_words(value, "right", link, ink=ink) for (_, value), ink in zip(named, inks, strict=True)]
     sizes = measure([*titles, *values])
     names, numbers = sizes[: len(titles)], sizes[len(titles) :]
     scale = _scale(item, max((w for w, _ in names), default=0.0), max((w for w, _ in numbers), default=0.0))
@@ -108,10 +113,8 @@ def _bar(bar: Bar, at: int, scale: _Scale, middle: float) -> Iterator[Part]:
     x = scale.x(bar.start)
     known = [each for each in bar.stretches if each.length is not None]
     unknown = [each for each in bar.stretches if each.length is None]
-    for number, each in enumerate(known):
-        width = (each.length or 0.0) * scale.factor
-        if width > 0:
-            width = max(width, _HAIR)
+    for number, (each, width) in enumerate(zip(known, _widths(known, scale.factor), strict=True)):
+        if width:
             yield Part(f"b{at}.{number}", _stretch(each, width), x + width / 2, middle, width, _BAR)
             x += width
     if unknown:
@@ -119,6 +122,15 @@ def _bar(bar: Bar, at: int, scale: _Scale, middle: float) -> Iterator[Part]:
         yield Part(f"b{at}.q", _stretch(said, _UNKNOWN), x + _UNKNOWN / 2, middle, _UNKNOWN, _BAR)
     if bar.mark is not None:
         yield _thin(f"m{at}", scale.x(bar.mark), middle, width=1.6, height=_ROW - 1, colour=palette.TEXT)
+
+
+def _widths(known: Sequence[Stretch], factor: float) -> list[float]:
+    """Give what is there at least a hair, and take that from the others: the bar ends where its sum does."""
+    exact = [(each.length or 0.0) * factor for each in known]
+    thin = sum(_HAIR for width in exact if 0 < width < _HAIR)
+    thick = sum(width for width in exact if width >= _HAIR)
+    share = max(sum(exact) - thin, 0.0) / thick if thick else 1.0
+    return [0.0 if not width else _HAIR if width < _HAIR else max(width * share, _HAIR) for width in exact]
 
 
 def _stretch(item: Stretch, width: float) -> Attributes:
@@ -190,13 +202,15 @@ def _rows(text: str, *, strong: bool) -> str:
     return "\n".join(f"<B>{row}</B>" if strong else row for row in rows)
 
 
-def _words(rows: str, side: str, link: Link, ref: str | None = None, tooltip: str = " ") -> Attributes:
+def _words(  # noqa: PLR0913 - a text, and how it stands
+    rows: str, side: str, link: Link, ref: str | None = None, tooltip: str = " ", *, ink: str = palette.TEXT
+) -> Attributes:
     turned = f'<BR ALIGN="{side.upper()}"/>'
     text = turned.join(rows.split("\n")) + (turned if "\n" in rows else "")
     return {
         **_PLAIN,
         "class": '"label"',
-        "label": f'<<FONT POINT-SIZE="8" COLOR="{palette.TEXT}">{text}</FONT>>',
+        "label": f'<<FONT POINT-SIZE="8" COLOR="{ink}">{text}</FONT>>',
         **linked(ref, tooltip, link),
     }
 

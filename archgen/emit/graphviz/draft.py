@@ -129,12 +129,18 @@ def _spot(text: str) -> tuple[float, float]:
 
 def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
     """Give the width and height in points that nodes with these attributes take."""
-    if not labels:
-        return ()
-    nodes = (f'm{at} [{written(each)} pos="0,0"];' for at, each in enumerate(labels))
-    objects = engine.layout(document("", nodes), "nop2")["objects"]
-    sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in objects}
-    return tuple(sizes[f"m{at}"] for at in range(len(labels)))
+    wanted = [written(each) for each in labels]
+    new = [text for text in dict.fromkeys(wanted) if text not in _SIZES_KNOWN]
+    if new:
+        nodes = (f'm{at} [{text} pos="0,0"];' for at, text in enumerate(new))
+        objects = engine.layout(document("", nodes), "nop2")["objects"]
+        sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in objects}
+        _SIZES_KNOWN.update((text, sizes[f"m{at}"]) for at, text in enumerate(new))
+    return tuple(_SIZES_KNOWN[text] for text in wanted)
+
+
+_SIZES_KNOWN: dict[str, tuple[float, float]] = {}
+"""What was measured before: pictures of one project show the same texts again and again."""
 
 
 def title(item: Cluster) -> Attributes:

@@ -20,8 +20,10 @@ def inside(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered], sha
     sizes = [scene.bounds() for scene in pieces]
     widest = max((bounds[2] - bounds[0] for bounds in sizes), default=0.0)
     total = sum(bounds[2] - bounds[0] + _GAP for bounds in sizes)
-    tries = [_shelves(pieces, widest + share * (total - widest)) for share in (0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1)]
-    return min(tries, key=lambda scene: _cost(scene, shape))
+    wide = [bounds[2] - bounds[0] for bounds in sizes]
+    tries = [_shelves(wide, widest + share * (total - widest)) for share in (0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1)]
+    scenes = (_stacked([[pieces[at] for at in row] for row in rows]) for rows in dict.fromkeys(tries))
+    return min(scenes, key=lambda scene: _cost(scene, shape))
 
 
 def _cost(scene: Scene, shape: float) -> float:
@@ -63,21 +65,21 @@ def _laid_out(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered]) 
     return read(drafted, engine.layout(document(settings, lines)))
 
 
-def _shelves(pieces: Iterable[Scene], width: float) -> Scene:
-    """Set drawings side by side in rows that are no wider than asked, from the top down, middles of a row aligned."""
-    rows: list[list[Scene]] = []
+def _shelves(sizes: Sequence[float], width: float) -> tuple[tuple[int, ...], ...]:
+    """Set drawings side by side in rows that are no wider than asked, from the top down."""
+    rows: list[list[int]] = []
     used = 0.0
-    for piece in pieces:
-        left, _, right, _ = piece.bounds()
-        if not rows or used + right - left > width + 0.01:
+    for at, size in enumerate(sizes):
+        if not rows or used + size > width + 0.01:
             rows.append([])
             used = 0.0
-        rows[-1].append(piece)
-        used += right - left + _GAP
-    return _stacked(rows)
+        rows[-1].append(at)
+        used += size + _GAP
+    return tuple(tuple(row) for row in rows)
 
 
 def _stacked(rows: Iterable[Sequence[Scene]]) -> Scene:
+    """Set the drawings of each row, their middles aligned; the lower left corner is 0, 0."""
     done: list[Scene] = []
     top = 0.0
     for row in rows:

@@ -13,7 +13,8 @@ Where two versions are drawn, what is added has a thick frame, what is removed a
 and what is called otherwise a dotted one: a sign in the title says the same.
 
 Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
-that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once.
+that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once, and sharp
+corners where it runs on events of which the rate is not known.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def box(item: Box, link: Link) -> Attributes:
     if item.ports_in or item.ports_out:
         return {**_common(item, link), "shape": "plain", "label": _table(item)}
     frame, fill = colours(item)
-    styles = ["filled", *(["rounded"] if item.style in _ROUNDED else []), *_dashes(item)]
+    styles = ["filled", *(["rounded"] if item.style in _ROUNDED and item.fill != "event" else []), *_dashes(item)]
     return {
         **_common(item, link),
         "shape": _SHAPES.get(item.style, "box"),
@@ -99,7 +100,7 @@ def _pen(item: Box) -> str:
         return _CHANGE_PENS[item.change]
     if item.emphasis == "subject":
         return "2"
-    if item.fill in {"unknown", "on_demand"}:
+    if item.fill in {"unknown", "on_demand", "event"}:
         return "1.2"
     return "1.2" if item.colour is not None and item.emphasis == "normal" else "0.8"
 

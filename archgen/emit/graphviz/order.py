@@ -23,21 +23,30 @@ def _exact(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
     """Dynamic programming over sets: the cheapest way to have placed exactly this set first."""
     count = len(items)
     cost = [[weights.get((items[a], items[b]), 0) for b in range(count)] for a in range(count)]
+    back = [_sums(row) for row in cost]
     best: list[tuple[int, int]] = [(0, -1)] * (1 << count)
     for chosen in range(1, 1 << count):
         tries = []
         for last in range(count):
             if chosen >> last & 1:
                 before = chosen & ~(1 << last)
-                back = sum(cost[last][each] for each in range(count) if before >> each & 1)
-                tries.append((best[before][0] + back, last))
-        best[chosen] = min(tries, key=lambda each: (each[0], -each[1]))
+                tries.append((best[before][0] + back[last][before], -last))
+        least, last = min(tries)
+        best[chosen] = (least, -last)
     order, chosen = [], (1 << count) - 1
     while chosen:
         last = best[chosen][1]
         order.append(items[last])
         chosen &= ~(1 << last)
     return tuple(reversed(order))
+
+
+def _sums(costs: Sequence[int]) -> list[int]:
+    """Give the sum of each set of costs, by the set's bits."""
+    sums = [0]
+    for cost in costs:
+        sums += [each + cost for each in sums]
+    return sums
 
 
 def _greedy(items: Sequence[str], weights: Weights) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen.emit.graphviz import fonts
@@ -25,6 +25,15 @@ TIMEOUT = 30.0
 
 Progress = Callable[[int, int], None]
 Command = Sequence[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """Who is told of each picture when it is drawn: how many of how many; which task it is of. In any thread."""
+
+    progress: Progress | None = None
+    drawn: Callable[[int, Picture], None] = lambda _at, _picture: None
+
 
 _START = "import sys; sys.path.append({root!r}); from archgen.emit.graphviz.worker import main; main()"
 _PACKAGES = {
@@ -67,15 +76,19 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     folder: Path,
     *,
     workers: int,
-    progress: Progress | None = None,
+    watch: Watch = Watch(),
     timeout: float = TIMEOUT,
     start: Command | None = None,
+    ready: Sequence[Worker] = (),
 ) -> tuple[Picture, ...]:
-    """Draw all tasks, the largest first; gives the pictures in the order of the tasks."""
-    # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
-    environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
-    run = _Run(tasks, progress, timeout, start or command(), environment)
-    threads = [threading.Thread(target=run.work) for _ in range(max(1, min(workers, len(tasks))))]
+    """Draw all tasks, the largest first; gives the pictures in the order of the tasks.
+
+    Workers that are `ready` are used, and stopped; further ones are started as needed.
+    """
+    count = max(1, min(workers, len(tasks)))
+    processes = [*ready[:count], *(idle(folder, start) for _ in range(count - len(ready)))]
+    run = _Run(tasks, watch, timeout)
+    threads = [threading.Thread(target=run.work, args=(process,)) for process in processes]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -83,6 +96,13 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     if run.missing:
         raise MissingGraphviz(explain(run.missing))
     return tuple(run.done[at] for at in range(len(tasks)))
+
+
+def idle(folder: Path, start: Command | None = None) -> Worker:
+    """Give a worker whose process is not started yet."""
+    # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
+    environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
+    return Worker(start or command(), environment)
 
 
 def _size(task: Task) -> int:
@@ -93,26 +113,18 @@ def _size(task: Task) -> int:
 class _Run:
     """What the threads share: each holds one worker process and takes the next task when its last one is done."""
 
-    def __init__(
-        self,
-        tasks: Sequence[Task],
-        progress: Progress | None,
-        timeout: float,
-        start: Command,
-        environment: dict[str, str],
-    ) -> None:
+    def __init__(self, tasks: Sequence[Task], watch: Watch, timeout: float) -> None:
         self.done: dict[int, Picture] = {}
         self.missing = ""
-        self._progress, self._timeout, self._start, self._environment = progress, timeout, start, environment
+        self._watch, self._timeout = watch, timeout
         self._lock = threading.Lock()
         self._total = len(tasks)
         self._waiting: queue.SimpleQueue[tuple[int, Task]] = queue.SimpleQueue()
         for at, task in sorted(enumerate(tasks), key=lambda each: -_size(each[1])):
             self._waiting.put((at, task))
 
-    def work(self) -> None:
+    def work(self, process: Worker) -> None:
         """Take tasks until there are none."""
-        process = _Worker(self._start, self._environment)
         try:
             while not self.missing:
                 at, task = self._waiting.get_nowait()
@@ -123,12 +135,13 @@ class _Run:
             process.stop()
 
     def _finish(self, at: int, picture: Picture) -> None:
+        self._watch.drawn(at, picture)
         with self._lock:
             self.done[at] = picture
-            if self._progress:
-                self._progress(len(self.done), self._total)
+            if self._watch.progress:
+                self._watch.progress(len(self.done), self._total)
 
-    def _drawn(self, process: _Worker, task: Task) -> Picture:
+    def _drawn(self, process: Worker, task: Task) -> Picture:
         answer = process.ask(task, self._timeout)
         if isinstance(answer, Failure) and answer.kind == "missing":
             self.missing = answer.message
@@ -140,13 +153,13 @@ class _Run:
         return answer
 
 
-class _Worker:
-    """One worker process, started when it is first needed, and again after it broke."""
+class Worker:
+    """One worker process, started when it is first needed or before, and again after it broke."""
 
     def __init__(self, start: Command, environment: dict[str, str]) -> None:
         self._start, self._environment = start, environment
         self._process: subprocess.Popen[bytes] | None = None
-        self._late = False
+        self._late = self._greeted = False
 
     def ask(self, task: Task, timeout: float) -> Picture | Failure:
         """Have one picture drawn."""
@@ -162,18 +175,25 @@ class _Worker:
             alarm.cancel()
 
     def _asked(self, task: Task) -> Picture | Failure:
-        process = self._process
-        if process is None:
-            pipe = subprocess.PIPE
-            process = self._process = subprocess.Popen(  # noqa: S603 - our own interpreter
-                self._start, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, env=self._environment
-            )
+        process = self.begin()
+        if not self._greeted:
             hello = receive(process.stdout)  # type: ignore[arg-type]
             if isinstance(hello, Failure):
                 return hello
+            self._greeted = True
         send(process.stdin, task)  # type: ignore[arg-type]
         answer: Picture | Failure = receive(process.stdout)  # type: ignore[arg-type]
         return answer
+
+    def begin(self) -> subprocess.Popen[bytes]:
+        """Start the process, if it does not run, and do not wait until it can draw."""
+        if self._process is None:
+            pipe = subprocess.PIPE
+            self._greeted = False
+            self._process = subprocess.Popen(  # noqa: S603 - our own interpreter
+                self._start, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, env=self._environment
+            )
+        return self._process
 
     def _kill(self) -> None:
         self._late = True

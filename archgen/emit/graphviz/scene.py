@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, Literal
 
 from archgen.emit.graphviz.text import quoted
@@ -60,13 +61,18 @@ class Line:
     @property
     def curve(self) -> tuple[Point, ...]:
         """The points of the Bézier curves, without the tips of the arrow heads."""
-        found = (each for each in _POINT.finditer(self.spline) if not each["mark"])
-        return tuple((float(each["x"]), float(each["y"])) for each in found)
+        return tuple(point for mark, point in _read(self.spline) if not mark)
 
     @property
     def points(self) -> tuple[Point, ...]:
         """The points of the spline and the tips of its arrow heads, in no order."""
-        return tuple((float(found["x"]), float(found["y"])) for found in _POINT.finditer(self.spline))
+        return tuple(point for _, point in _read(self.spline))
+
+
+@lru_cache(8192)
+def _read(spline: str) -> tuple[tuple[str, Point], ...]:
+    """Read a spline's points, the tips of arrow heads with their mark; layouts look at the same ones again and again."""
+    return tuple((each["mark"] or "", (float(each["x"]), float(each["y"]))) for each in _POINT.finditer(spline))
 
 
 @dataclass(frozen=True, slots=True)

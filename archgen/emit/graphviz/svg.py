@@ -21,7 +21,7 @@ _GROUP = re.compile(r'(<g id="[^"]*" class="(?:node|edge|cluster)[^"]*">\n)<titl
 _LINK = re.compile(
     r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL
 )
-_SURFACE = re.compile(rb"\bsurface[0-9]+")
+_SURFACE = re.compile(rb"surface[0-9]+")
 _DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
 
 

@@ -112,23 +112,24 @@ def _candidates(
         settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain
         yield settings, onward
-        for rows in folds(tuple(tiles), partial(_guess, tiles, [item for _, item in arrows], direction)):
+        sizes = {name: (each.width, each.height)[:: 1 if direction == "TB" else -1] for name, each in tiles.items()}
+        ends = [(item.tail, item.head) for _, item in arrows]
+        for rows in folds(tuple(tiles), partial(_guess, sizes, ends, direction)):
             yield settings, [*_rows(rows, names), *onward]
 
 
-def _guess(tiles: dict[str, Tile], arrows: Sequence[Arrow], direction: str, rows: Rows) -> float:
-    """Judge rows before they are laid out: how large it gets, and how many arrows must pass a box."""
-    sizes = {
-        name: (tile.width, tile.height) if direction == "TB" else (tile.height, tile.width)
-        for name, tile in tiles.items()
-    }
+def _guess(sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: Rows) -> float:
+    """Judge rows before they are laid out: how large it gets, and how many arrows must pass a box.
+
+    `sizes` are along and across the rows.
+    """
     along_rows = max(sum(sizes[item][0] + 30 for item in row) for row in rows)
     across = sum(max(sizes[item][1] for item in row) + 40 for row in rows)
     wide, high = (along_rows, across) if direction == "TB" else (across, along_rows)
     place = {item: (at, to) for at, row in enumerate(rows) for to, item in enumerate(row)}
     passing = 0
-    for arrow in arrows:
-        (row, column), (other, to) = place[arrow.tail], place[arrow.head]
+    for tail, head in ends:
+        (row, column), (other, to) = place[tail], place[head]
         passing += max(abs(column - to) - 1, 0) if row == other else abs(row - other) - 1
     return _scale(wide, high) * (1 + 0.05 * passing)
 

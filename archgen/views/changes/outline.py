@@ -40,7 +40,15 @@ class Told:
 def outline(told: Told) -> Outline:
     """Make the document."""
     found = told.found
-    sections = (_breaking(found), _pictures(told), _changes(found), _chains(found), _new(found), _cured(found))
+    sections = (
+        _breaking(found),
+        _pictures(told),
+        _changes(found),
+        _chains(found),
+        _new(found),
+        _silenced(found),
+        _cured(found),
+    )
     return Outline(
         title=found.after.architecture.project.title,
         subtitle=f"What changed: {told.before} → {told.after}",
@@ -158,6 +166,15 @@ def _chains(found: Comparison) -> Section | None:
 
 def _new(found: Comparison) -> Section | None:
     return _findings("new", "New findings", "What archgen finds now, and did not before", found.new)
+
+
+def _silenced(found: Comparison) -> Section | None:
+    return _findings(
+        "silenced",
+        "Silenced findings",
+        "What archgen found before, and a comment or a setting hides now",
+        found.silenced,
+    )
 
 
 def _cured(found: Comparison) -> Section | None:

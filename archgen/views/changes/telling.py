@@ -90,6 +90,7 @@ def counted(found: Comparison) -> str:
     words = [plural(len(found.changes), "change") + (f" ({counts})" if counts else "")]
     words += [plural(len(found.new), "new finding")] if found.new else []
     words += [plural(len(found.cured), "cured finding")] if found.cured else []
+    words += [plural(len(found.silenced), "silenced finding")] if found.silenced else []
     return ", ".join(words)
 
 

@@ -10,7 +10,7 @@
 | `ros` | all nodes |
 | `hosts` | hosts, containers and links |
 | `views/V` | a view of the project |
-| `timing` | all activities by their period |
+| `timing` | all activities by their period, or those of the selection |
 | `timing/G` | the activities of a group by their period |
 
 """
@@ -79,7 +79,7 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
         yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
     if view.timed is not None:
         groups = dict.fromkeys(each.group for each in shown)
-        yield from timing.pictures(view, view.timed, groups, whole=selection is None)
+        yield from timing.pictures(view, view.timed, groups, selection.nodes if selection else None)
     selecting = Selecting(architecture)
     for asked in architecture.views.values():
         chosen, _ = selecting.select(asked.show)

@@ -91,7 +91,9 @@ def _fed(view: Index, item: Component, port: Input, connection: Connection) -> D
         head_port=f"in {port.name}",
         style=style,  # type: ignore[arg-type]
         optional=port.optional,
-        flows=tuple(f"{output.component} · {output.name} → {port.name}" for output in outputs),
+        flows=tuple(
+            f"{architecture.components[output.component].title} · {output.name} → {port.name}" for output in outputs
+        ),
         ref=f"type:{types[0]}" if len(types) == 1 else None,
     )
     return box, _directed(arrow)

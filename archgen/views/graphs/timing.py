@@ -21,6 +21,8 @@ from archgen.views.timed import Timed
 from archgen.views.words import plural
 
 _MANY = 45
+_NAMED = 3
+"""So many neighbours are named in a grey box."""
 _BOUNDS = "<= at most, >= at least: a bound, where no exact figure follows from what is written."
 
 
@@ -49,13 +51,14 @@ class _Whole:
         return {name: activities[name] for name, home in self.home.items() if home == frame}
 
 
-def pictures(view: Index, timed: Timed, groups: Iterable[str], *, whole: bool) -> Iterator[Graph]:
-    """Draw the whole, if asked for, and some groups."""
+def pictures(
+    view: Index, timed: Timed, groups: Iterable[str], selected: Collection[str] | None = None
+) -> Iterator[Graph]:
+    """Draw the whole, or what selected nodes do with its neighbours in grey, and some groups."""
     system = timed.analysis.system
     home = {name: _home(view, activity) for name, activity in system.activities.items()}
     everything = _Whole(view, timed, home, _runs(system.arcs))
-    if whole:
-        yield _timing(everything)
+    yield _timing(everything) if selected is None else _selected(everything, selected)
     touching: dict[str, list[_Run]] = {}
     for run in everything.running:
         for group in dict.fromkeys((home[run.tail], home[run.head])):
@@ -81,6 +84,50 @@ def _timing(whole: _Whole) -> Graph:
         asked=sum(len(run.arcs) for run in whole.running),
     )
     return fold(with_legend(graph))
+
+
+def _selected(whole: _Whole, nodes: Collection[str]) -> Graph:
+    """Draw the activities of some nodes, framed by group, and what feeds and reads them, a grey box for each group."""
+    view, timed = whole.view, whole.timed
+    activities = timed.analysis.system.activities
+    mine = {name: each for name, each in activities.items() if each.node in nodes}
+    running = [run for run in whole.running if run.tail in mine or run.head in mine]
+    home = {name: frame if name in mine else f"around {frame}" for name, frame in whole.home.items()}
+    outside = dict.fromkeys(end for run in running for end in (run.tail, run.head) if end not in mine)
+    around: dict[str, list[str]] = {}
+    for name in outside:
+        around.setdefault(whole.home[name], []).append(name)
+    graph = Graph(
+        "timing",
+        "The selected part: how often everything happens",
+        "two-step",
+        (
+            *(replace(_box(timed, each), cluster=home[each.id]) for each in mine.values()),
+            *(_around(view, frame, names) for frame, names in around.items()),
+        ),
+        tuple(replace(each, faded=each.colour is None) for each in _merged(view, running, home)),
+        tuple(_frame(view, each) for each in dict.fromkeys(home[name] for name in mine)),
+        direction=view.architecture.layout.direction or "left-right",
+        notes=_notes(timed, mine),
+        alt=_alt(timed, tuple(mine), "The selected part"),
+        asked=sum(len(run.arcs) for run in running),
+    )
+    return fold(with_legend(graph))
+
+
+def _around(view: Index, frame: str, names: Sequence[str]) -> Box:
+    """Draw the neighbours in one frame as a grey box that names them."""
+    shown = names if len(names) <= _NAMED + 1 else [*names[:_NAMED], f"and {len(names) - _NAMED} more"]
+    found = _frame(view, frame)
+    return Box(
+        f"around {frame}",
+        found.title,
+        tuple(shown),
+        style="group",
+        emphasis="neighbour",
+        ref=found.ref,
+        tooltip="\n".join(names),
+    )
 
 
 def _group(whole: _Whole, name: str) -> Graph:

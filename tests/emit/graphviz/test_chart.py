@@ -92,6 +92,26 @@ def test_bars_begin_where_the_scale_says() -> None:
     assert line.x == pytest.approx(second[2])
 
 
+def test_a_bar_of_hairs_ends_where_its_sum_does() -> None:
+    hairs = tuple(Stretch(0.01, "load") for _ in range(20))
+    whole, of_hairs = Bar("a", (Stretch(50.2, "load"),)), Bar("b", (Stretch(50.0, "load"), *hairs))
+    boxes = [p for p in scene(bars(whole, of_hairs, limit=(100.0, "busy"))).parts if p.kind == "box"]
+    assert boxes[-1].rectangle[2] == pytest.approx(boxes[0].rectangle[2])
+    assert list(meetings(scene(bars(of_hairs)))) == []
+
+
+def test_what_stands_around_a_part_is_named_in_grey() -> None:
+    inner, outer = (
+        Bar("mine", (Stretch(1.0, "load"),), "1 %"),
+        Bar("theirs", (Stretch(1.0, "load"),), "1 %", around=True),
+    )
+    texts = {
+        p.name: p.attributes["label"] for p in scene(bars(inner, outer)).parts if p.name in {"t0", "t1", "v0", "v1"}
+    }
+    grey = {name for name, label in texts.items() if palette.MUTED in label}
+    assert (len(texts), grey) == (4, {"t1", "v1"})
+
+
 def test_the_same_chart_gives_the_same_bytes() -> None:
     item = bars(STEP, limit=(150.0, "deadline 150 ms"), legend=("sampling", "response"))
     once, again = (graphviz.draw([item], ["svg", "png", "pdf"], link=lambda _: None)["chains/c"] for _ in range(2))

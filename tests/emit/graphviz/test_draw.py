@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.emit.graphviz import FORMATS, MissingGraphviz, cache, dark_rules, draw, fonts, pool
+from archgen.emit.graphviz import FORMATS, MissingGraphviz, cache, dark_rules, draw, early, fonts, pool
 from archgen.emit.graphviz.png import snapped
 from archgen.emit.graphviz.worker import Task
 from archgen.views.graphs import component, group, overview
@@ -194,3 +195,31 @@ def test_a_palette_is_set_right() -> None:
     off, right = bytes([252, 254, 252, 9, 9, 9]), bytes([255, 255, 255, 9, 9, 9])
     assert snapped(b"head" + chunk(b"PLTE", off) + b"tail") == b"head" + chunk(b"PLTE", right) + b"tail"
     assert snapped(b"no palette") == b"no palette"
+
+
+def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -> None:
+    with early(tmp_path) as ready:
+        processes = [each.begin() for each in ready]
+        assert len(processes) == os.cpu_count()
+        drawn = draw(GRAPHS, ("svg",), link=lambda _: None, cache=tmp_path, ready=ready)
+    assert all(picture.svg for picture in drawn.values())
+    assert all(process.returncode is not None for process in processes)
+    with early(tmp_path) as ready:
+        assert list(ready) == []
+    with early(None) as ready:
+        assert list(ready) == []
+
+
+def test_more_workers_than_pictures_are_ended(tmp_path: Path) -> None:
+    with early(tmp_path) as ready:
+        processes = [each.begin() for each in ready]
+        assert draw([TINY], ("svg",), link=lambda _: None, cache=tmp_path, ready=ready)["tiny"].svg
+    assert all(process.returncode is not None for process in processes)
+
+
+def test_a_full_disk_costs_no_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cache, "store", full)
+    assert draw([TINY], ("svg",), link=lambda _: None, cache=tmp_path)["tiny"].svg

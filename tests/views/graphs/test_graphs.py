@@ -350,3 +350,8 @@ def test_folding_keeps_frames_that_fit() -> None:
     assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
     assert text(graph) == ["big > b71 (2)", "b70 > b71"]
     assert graph.boxes[-1].lines == ("70 inside", "1 flow inside")
+
+
+def test_what_feeds_a_component_is_named_by_its_title() -> None:
+    view = index(make("g: a b", "g.a.x > g.b.y"))
+    assert [arrow.flows for arrow in component(view, "g.b").arrows] == [("A · x → y",)]

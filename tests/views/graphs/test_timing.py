@@ -7,11 +7,16 @@ from dataclasses import replace
 import pytest
 
 from archgen import pipeline, resources
+from archgen.model.selector import select
 from archgen.timing.analysis import Pace
 from archgen.views import paces
 from archgen.views import timed as timed_module
+from archgen.views.bars import Chart
+from archgen.views.drawings import drawings
 from archgen.views.graphs import all_graphs
+from archgen.views.index import Scope, index
 from archgen.views.shapes import Graph
+from archgen.views.timed import timing
 from tests.architectures import generated, robot
 from tests.timings import exact, timed
 
@@ -72,3 +77,37 @@ def test_a_pace_that_differs_from_the_producers_stands_at_the_arrow() -> None:
     graphs = all_graphs(architecture, timed=timed_module.timed(analysis))
     labels = {arrow.label for graph in graphs if graph.id.startswith("timing/") for arrow in graph.arrows}
     assert "3 Hz" in labels
+
+
+def test_of_a_part_there_is_what_it_does_with_grey_neighbours_and_its_share_in_charts() -> None:
+    architecture = pipeline.check(resources.path("example_ramcip")).architecture
+    selection, _ = select("human_state", architecture)
+    view = index(architecture, scope=Scope(selection.components, selection.nodes), timed=timing(architecture))
+    drawn = drawings(view, selection, "implementation")
+    whole = drawn["timing"]
+    assert isinstance(whole, Graph)
+    mine = {box.id for box in whole.boxes if box.emphasis != "neighbour"}
+    assert mine == {
+        "skeleton_tracker",
+        "face_recognizer",
+        "activity_classifier",
+        "fall_watch",
+        "voice_activity",
+        "transcriber",
+    }
+    (grey,) = (box for box in whole.boxes if box.id == "around robot_action_planner")
+    assert (grey.emphasis, grey.title, grey.fill) == ("neighbour", "Robot Action Planner", None)
+    assert grey.lines[-1].startswith("and ")
+    assert sum(arrow.count for arrow in whole.arrows) == whole.asked
+    charts = {name: chart for name, chart in drawn.items() if isinstance(chart, Chart)}
+    assert set(charts) == {
+        "chains/fall_to_call",
+        "chains/speech_to_reply",
+        "load",
+        "load/vision_pc",
+        "load/interaction_pc",
+    }
+    call = charts["chains/fall_to_call"]
+    assert [bar.title for bar in call.bars if not bar.around][:2] == ["skeleton_tracker", "fall_watch"]
+    assert call.notes == ("Grey names stand outside of the selected part.",)
+    assert charts["load"].notes == ()

@@ -1,0 +1,158 @@
+"""Is anything written of timing that cannot have an effect?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostic import Diagnostic, Label, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Node
+    from archgen.model.timing import Timing
+    from archgen.source import Span
+
+_FIRED = ("trigger", "every", "throttle")
+"""What says something of how inputs fire."""
+_BY_ITSELF = {
+    "periodic": ("its period fires it", "leave it out, or write `behaviour: event` where inputs are to fire it"),
+    "once": ("it works once, at the start", "leave it out"),
+    "on_demand": (
+        "calls fire it, each of them",
+        "leave it out, or write `behaviour: event` where inputs are to fire it",
+    ),
+}
+
+
+def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A key of timing has no effect where it stands.
+
+    Why: What somebody writes is meant to count. A `trigger`, `every` or `throttle` does not where a period, or a call, fires
+    the element; `calls` does not for an input that is a topic, and `max_gap` does not for an output that is not
+    `conditional`. One of the two is a slip.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          viewer: {implements: viewer, timing: {rate: 30 Hz, every: 2}}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          viewer: {implements: viewer, timing: {behaviour: event, every: 2}}
+    """
+    uses = _uses(architecture)
+    said: set[Span] = set()
+    for node in architecture.nodes.values():
+        for timing in node.timing.values():
+            for finding in (*_fired(node, timing), *_called(node, timing, uses), *_promised(node, timing)):
+                if finding.span not in said:
+                    said.add(finding.span)
+                    yield finding
+
+
+def _uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
+    """Give how each node uses each port."""
+    found = defaultdict[tuple[str, str], set[str]](set)
+    for end in architecture.endpoints:
+        found[end.node, end.port or end.name].add(end.use if end.message else "unknown")
+    return found
+
+
+def _fired(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    stated = timing.period is not None or timing.rate is not None
+    behaviour = timing.behaviour or ("periodic" if stated else None)
+    if behaviour not in _BY_ITSELF:
+        return
+    why, cure = _BY_ITSELF[behaviour]
+    key = "period" if timing.period is not None else "rate"
+    place = timing.places.get("behaviour" if timing.behaviour else key)
+    for name in _FIRED:
+        if getattr(timing, name) is not None:
+            labels = (Label(place, why),) if place else ()
+            message = f"`{name}` of `{node.id}` has no effect: {why}"
+            yield Diagnostic("idle-timing", message, timing.places[name], labels=labels, help=cure, element=node.id)
+
+
+def _called(node: Node, timing: Timing, uses: Mapping[tuple[str, str], set[str]]) -> Iterator[Diagnostic]:
+    for port in timing.calls:
+        if uses.get((node.id, port)) == {"subscribes"}:
+            yield Diagnostic(
+                "idle-timing",
+                f"`calls` of `{node.id}` has no effect for `{port}`: it is a topic, which nobody calls",
+                timing.places.get(f"calls {port}", timing.places.get("calls", timing.at)),
+                help="`calls` counts calls of services and actions; of a topic, `every` takes each n-th message",
+                element=node.id,
+            )
+
+
+def _promised(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    for port, output in timing.outputs.items():
+        if output.max_gap is not None and not output.conditional:
+            yield Diagnostic(
+                "idle-timing",
+                f"`max_gap` of `{port}` has no effect: it is published at each activation",
+                output.at,
+                help="write `conditional: true` beside it, or leave it out",
+                element=node.id,
+            )
+
+
+def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An element is pinned to a core that its host does not have.
+
+    Why: Cores are counted from 0, so that a host with four has 0 to 3. What is pinned to another one does not start, or runs
+    anywhere; timing takes it as not pinned.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 4}}
+        hosts: {pc: {cores: 4}}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 3}}
+        hosts: {pc: {cores: 4}}
+    """
+    said: set[Span] = set()
+    for node in architecture.nodes.values():
+        host = architecture.hosts.get(node.host or "")
+        for timing in node.timing.values():
+            place = timing.places.get("core")
+            if host is None or host.cores is None or timing.core is None or place is None or place in said:
+                continue
+            if timing.core >= host.cores:
+                said.add(place)
+                has = "only core 0" if host.cores == 1 else f"the cores 0 to {host.cores - 1}"
+                yield Diagnostic(
+                    "absent-core",
+                    f"`{node.id}` is pinned to core {timing.core}, but `{host.id}` has {has}",
+                    place,
+                    labels=(Label(host.at, "its host"),),
+                    help="cores are counted from 0; correct `core`, or the host's `cores`",
+                    element=node.id,
+                )
+
+
+RULES = ((idle_timing, Severity.WARNING), (absent_core, Severity.WARNING))

@@ -1,0 +1,76 @@
+"""Which program this is: what decides an output's bytes beside its inputs. Whoever keeps outputs names them by it."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import zlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib import metadata, util
+from pathlib import Path
+
+from archgen import resources
+
+_LIBRARIES = ("jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "pyyaml")
+_HERE = Path(__file__).resolve().parent
+
+
+@cache
+def writers() -> str:
+    """Stamp what writes and draws: the emitters with their fonts, the backends that ship, and all libraries."""
+    return f"{digest((_HERE, resources.path('backends')))} {_libraries()}"
+
+
+@cache
+def program() -> str:
+    """Stamp the whole of archgen: its code and data, what ships beside them, and all libraries."""
+    beside = (resources.path(name) for name in ("backends", "schemas", "ros_type_mapper.yaml"))
+    return f"{digest((_HERE.parent, *beside))} {_libraries()}"
+
+
+def digest(tops: Iterable[Path]) -> str:
+    """Digest files and folders: names and contents, but for what Python leaves there."""
+    found = hashlib.sha256()
+    for top in tops:
+        for file in sorted(_files(top)):
+            data = file.read_bytes()
+            name = file.relative_to(top.parent).as_posix()
+            found.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
+    return found.hexdigest()
+
+
+def _files(top: Path) -> Iterator[Path]:
+    if top.is_file():
+        yield top
+    for folder, inner, names in os.walk(top):
+        inner[:] = [name for name in inner if name not in {"__pycache__", "_data"}]
+        yield from (Path(folder, name) for name in names)
+
+
+@cache
+def _libraries() -> str:
+    """Name the libraries with their versions, and Graphviz's own parts with their sizes and dates."""
+    versions = [f"{name} {_version(name)}" for name in _LIBRARIES]
+    return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_graphviz())}"
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def _graphviz() -> Iterator[str]:
+    """Give the shared libraries of pygraphviz: one that was built anew may hold another Graphviz under the same version."""
+    found = util.find_spec("pygraphviz")
+    if found is None or found.origin is None:
+        return
+    package = Path(found.origin).parent
+    for folder in (package, package.with_name("pygraphviz.libs")):
+        for file in folder.glob("*") if folder.is_dir() else ():
+            if ".so" in file.suffixes or file.suffix in {".pyd", ".dll", ".dylib"}:
+                status = file.stat()
+                yield f"{file.name} {status.st_size} {status.st_mtime_ns}"

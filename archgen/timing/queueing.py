@@ -1,0 +1,89 @@
+"""How long messages are on a link of which only the bandwidth is written: until all that can wait in front of it is sent.
+
+In whatever order messages are sent, each has left at the end of the longest busy period. That makes what comes next later,
+and what it sends in turn burstier; so links and all else are looked at in turns, from below, until nothing changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import count
+
+from archgen.timing.propagate import State, propagate
+from archgen.timing.sending import sent
+from archgen.timing.system import Arc, System, grouped
+from archgen.timing.ticks import SECOND
+from archgen.timing.triggers import Triggers, triggers
+from archgen.timing.value import Cause, united
+from archgen.timing.windows import Budget, DivergedError, Load, Work, busy
+
+_TURNS = 24
+_LONGEST = 20 * SECOND
+"""A link that needs more turns, or longer than this, has no latency that could be told."""
+SATURATED, DIVERGED = Cause(notes=("unbounded",)), Cause(notes=("diverged",))
+
+
+def settled(system: System) -> tuple[System, Triggers, State]:
+    """Find the state of a system, with the latency of those links that state none but could."""
+    waits: dict[str, int | None] = {arc.link: 0 for arc in system.arcs if _asks(system, arc) and arc.link is not None}
+    for turn in count(1):
+        tried = _with(system, waits) if waits else system
+        firing = triggers(tried)
+        state = propagate(tried, firing)
+        found = {link: None if before is None else _wait(state, link) for link, before in waits.items()}
+        if found == waits:
+            break
+        waits = found if turn % _TURNS else {link: was if was == waits[link] else None for link, was in found.items()}
+    return tried, firing, state
+
+
+def _asks(system: System, arc: Arc) -> bool:
+    return arc.link is not None and arc.worst is None and bool(system.bandwidths.get(arc.link))
+
+
+def _with(system: System, waits: Mapping[str, int | None]) -> System:
+    """Lay latencies into a system, beside the best ones that are written."""
+
+    def laid(arc: Arc) -> Arc:
+        wait = waits.get(arc.link) if arc.link is not None and arc.worst is None else None
+        return arc if wait is None else replace(arc, best=arc.best or 0, worst=(arc.best or 0) + wait)
+
+    arcs = tuple(laid(arc) for arc in system.arcs)
+    return replace(
+        system,
+        arcs=arcs,
+        into=grouped((arc.target, arc) for arc in arcs),
+        out_of=grouped((arc.source, arc) for arc in arcs),
+        queued=frozenset(link for link, wait in waits.items() if wait is not None),
+    )
+
+
+def _wait(state: State, link: str) -> int | None:
+    found = longest(state, link, (arc for arc in state.system.arcs if arc.link == link))
+    return None if isinstance(found, Cause) or found * state.system.tick > _LONGEST else found
+
+
+def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
+    """Give the longest busy period of a link in ticks (rounded up), or why there is none."""
+    bandwidth = state.system.bandwidths[link]
+    if not bandwidth:
+        return Cause((link,))
+    works: list[Work] = []
+    causes: list[Cause] = []
+    for arc in arcs:
+        events = sent(state, arc)
+        if isinstance(events, Cause):
+            causes.append(events if events.missing else Cause((arc.source,), events.notes))
+        elif arc.size is None and events:
+            causes.append(Cause((arc.topic,)))
+        elif arc.size:
+            works.append(Work(-(-arc.size * SECOND // (bandwidth * state.system.tick)), events))
+    if sum(stream.rate * work.cost for work in works for stream in work.streams) >= 1:
+        return SATURATED
+    if causes:
+        return united(causes)
+    try:
+        return busy(Load(works).demand(), Budget()) if works else 0
+    except DivergedError:
+        return DIVERGED

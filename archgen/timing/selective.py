@@ -1,0 +1,20 @@
+"""Which arcs carry something of some activations only."""
+
+from __future__ import annotations
+
+from archgen.timing.system import Arc, System
+
+
+def selective(system: System, arc: Arc) -> bool:
+    """Tell whether an activation of the source may send nothing on an arc, with no promise of when one does.
+
+    So do a conditional output without `max_gap`, less than one call for each activation, and the answers of a server that
+    something else than this caller activates too.
+    """
+    source = system.activities[arc.source]
+    if arc.role == "request":
+        return source.calls.get(arc.output, 1) < 1
+    if arc.role == "data":
+        return arc.output in source.conditional and arc.output not in source.max_gaps
+    others = (one for one in system.into.get(arc.source, ()) if one.role != "request" or one.source != arc.target)
+    return source.period is not None or any(one.role == "request" or one.input in source.triggers for one in others)

@@ -1,0 +1,47 @@
+"""What is sent along an arc, before any link: samples, requests, answers, with the event model that they have there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.timing.propagate import State, arriving
+from archgen.timing.streams import Streams, called, late
+from archgen.timing.system import Activity, Arc
+from archgen.timing.value import Cause
+
+
+def sent(state: State, arc: Arc) -> Streams | Cause:
+    """Give the event model of what is sent along an arc, at its source."""
+    if arc.role == "answer":
+        return _answers(state, arc)
+    events = state.events[arc.source]
+    if isinstance(events, Cause):
+        return events
+    here = replace(arc, link=None, best=0, worst=0)
+    if arc.role == "data":
+        return arriving(state, here, events)
+    return arriving(state, here, called(events, calls(state.system.activities[arc.source], arc)), from_start=True)
+
+
+def calls(caller: Activity, request: Arc) -> Fraction:
+    """Give the calls that a client makes in each of its activations."""
+    return caller.calls.get(request.output, Fraction(1))
+
+
+def _answers(state: State, answer: Arc) -> Streams | Cause:
+    """Give the answers to one client: as many as it asked, each at most as much later as the server needs."""
+    server, response = state.system.activities[answer.source], state.responses[answer.source]
+    asking = state.system.into.get(server.id, ())
+    request = next(a for a in asking if a.role == "request" and a.source == answer.target and a.topic == answer.topic)
+    asked = sent(state, request)
+    if isinstance(asked, Cause) or not asked:
+        return asked
+    if response.value is None:
+        return response.cause
+    if request.best is None or request.worst is None:
+        return Cause((request.link or request.source,))
+    spread = max(response.value - (server.bcet or 0), 0) + request.worst - request.best
+    if server.behaviour in {"event", "on_demand"}:
+        return late(asked, spread)
+    return Cause((server.id,)) if server.period is None else late(asked, spread + server.period + server.jitter)

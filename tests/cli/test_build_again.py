@@ -1,0 +1,171 @@
+"""Building again: what nothing changed of is not made anew, and whatever changed is seen."""
+
+from __future__ import annotations
+
+import shutil
+import struct
+import zlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from archgen import outputs
+from tests.running import contents
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tests.cli.conftest import Run
+
+PROJECT = """\
+archgen: 1
+report: {chapters: [intro.md, overview]}
+groups:
+  sensing:
+    components:
+      camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
+"""
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><rect width="9" height="9"/></svg>'
+SAID = "wrote {0}/report.docx\nwrote {0}/site/index.html\nwrote {0}/diagrams\nwrote {0}/packed.yaml\n"
+
+
+def _png(grey: int) -> bytes:
+    """Make a picture of one dot."""
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress(bytes([0, grey]))) + chunk(b"IEND", b"")
+
+
+class Builds:
+    """Builds one project again and again, and counts how often it was made."""
+
+    def __init__(self, run: Run, project: Path, target: Path) -> None:
+        self.project, self.target, self.count = project, target, 0
+        self._run = run
+
+    def __call__(self, *words: str) -> int:
+        """Build; give how often it was made so far."""
+        ran = self._run("build", self.project, "-o", self.target, *words)
+        assert (ran.status, ran.err) == (0, "")
+        assert ran.out.startswith(SAID.format(self.target))
+        return self.count
+
+
+@pytest.fixture
+def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
+    project = tmp_path / "robot"
+    project.mkdir()
+    (project / "archgen.yaml").write_text(PROJECT, "utf-8")
+    (project / "intro.md").write_text("Hello ![a plan](plan.svg)\n", "utf-8")
+    (project / "plan.svg").write_text(SVG, "utf-8")
+    (project / "plan.png").write_bytes(_png(200))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    builds = Builds(run, project, tmp_path / "out")
+    make = outputs.make
+
+    def counted(*asked: object) -> object:
+        builds.count += 1
+        return make(*asked)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(outputs, "make", counted)
+    return builds
+
+
+def test_what_nothing_changed_of_is_not_made_again(build: Builds) -> None:
+    assert build() == 1
+    before = contents(build.target)
+    assert build() == 1
+    assert contents(build.target) == before
+    assert {"report.docx", "site/index.html", "diagrams/overview.svg", "packed.yaml"} <= set(before)
+
+
+CHANGES: dict[str, Callable[[Builds], object]] = {
+    "a key": lambda b: (b.project / "archgen.yaml").write_text(PROJECT.replace("camera:", "webcam:")),
+    "a comment": lambda b: (b.project / "archgen.yaml").write_text(PROJECT + "# why\n"),
+    "a chapter": lambda b: (b.project / "intro.md").write_text("Hello\n"),
+    "a picture": lambda b: (b.project / "plan.svg").write_text(SVG.replace("9", "8")),
+    "a picture beside it": lambda b: (b.project / "plan.png").write_bytes(_png(100)),
+    "the report": lambda b: (b.target / "report.docx").write_bytes(b""),
+    "the report is gone": lambda b: (b.target / "report.docx").unlink(),
+    "a page is gone": lambda b: (b.target / "site" / "index.html").unlink(),
+    "the site is gone": lambda b: shutil.rmtree(b.target / "site"),
+    "the packed file is a link": lambda b: _linked(b.target / "packed.yaml"),
+    "the stamp": lambda b: [stamp.write_bytes(b"{}") for stamp in _stamps(b)],
+    "the stamp's half": lambda b: [stamp.write_bytes(stamp.read_bytes()[:40]) for stamp in _stamps(b)],
+    "the stamp is a list": lambda b: [stamp.write_bytes(b'{"asked": [], "made": [1]}') for stamp in _stamps(b)],
+}
+
+
+def _linked(file: Path) -> None:
+    file.rename(file.with_name("moved"))
+    file.symlink_to("moved")
+
+
+def _stamps(build: Builds) -> list[Path]:
+    found = list((build.target.parent / "cache" / "archgen").glob("*.stamp"))
+    assert found
+    return found
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_whatever_changed_is_seen(build: Builds, change: str) -> None:
+    build()
+    CHANGES[change](build)
+    assert build() == 2
+    once = contents(build.target)
+    assert build() == 2
+    assert contents(build.target) == once
+
+
+@pytest.mark.parametrize("words", [("--level", "functional"), ("--select", "camera"), ("--revision", "r2")])
+def test_what_is_asked_for_is_seen(build: Builds, words: tuple[str, ...]) -> None:
+    build()
+    assert build(*words) == 2
+    assert build(*words) == 2
+
+
+def test_a_template_is_seen(build: Builds, tmp_path: Path) -> None:
+    build()
+    template = tmp_path / "house.docx"
+    template.write_bytes((build.target / "report.docx").read_bytes())
+    assert build("--template", str(template)) == 2
+    assert build("--template", str(template)) == 2
+
+
+def test_another_folder_is_filled(build: Builds, tmp_path: Path) -> None:
+    build()
+    before = contents(build.target)
+    build.target = tmp_path / "elsewhere"
+    assert build() == 2
+    assert contents(build.target) == before
+
+
+def test_files_of_others_are_still_refused(run: Run, build: Builds) -> None:
+    build()
+    (build.target / "site" / "mine.txt").write_text("mine")
+    ran = run("build", build.project, "-o", build.target)
+    assert ran.status == 2
+    assert "holds files that archgen did not write: `mine.txt`" in ran.err
+
+
+def test_further_backends_are_asked_each_time(build: Builds) -> None:
+    build("--backend", "wiki")
+    assert build("--backend", "wiki") == 2
+
+
+def test_what_was_warned_of_is_warned_of_again(run: Run, build: Builds, monkeypatch: pytest.MonkeyPatch) -> None:
+    from archgen.emit import graphviz
+
+    def missing(*_: object, **__: object) -> None:
+        msg = "no Graphviz here"
+        raise graphviz.MissingGraphviz(msg)
+
+    monkeypatch.setattr(graphviz, "draw", missing)
+    for _ in range(2):
+        ran = run("build", build.project, "-o", build.target)
+        assert (ran.status, ran.err) == (0, "warning: no Graphviz here\n")
+    assert build.count == 2
