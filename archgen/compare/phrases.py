@@ -26,6 +26,7 @@ _NAMES = {
     "timing.bcet": "best case execution time",
     "timing.response": "stated response time",
     "use_cases": "use cases",
+    "co_owners": "further owners",
     "latency.best": "best latency",
     "latency.worst": "worst latency",
     "forbid.from": "forbidden source",

@@ -23,8 +23,8 @@ from archgen.views.graphs.changes.folded import fits
 from archgen.views.shapes import Graph, Inlines
 from archgen.views.words import plural
 
-_LONGEST = 700
-"""So many characters of one sentence are shown."""
+_LONGEST, _TITLE = 700, 100
+"""So many characters of one sentence and of one title are shown."""
 _OPEN, _OPEN_IN_ALL = 8, 24
 """So many changes of one part, and of all of them, stand open; the others are folded."""
 _ERRORS = 5
@@ -162,7 +162,7 @@ def _changes(comment: Comment, found: Comparison) -> None:
 
 
 def _named(part: telling.Part) -> str:
-    title = plain(visible(part.title)) if part.title else ""
+    title = plain(_cut(visible(part.title), _TITLE)) if part.title else ""
     return " · ".join(word for word in (title, _code(part.id) if part.id else "") if word)
 
 
@@ -235,9 +235,11 @@ def _mermaid(graph: Graph) -> str:
 
 def _sentence(text: str) -> str:
     """Write a sentence of ours, with names from the project in it; what stands in backticks is code."""
-    shown = visible(" ".join(text.split()))
-    cut = shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 1]}…"
-    return _inlines(telling.runs(cut))
+    return _inlines(telling.runs(_cut(visible(" ".join(text.split())), _LONGEST)))
+
+
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 def _inlines(runs: Inlines) -> str:

@@ -15,7 +15,7 @@ CALLS = re.compile(
     | \w[\#!@][\w]            # the same in another repository; an e-mail address
     | \b[A-Za-z]+-\d          # GH-1, and prefixes that a repository defines
     | (?<![A-Za-z0-9])[0-9a-fA-F]{7,40}(?![A-Za-z0-9])   # a commit
-    | :\w+:                   # an emoji
+    | :[\w+-]+:                   # an emoji
     | \w://|\bwww\.           # an address
     """,
     re.VERBOSE,

@@ -13,6 +13,7 @@ from archgen.compare import Comparison
 from archgen.compare.change import Break
 from archgen.diagnostic import Severity
 from archgen.findings import diff_markdown
+from archgen.findings.comment import MOST
 from archgen.findings.diff_markdown import Names
 from archgen.sides import Side, compared
 
@@ -47,7 +48,7 @@ Told = Callable[..., str]
 def told(tmp_path: Path) -> Told:
     """Give the comment on what turns ROBOT into another text."""
 
-    def tell(*changes: tuple[str, str], before: str = ROBOT, most: int = diff_markdown.MOST) -> str:
+    def tell(*changes: tuple[str, str], before: str = ROBOT, most: int = MOST) -> str:
         after = before
         for old, new in changes:
             assert old in after
@@ -93,11 +94,11 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 
 | chain | before | after | difference | deadline | verdict |
 | --- | --- | --- | --- | --- | --- |
-| `see` | 127 ms | 167 ms | +40 ms | 150 ms | **missed (was met)** |
+| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **missed (was met)** |
 
 #### New findings
 
-- warning `late-chain`: the chain `see` may take 167 ms, its deadline is 150 ms (`robot.yaml:21:10`)
+- warning `late-chain`: the chain `see` may take 167 ms, its deadline is 150 ms (`robot.yaml:22:10`)
 
 ```mermaid
 flowchart LR
@@ -114,7 +115,7 @@ flowchart LR
   classDef neighbour stroke:#8a8a8a,stroke-width:1px
 ```
 
-<sub>\\+ added, − removed, \\~ changed, → renamed or moved; the rest is as before.</sub>
+<sub>\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before.</sub>
 """
     )
 

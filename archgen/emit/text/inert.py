@@ -14,7 +14,7 @@ from archgen.emit.text import filters
 _GAP = "\u200b"
 _ENTITY = "&#8203;"
 _SPOTS = re.compile(
-    r"(?<=[@#!$%~&^:])(?=\S)"  # @user, #1, !1, $1, %1, ~label, &1, ^alert, :emoji:, http://
+    r"(?<=[@#!$%~&^:])(?=[\w\"\[+/-])"  # @user, #1, !1, $1, %1, ~label, &1, ^alert, :emoji:, http://
     r"|(?<=[A-Za-z])(?=-\d)"  # GH-1, and the like that a repository may define
     r"|(?<=\w)(?=\.[^\W\d])"  # www.x, x.com
     r"|(?<=\[)(?=[\w\[])"  # [[wiki]], [vulnerability:1]
