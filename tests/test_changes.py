@@ -30,7 +30,8 @@ def sides(folder: Path, before: str, after: str) -> Made:
         (folder / name).mkdir()
         (folder / name / "robot.yaml").write_text(text, encoding="utf-8")
         read.append(Side(name, pipeline.check(folder / name / "robot.yaml")))
-    return compared(*read), *read
+    old, new = read
+    return compared(old, new), old, new
 
 
 def robot(folder: Path) -> Made:

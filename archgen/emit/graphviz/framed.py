@@ -31,9 +31,9 @@ def _lost(drafted: Draft, scene: Scene) -> int:
 
 
 def _scale(scene: Scene) -> float:
-    """Say how many times too large a drawing is for a page on a screen."""
+    """Say how many times too large a drawing is for a page on a screen; what fits it fits well."""
     left, bottom, right, top = scene.bounds()
-    return max((right - left) / _PAGE[0], (top - bottom) / _PAGE[1])
+    return max(1.0, (right - left) / _PAGE[0], (top - bottom) / _PAGE[1])
 
 
 def _laid_out(drafted: Draft, direction: str) -> Scene:
