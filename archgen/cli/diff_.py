@@ -127,6 +127,9 @@ def _put(made: str | bytes, output: Path | None) -> None:
 @click.argument("before", required=False, metavar="[A]")
 @click.argument("after", required=False, metavar="[B]")
 @click.option("--format", "form", type=click.Choice(list(FORMATS)), default="text", show_default=True)
+@click.option(
+    "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: standard output]")
 @click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
 @options.select
@@ -136,6 +139,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     after: str | None,
     form: str,
     *,
+    breaking: bool,
     output: Path | None,
     exit_code: bool,
     select: str | None,
@@ -148,9 +152,12 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     Order, comments, formatting and moves between files are no changes.
     """
     from archgen import sides
+    from archgen.compare.breaking import only
 
     old, new = _sides(before, after, project)
     found = _selected(sides.compared(old, new), old, new, select)
+    if breaking:
+        found = only(found)
     with run.phrased():
         _put(FORMATS[form](found, old, new), output)
-    sys.exit(1 if exit_code and not found.empty else 0)
+    sys.exit(1 if (exit_code and not found.empty) or (breaking and found.failing) else 0)

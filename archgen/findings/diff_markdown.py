@@ -75,6 +75,8 @@ def _command(names: Names) -> str:
 def _heading(found: Comparison, broken: Broken) -> str:
     """Say how many changes there are, and whom they break and concern."""
     unsure = " in what could be read" if any(broken) else ""
+    if found.narrowed and not found.changes:
+        return f"### No change breaks another partner{unsure}"
     if not found.changes:
         new = sum(each not in broken[1] for each in found.new)
         counts = [plural(new, "new finding")] if new else []
@@ -122,21 +124,16 @@ def _breaking(comment: Comment, found: Comparison) -> None:
         return
     comment.add("#### Breaking")
     if found.failing:
-        comment.add("The project's policy refuses this unless an `accepted` entry with a reason names it.")
-    comment.items("", [_breaks(change) for change in breaking])
+        comment.add(_sentence(telling.REFUSED))
+    comment.items("", [_breaks(change, found) for change in breaking])
 
 
-def _breaks(change: Change) -> str:
-    whys: dict[str, list[str]] = {}
-    for each in change.breaks:
-        whys.setdefault(each.partner, []).append(each.why)
-    lines = [f"{_change(change)}"]
-    for partner, reasons in whys.items():
-        said = "; ".join(_sentence(reason) for reason in dict.fromkeys(reasons))
-        lines.append(f"  - breaks {_code(partner)}: {said}")
-    if change.accepted is not None:
-        lines.append(f"  - accepted: {_sentence(change.accepted)}")
-    return "\n".join(lines)
+def _breaks(change: Change, found: Comparison) -> str:
+    lines = [_change(change)]
+    for why, partners in telling.reasons(change).items():
+        lines.append(f"  - breaks {_partners(sorted(set(partners)))}: {_sentence(why)}")
+    accepted = telling.accepted(change, found)
+    return "\n".join((*lines, *([f"  - {_sentence(accepted)}"] if accepted else [])))
 
 
 def _changes(comment: Comment, found: Comparison) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from archgen.compare import ChainChange, Change, Comparison
 from archgen.diagnostic import Diagnostic, Severity
+from archgen.findings import diff_verdict
 from archgen.findings.escape import plain_line, visible
 from archgen.views.changes import telling
 
@@ -15,10 +16,14 @@ _COLOURS = {"added": "32", "removed": "31", "changed": "33", "renamed": "36", "m
 
 def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     """Give the lines of a comparison."""
+    if found.narrowed:
+        yield from breaking(found, colour=colour)
+        yield from diff_verdict.lines(found)
+        return
     if found.empty:
         yield "no changes"
         return
-    yield from _breaking(found, colour=colour)
+    yield from breaking(found, colour=colour)
     for part in telling.parts([change for change in found.changes if not change.breaks], found):
         yield _paint(visible(part.heading), "1", colour=colour)
         for change in part.changes:
@@ -31,7 +36,7 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     yield visible(telling.summary(found))
 
 
-def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
+def breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
     """Give the changes that break a partner, with the reasons."""
     breaking = [change for change in found.changes if change.breaks]
     if not breaking:
@@ -41,8 +46,9 @@ def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
         yield from _change(change, colour=colour)
         for why in dict.fromkeys(each.why for each in change.breaks):
             yield visible(f"      {why}")
-        if change.accepted is not None:
-            yield visible(f"      accepted: {change.accepted}")
+        accepted = telling.accepted(change, found)
+        if accepted:
+            yield visible(f"      {accepted}")
     yield ""
 
 

@@ -89,7 +89,8 @@ def _notices(told: Told) -> Iterator[Paragraph]:
             more = [Text(f"and {len(errors) - _ERRORS} more", line_break=True)] if len(errors) > _ERRORS else []
             yield Paragraph((Text(side, code=True), Text(said), *listed, *more), "error")
     if told.found.empty:
-        yield Paragraph(words.text("No change of the architecture."), "note")
+        said = "No change breaks another partner." if told.found.narrowed else "No change of the architecture."
+        yield Paragraph(words.text(said), "note")
 
 
 def _breaking(found: Comparison) -> Section | None:
@@ -98,25 +99,18 @@ def _breaking(found: Comparison) -> Section | None:
         return None
     blocks: list[Block] = []
     if found.failing:
-        refused = "The project's policy refuses this unless an `accepted` entry with a reason names it."
-        blocks.append(Paragraph(telling.runs(refused), "error"))
-    blocks.append(Bullets(tuple(_broken(change) for change in breaking)))
+        blocks.append(Paragraph(telling.runs(telling.REFUSED), "error"))
+    blocks.append(Bullets(tuple(_broken(change, found) for change in breaking)))
     return Section("changes:breaking", "Breaking changes", tuple(blocks))
 
 
-def _broken(change: Change) -> Inlines:
-    lines = [
-        run
-        for each in dict.fromkeys(change.breaks)
-        for run in (
-            Text("breaks ", strong=True, line_break=True),
-            Text(each.partner, strong=True),
-            Text(": "),
-            *telling.runs(each.why),
-        )
-    ]
-    accepted = [Text("accepted: ", line_break=True), Text(change.accepted)] if change.accepted is not None else []
-    return (*_change(change), *lines, *accepted)
+def _broken(change: Change, found: Comparison) -> Inlines:
+    lines: list[Text] = []
+    for why, partners in telling.reasons(change).items():
+        names = ", ".join(sorted(set(partners)))
+        lines += [Text(f"breaks {names}", strong=True, line_break=True), Text(": "), *telling.runs(why)]
+    accepted = telling.accepted(change, found)
+    return (*_change(change), *lines, *([Text(accepted, line_break=True)] if accepted else []))
 
 
 def _pictures(told: Told) -> Section | None:

@@ -79,9 +79,10 @@ def textual(change: Change) -> bool:
 
 
 def summary(found: Comparison) -> str:
-    """Count what changed, and name whom it concerns: `3 changes (1 added, 2 removed), 1 new finding; concerns certh`."""
+    """Count what changed, and name whom it concerns and breaks: `3 changes (1 added, 2 removed); concerns certh`."""
     concerns = f"; concerns {', '.join(found.owners)}" if found.owners else ""
-    return counted(found) + concerns
+    losers = broken(found.changes)
+    return counted(found) + concerns + (f"; breaks {', '.join(losers)}" if losers else "")
 
 
 def counted(found: Comparison) -> str:
@@ -103,6 +104,27 @@ def by_kind(changes: Iterable[Change]) -> str:
 def broken(changes: Iterable[Change]) -> tuple[str, ...]:
     """Name the partners for whom something breaks."""
     return tuple(sorted({partner for change in changes for partner in change.broken}))
+
+
+REFUSED = "`review.breaking: error` refuses this: mend it, or agree on it and write the reason below `review: accepted:` at the element."
+"""What to do about changes that the project's policy does not let pass."""
+
+
+def reasons(change: Change) -> dict[str, list[str]]:
+    """Give each reason why a change breaks somebody, with the partners whom it breaks."""
+    found: dict[str, list[str]] = {}
+    for each in change.breaks:
+        found.setdefault(each.why, []).append(each.partner)
+    return found
+
+
+def accepted(change: Change, found: Comparison) -> str:
+    """Say why a breaking change is accepted, and whether that was written for another change; empty where it is not."""
+    if change.accepted is None:
+        return ""
+    older = found.before.architecture.review.accepted.get(change.element)
+    entry = " (by an entry that was there before)" if older and older.reason == change.accepted else ""
+    return f"accepted{entry}: {change.accepted}"
 
 
 def runs(text: str) -> Inlines:
