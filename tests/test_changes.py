@@ -81,15 +81,21 @@ def test_what_the_page_says(tmp_path: Path) -> None:
     text = unescape(re.sub(r"<[^>]+>", " ", html[html.index("<main") :]))
     said = " ".join(text.split())
     assert "Robot What changed: before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
-    assert "Concerns CERTH, SSSA" in said
+    assert "Breaks CERTH, SSSA Concerns CERTH, SSSA Breaking changes" in said
     assert (
-        "Display ~ display.finder : worst case execution time 20 ms → 60 ms + component display.lamp is added ~" in said
+        "~ display.finder : worst case execution time 20 ms → 60 ms breaks certh : makes the chain see miss its" in said
     )
+    assert "Other changes Display + component display.lamp is added" in said
     assert "see 127 ms 167 ms +40 ms 150 ms missed (was met)" in said
     assert re.search(
         r"warning late-chain the chain see may take 167 ms, its deadline is 150 ms robot\.yaml:\d+:10", said
     )
-    assert said.index("Pictures") < said.index("Latency of chains") < said.index("New findings")
+    assert (
+        said.index("Breaking changes")
+        < said.index("Pictures")
+        < said.index("Latency of chains")
+        < said.index("New findings")
+    )
 
 
 def test_no_change_is_one_line(tmp_path: Path) -> None:

@@ -80,15 +80,14 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
     assert (
         told(("wcet: 20 ms", "wcet: 60 ms"))
         == """\
-### 1 change of the architecture: concerns `sssa`
+### 1 change of the architecture: breaks `certh`, also concerns `sssa`
 
 `main` → `arm`: 1 changed; new: 1 warning
 
-#### Changes
-
-**Display · `display`**
+#### Breaking
 
 - \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
+  - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
 
 #### Latency of chains
 
@@ -125,8 +124,8 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
         "rate: 10 Hz", "rate: 20 Hz"
     )
     found, names, broken = comparison(tmp_path, ROBOT, after)
-    rate, kind = found.changes
-    assert (rate.sort, kind.sort) == ("component", "type")
+    kind, rate = found.changes
+    assert (kind.sort, rate.sort) == ("type", "component")
     breaks = (Break("sssa", "`display.finder` takes `Image`"), Break("sssa", "two"), Break("certh", "two"))
     kind = replace(kind, breaks=breaks, accepted="agreed in May")
     text = diff_markdown.render(replace(found, changes=(rate, kind)), names, broken)
@@ -154,9 +153,9 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     )
 
 
-def test_who_reads_a_type_is_concerned_when_its_message_changes(told: Told) -> None:
+def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
     text = told(("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"))
-    assert text.startswith("### 1 change of the architecture: concerns `certh` and `sssa`\n")
+    assert text.startswith("### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n")
     assert '  n0 -->|"#126; Image"| n1\n' in text
 
 
