@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.compare.elements import SOME, Element, Key
+from archgen.compare.elements import MAPPED, SOME, Element, Key
 from archgen.compare.nodes import default_qos
 from archgen.compare.values import Title, plain
+from archgen.model.names import made_title
 
 Row = tuple[str, object, object]
 _OWNERS = frozenset({"owner", "co_owners"})
@@ -37,7 +38,13 @@ def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element]
     """Say whether a key only follows: a made title its id, an owner or a timing what it is taken from."""
     one, other = old.values.get(key), new.values.get(key)
     if isinstance(one, Title) and isinstance(other, Title):
-        return one.text == other.text or (one.made and other.made)
+        made = one.made and other.made
+        return one.text == other.text or made or (old.own != new.own and _made(old, one) and _made(new, other))
+    if new.sort == "component" and (key == MAPPED or key.startswith("timing.")):
+        came_or_went = old.values.get(MAPPED) != new.values.get(MAPPED)
+        return key == MAPPED or (came_or_went and None in {one, other})
+    if new.sort == "node" and key == "host":
+        return _host(old, before) == _host(new, after)
     if key in _OWNERS or (new.sort == "node" and key.startswith("timing.")):
         return _orphaned(old, new, before, after) or (key in _OWNERS and _same_giver(key, old, new, before, after))
     if key in {"inputs", "outputs"}:
@@ -45,6 +52,17 @@ def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element]
     if new.sort == "project":
         return (key in {"id", "title"} and None in {one, other}) or (key == "chapters" and _only_chapters(one, other))
     return new.sort == "port" and key == "carried"
+
+
+def _made(element: Element, title: Title) -> bool:
+    """Say whether a title is the id in words: it follows a rename, be it written or not."""
+    return title.text.casefold() == made_title(element.own.rpartition(".")[2]).casefold()
+
+
+def _host(node: Element, listed: Mapping[Key, Element]) -> object:
+    """Give the host that a node runs on: its own, or its container's."""
+    container = listed.get(("container", str(node.values.get("container"))))
+    return node.values.get("host") or (container.values.get("host") if container else None)
 
 
 def _orphaned(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> bool:

@@ -45,6 +45,12 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
         others = [("output", name) for name in wires.sources.get(element.id, ())]
     elif change.sort == "output" and change.key in {None, "type"}:
         others = [("input", name) for name in wires.readers.get(element.id, ())]
+    elif change.sort == "port":
+        others = [("input", name) for port in element.refs for name in wires.readers.get(port, ())]
+    elif change.sort == "chain":
+        others = list(_way(element))
+    elif change.sort in {"host", "container", "link"}:
+        others = list(_there(element, listed))
     elif change.sort in {"type", "requirement"}:
         others = list(_users(element, listed))
     elif change.sort == "message":
@@ -56,6 +62,26 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
         other = listed.get(key)
         if other and other.owner:
             yield other.owner
+
+
+def _way(chain: Element) -> Iterator[Key]:
+    """Give the components and nodes that a chain leads through."""
+    through = chain.values.get("through")
+    for point in through if isinstance(through, tuple) else ():
+        yield from (("component", point), ("node", point), ("output", point))
+
+
+def _there(place: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
+    """Give the nodes on a host, in a container, or on the hosts that a link connects."""
+    hosts = place.values.get("connects") if place.sort == "link" else frozenset({place.id})
+    if not isinstance(hosts, frozenset):
+        return
+    key = "container" if place.sort == "container" else "host"
+    held = {name for (sort, name), e in listed.items() if sort == "container" and e.values.get("host") in hosts}
+    for found, other in listed.items():
+        inside = key == "host" and other.values.get("container") in held
+        if found[0] == "node" and (other.values.get(key) in hosts or inside):
+            yield found
 
 
 def _users(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:

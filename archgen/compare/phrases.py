@@ -65,6 +65,8 @@ def changed_key(change: Change) -> str:
         return f"the {_blank(key)} of {said} {_rewritten(before, after)}"
     if change.sort in {"input", "output"} and key in {"type", "optional"}:
         return f"{said} {_of_port(change)}"
+    if key == "container" and (before is None or after is None):
+        return f"{said} {'no longer' if after is None else 'now'} runs in the container {shown(after or before)}"
     if key in _FLAT and after is not None and before is not None:
         return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
     if isinstance(before, list) or isinstance(after, list):
