@@ -10,6 +10,8 @@ from archgen.compare.values import Title, plain
 from archgen.model.names import made_title
 
 Row = tuple[str, object, object]
+_TO = {"implements": "component", "requirements": "requirement", "use_cases": "use_case", "connects": "host"}
+"""Keys that name elements, by their sort: who no longer names what is removed says nothing new."""
 _OWNERS = frozenset({"owner", "co_owners"})
 
 
@@ -43,6 +45,10 @@ def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element]
     if new.sort == "component" and (key == MAPPED or key.startswith("timing.")):
         came_or_went = old.values.get(MAPPED) != new.values.get(MAPPED)
         return key == MAPPED or (came_or_went and None in {one, other})
+    if key in _TO and isinstance(one, frozenset) and isinstance(other, frozenset | None):
+        return one > (other or frozenset()) and all(
+            (_TO[key], name) not in after for name in one - (other or frozenset())
+        )
     if new.sort == "node" and key == "host":
         return _host(old, before) == _host(new, after)
     if key in _OWNERS or (new.sort == "node" and key.startswith("timing.")):

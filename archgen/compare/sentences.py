@@ -23,7 +23,6 @@ _DOES: Mapping[str, Mapping[str, str]] = {
     "requirement": {"use_cases": "belongs to"},
     "link": {"connects": "connects"},
     "chain": {"through": "leads through", "deadline": "must end within"},
-    "policy": {"forbid.from": "forbids what leads from", "forbid.to": "to"},
 }
 """What is told of a new element of a sort: its keys, each with a verb."""
 _MOST = 3
@@ -48,6 +47,8 @@ def _called(element: Element) -> str:
 
 def _being(element: Element) -> str:
     """Say of a new element what tells most: a node's component and place, a type's message, how a chain leads."""
+    if element.sort == "policy":
+        return f"; nothing may lead from `{short(str(element.values['forbid.from']))}` to `{short(str(element.values['forbid.to']))}`"
     does = [
         f"{verb} {_ticked(named)}"
         for key, verb in _DOES.get(element.sort, {}).items()
@@ -100,11 +101,23 @@ def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
             yield _end_of(name, "fed", change.kind)
         elif ("input", reader) not in inside:
             yield f"`{name}` {'loses one of its sources' if change.kind == 'removed' else 'gets another source'}"
-    if element.sort == "node" and change.kind == "removed" and isinstance(did := element.values.get("implements"), frozenset):
-        still = {name for key, other in told.after.items() if key[0] == "node" for name in _several(other.values.get("implements"))}
+    if (
+        element.sort == "node"
+        and change.kind == "removed"
+        and isinstance(did := element.values.get("implements"), frozenset)
+    ):
+        still = {
+            name
+            for key, other in told.after.items()
+            if key[0] == "node"
+            for name in _several(other.values.get("implements"))
+        }
         left = [name for name in sorted(did) if name not in still and ("component", name) in told.after]
         yield from [f"no node implements {_ticked(left)} any more"] if left else []
     yield from _unserved(element, told)
+    if element.sort == "requirement" and change.kind == "removed":
+        served = sorted(told.serving[0].get(element.id, ()))
+        yield from [f"it was served by {_ticked(served)}"] if served else []
 
 
 def _reading(names: Iterable[str], inside: Collection[Key], told: Told, kind: str) -> Iterator[str]:
@@ -161,7 +174,7 @@ def renamed(change: Change, told: Told) -> str:
         said = f"{sort} `{was}` is called `{change.element.rpartition('.')[2]}` now"
     else:
         said = f"{sort} `{short(was)}` is called `{short(change.element)}` now"
-    sure = "" if change.confidence >= 0.9 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
+    sure = "" if change.confidence >= 0.85 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
     return said + sure + _following(change, told)
 
 
@@ -226,13 +239,18 @@ def _reader_went(each: Rewired, reader: str, told: Told) -> str:
     )
 
 
-def port(kind: str, element: Element) -> str:
+def port(kind: str, element: Element, told: Told) -> str:
     """Say that a node carries a port, or no longer does."""
     node, _, name = element.own.partition(".")
     named = ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
     on = f" on {named}" if named else ""
     verb = "now has" if kind == "added" else "no longer has"
-    return f"node `{node}` {verb} `{name}`{on}"
+    others = (
+        other for other in told.after.values() if other.sort == "port" and other.refs and other.refs == element.refs
+    )
+    heirs = sorted({other.own.partition(".")[0] for other in others if other.parent != element.parent})
+    heir = f": `{heirs[0]}` has it now" if kind == "removed" and len(heirs) == 1 else ""
+    return f"node `{node}` {verb} `{name}`{on}{heir}"
 
 
 def changed(change: Change, told: Told) -> str:
