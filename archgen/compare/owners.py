@@ -11,8 +11,8 @@ from archgen.compare.wiring import Wires
 
 
 def owners(changes: Sequence[Change], told: Told) -> tuple[str, ...]:
-    """Name the partners who should look at the changes: owners of what changed and of the other ends of its connections."""
-    found = set[str]()
+    """Name the partners who should look at the changes: owners of what changed and of its other ends, and who is broken."""
+    found = {partner for change in changes for partner in change.broken}
     own = {(e.sort, e.own): e for e in told.before.values()}
     for change in _all(changes):
         for listed, wires in ((told.before, told.old), (told.after, told.new)):
@@ -40,28 +40,31 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
         return
     if element.owner:
         yield element.owner
-    others: list[Key] = []
-    if change.sort == "connection":
-        others = [("output", name) for name in wires.sources.get(element.id, ())]
-    elif change.sort == "output" and change.key in {None, "type"}:
-        others = [("input", name) for name in wires.readers.get(element.id, ())]
-    elif change.sort == "port":
-        others = [("input", name) for port in element.refs for name in wires.readers.get(port, ())]
-    elif change.sort == "chain":
-        others = list(_way(element))
-    elif change.sort in {"host", "container", "link"}:
-        others = list(_there(element, listed))
-    elif change.sort in {"type", "requirement"}:
-        others = list(_users(element, listed))
-    elif change.sort == "message":
-        types = [
-            other for other in listed.values() if other.sort == "type" and other.values.get("message") == element.id
-        ]
-        others = [key for one in types for key in _users(one, listed)]
-    for key in others:
+    for key in _others(change, element, listed, wires):
         other = listed.get(key)
         if other and other.owner:
             yield other.owner
+
+
+def _others(change: Change, element: Element, listed: Mapping[Key, Element], wires: Wires) -> Iterator[Key]:
+    """Give what is at the other end of an element that changed."""
+    match change.sort:
+        case "connection":
+            yield from (("output", name) for name in wires.sources.get(element.id, ()))
+        case "output" if change.key in {None, "type"}:
+            yield from (("input", name) for name in wires.readers.get(element.id, ()))
+        case "port":
+            yield from (("input", name) for port in element.refs for name in wires.readers.get(port, ()))
+        case "chain":
+            yield from _way(element)
+        case "host" | "container" | "link":
+            yield from _there(element, listed)
+        case "type" | "requirement":
+            yield from _users(element, listed)
+        case "message":
+            types = (each for each in listed.values() if each.sort == "type")
+            for one in types:
+                yield from _users(one, listed) if one.values.get("message") == element.id else ()
 
 
 def _way(chain: Element) -> Iterator[Key]:

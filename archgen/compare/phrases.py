@@ -12,7 +12,7 @@ _PROSE = frozenset({"functionality", "description", "comment", "text", "external
 _FLAT = {
     "owner": "belongs to",
     "host": "runs on",
-    "container": "runs in",
+    "container": "runs in the container",
     "message": "is",
     "deadline": "must end within",
     "role": "is a",
@@ -65,13 +65,21 @@ def changed_key(change: Change) -> str:
         return f"the {_blank(key)} of {said} {_rewritten(before, after)}"
     if change.sort in {"input", "output"} and key in {"type", "optional"}:
         return f"{said} {_of_port(change)}"
-    if key == "container" and (before is None or after is None):
-        return f"{said} {'no longer' if after is None else 'now'} runs in the container {shown(after or before)}"
-    if key in _FLAT and after is not None and before is not None:
-        return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
+    if key in _FLAT and _tellable(key, before, after):
+        return f"{said} {_flat(key, before, after)}"
     if isinstance(before, list) or isinstance(after, list):
         return f"{said}{_sets(key, before, after)}"
     return f"{said}: {_values(_name(key), before, after)}"
+
+
+def _tellable(key: str, before: object, after: object) -> bool:
+    return key == "container" or (before is not None and after is not None)
+
+
+def _flat(key: str, before: object, after: object) -> str:
+    if after is None:
+        return f"no longer {_FLAT[key]} {shown(before)}"
+    return f"now {_FLAT[key]} {_instead(before, after, '')}"
 
 
 def _of_port(change: Change) -> str:
