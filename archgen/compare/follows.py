@@ -29,6 +29,8 @@ def follows(key: str, old: Element, new: Element, before: Listed, after: Listed)
         case "node":
             moved = _host(old, before) != _host(new, after)
             return not moved if key == "host" else key.startswith("timing.") and _orphaned(old, new, before, after)
+        case "message":
+            return key == "parts" and old.values.get("fields") != new.values.get("fields")
     unnamed = new.sort == "project" and key in {"id", "title"} and None in {one, other}
     return unnamed or key == "carried" or (key == "chapters" and _only_chapters(one, other))
 
