@@ -23,6 +23,11 @@ def follows(key: str, old: Element, new: Element, before: Listed, after: Listed)
         return _no_longer_there(one, other, _TO[key], after)
     if key in _OWNERS:
         return _orphaned(old, new, before, after) or _same_giver(key, old, new, before, after)
+    return _by_sort(key, old, new, before, after)
+
+
+def _by_sort(key: str, old: Element, new: Element, before: Listed, after: Listed) -> bool:
+    one, other = old.values.get(key), new.values.get(key)
     match new.sort:
         case "component":
             return SOME in {one, other} if key in {"inputs", "outputs"} else _unmapped(key, old, new)

@@ -11,8 +11,8 @@ from archgen.compare.wiring import Wires
 
 
 def owners(changes: Sequence[Change], told: Told) -> tuple[str, ...]:
-    """Name the partners who should look at the changes: owners of what changed and of its other ends, and who is broken."""
-    found = {partner for change in changes for partner in change.broken}
+    """Name the partners who should look at the changes: owners of what changed and of its other ends."""
+    found = set[str]()
     own = {(e.sort, e.own): e for e in told.before.values()}
     for change in _all(changes):
         for listed, wires in ((told.before, told.old), (told.after, told.new)):
