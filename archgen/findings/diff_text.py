@@ -81,10 +81,16 @@ def breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
     if not breaking:
         return
     yield _paint("Breaking changes", "1", colour=colour)
+    said = set[str]()
     for change in breaking:
         yield from _change(change, colour=colour)
-        for why in dict.fromkeys(each.why for each in change.breaks):
-            yield visible(f"      {why}")
+        reasons = dict.fromkeys(each.why for each in change.breaks)
+        for why in reasons:
+            if why not in said:
+                yield visible(f"      {why}")
+        if not said.isdisjoint(reasons):
+            yield "      as above" if said.issuperset(reasons) else "      and as above"
+        said |= reasons.keys()
         if change.accepted is not None:
             older = found.before.architecture.review.accepted.get(change.element)
             entry = " (by an entry that was there before)" if older and older.reason == change.accepted else ""
