@@ -60,7 +60,8 @@ def _others(change: Change, element: Element, listed: Mapping[Key, Element], wir
         case "host" | "container" | "link":
             yield from _there(element, listed)
         case "type" | "requirement":
-            yield from _users(element, listed)
+            for key in _users(element, listed):
+                yield from (key, *(("input", reader) for reader in wires.readers.get(key[1], ())))
         case "message":
             types = (each for each in listed.values() if each.sort == "type")
             for one in types:
