@@ -42,16 +42,7 @@ class Arrivals:
     def sent_gap(self, arc: Arc) -> Value:
         """Give the largest gap between two messages, where they are sent."""
         pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
-        gap = nameless(pace.gap if pace else UNKNOWN, arc.source)
-        if arc.output in self.analysis.system.activities[arc.source].conditional and known(gap):
-            return _largest((gap, self._done_gap(arc.source)))  # no promise is kept more often than there is a chance
-        return gap
-
-    def _done_gap(self, name: str) -> Value:
-        """Give the largest gap between two ends of an activity: that of its activations, and R - B."""
-        response = self.analysis.responses[name]
-        best = Value(-(response.best.value or Fraction(0)))
-        return bounded((self.gap(name), nameless(response.worst, name), best))
+        return nameless(pace.gap if pace else UNKNOWN, arc.source)
 
     def waits_for_all(self, activity: Activity) -> bool:
         """Tell whether several triggers must have come before an activity fires."""
@@ -107,19 +98,19 @@ class Arrivals:
         return _smallest([*gaps, Value(None, complete=False, missing=(activity.id,))] if outside else gaps)
 
     def _arriving_on(self, arc: Arc) -> Value:
-        if arc.best is None or arc.worst is None:
+        if arc.worst is None:
             return Value(None, complete=False, missing=(arc.link or arc.topic,))
-        return bounded((self.sent_gap(arc), self.time(arc.worst - arc.best)))
+        return bounded((self.sent_gap(arc), self.time(arc.worst - (arc.best or 0))))
 
     def _smallest_gap(self, activity: Activity) -> Value:
         """Give the smallest gap between two triggers: known of a single stream only, else 0."""
         arcs = [arc for arc in self.analysis.system.into.get(activity.id, ()) if self.fires(arc)]
-        if len(arcs) != 1 or arcs[0].best is None or arcs[0].worst is None:
+        if len(arcs) != 1 or arcs[0].worst is None:
             return ZERO
         pace = self.analysis.outputs.get((arcs[0].source, arcs[0].output))
         if pace is None or pace.distance.value is None or not known(pace.distance, "at least"):
             return ZERO
-        spread = (arcs[0].worst - arcs[0].best) * self.analysis.system.tick
+        spread = (arcs[0].worst - (arcs[0].best or 0)) * self.analysis.system.tick
         return Value(max(Fraction(0), pace.distance.value - spread))
 
 

@@ -33,8 +33,8 @@ def total(values: Iterable[Value]) -> Value:
     if all(one.side == "exact" and one.value is not None and not one.assumptions for one in found):
         return Value(added([one.value for one in found if one.value]))
     reasons = _reasons(found)
-    if any(one.value is None and one.complete for one in found):
-        return replace(reasons, value=None, complete=True, side="exact")
+    if any(one.value is None and (one.complete or boundless(one)) for one in found):
+        return replace(reasons, value=None, side="exact")
     known = [one.value for one in found if one.value is not None]
     return replace(reasons, value=added(known) if known or not found else None)
 
