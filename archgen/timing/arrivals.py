@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
-from archgen.timing.sums import bounded, known, nameless, times
+from archgen.timing.sums import bounded, known, nameless, smallest, times, unknown
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
 
@@ -98,9 +98,16 @@ class Arrivals:
         return _smallest([*gaps, Value(None, complete=False, missing=(activity.id,))] if outside else gaps)
 
     def _arriving_on(self, arc: Arc) -> Value:
-        if arc.worst is None:
-            return Value(None, complete=False, missing=(arc.link or arc.topic,))
-        return bounded((self.sent_gap(arc), self.time(arc.worst - (arc.best or 0))))
+        spread = unknown(*self.unlinked(arc)) if arc.worst is None else self.time(arc.worst - (arc.best or 0))
+        return bounded((self.sent_gap(arc), spread))
+
+    def unlinked(self, arc: Arc) -> tuple[str, ...]:
+        """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
+        if arc.link is not None:
+            return (arc.link,)
+        activities = self.analysis.system.activities
+        homeless = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
+        return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
     def _smallest_gap(self, activity: Activity) -> Value:
         """Give the smallest gap between two triggers: known of a single stream only, else 0."""
@@ -126,10 +133,7 @@ def _largest(values: Iterable[Value]) -> Value:
 
 def _smallest(values: Iterable[Value]) -> Value:
     parts = tuple(values)
-    shut = [part for part in parts if known(part)]
-    if shut:
-        return min(shut, key=lambda part: part.value or Fraction(0))
-    return bounded(parts) if parts else UNKNOWN
+    return smallest(parts) if parts else UNKNOWN
 
 
 def _less(value: Value, off: Value) -> Value:
