@@ -91,3 +91,11 @@ def test_the_json_says_on_which_side_a_figure_holds() -> None:
     assert timing_json.time(upper)["side"] == "at most"
     assert "side" not in timing_json.time(ms(1))
     assert "side" not in timing_json.time(missing("x"))
+
+
+def test_a_chain_with_a_wrong_name_is_open_and_not_late(tmp_path: Path) -> None:
+    """The rule and the table say the same of it."""
+    wrong = _HALF.replace("through: [a, b]", "through: [a, b, zz], deadline: 1 ms")
+    _, found = _of(tmp_path, wrong)
+    assert found["chains"]["c"]["verdict"] == "open"  # type: ignore[index]
+    assert not [one for one in archgen.load(tmp_path).findings if one.rule == "late-chain"]

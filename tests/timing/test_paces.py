@@ -113,8 +113,8 @@ nodes:
     pace = analyse(derived(text)).paces["b"]
     assert pace.rate.value == 20
     assert [reason.text for reason in pace.reasons] == [
-        "g.b.both brings 10 Hz from a on /g/a/left, at most 100 ms apart",
-        "g.b.both brings 10 Hz from a on /g/a/right, at most 100 ms apart",
+        "g.b.both brings 10 Hz from a on /g/a/left",
+        "g.b.both brings 10 Hz from a on /g/a/right",
     ]
 
 
