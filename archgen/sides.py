@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
@@ -81,8 +81,9 @@ def _is_path(words: str) -> bool:
 
 
 def compared(before: Side, after: Side) -> Comparison:
-    """Compare two sides."""
-    return compare(version(before.checked), version(after.checked))
+    """Compare two sides. Behind what cannot be read there is more to find: then nobody knows what is cured."""
+    found = compare(version(before.checked), version(after.checked))
+    return replace(found, cured=()) if after.checked.unsound else found
 
 
 def version(checked: Checked) -> Version:

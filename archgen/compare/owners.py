@@ -46,7 +46,8 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
     elif change.sort == "output" and change.key in {None, "type"}:
         others = [("input", name) for name in wires.readers.get(element.id, ())]
     elif change.sort in {"type", "requirement"}:
-        others = list(_users(element, listed))
+        users = list(_users(element, listed))
+        others = [*users, *(("input", reader) for _, name in users for reader in wires.readers.get(name, ()))]
     elif change.sort == "message":
         types = [
             other for other in listed.values() if other.sort == "type" and other.values.get("message") == element.id
