@@ -42,10 +42,16 @@ def breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
     if not breaking:
         return
     yield _paint("Breaking changes", "1", colour=colour)
+    said = set[str]()
     for change in breaking:
         yield from _change(change, colour=colour)
-        for why in dict.fromkeys(each.why for each in change.breaks):
-            yield visible(f"      {why}")
+        reasons = dict.fromkeys(each.why for each in change.breaks)
+        for why in reasons:
+            if why not in said:
+                yield visible(f"      {why}")
+        if not said.isdisjoint(reasons):
+            yield "      as above" if said.issuperset(reasons) else "      and as above"
+        said |= reasons.keys()
         accepted = telling.accepted(change, found)
         if accepted:
             yield visible(f"      {accepted}")
@@ -65,7 +71,7 @@ def _chains(chains: Sequence[ChainChange], *, colour: bool) -> Iterator[str]:
     for each in chains:
         grown, deadline, verdict = telling.grown(each), telling.deadline(each), telling.verdict(each)
         grown = f" ({grown})" if grown else ""
-        deadline = f", deadline {deadline}" + (f" ({verdict})" if verdict else "") if deadline else ""
+        deadline = f", deadline {deadline}" + (f": {verdict}" if verdict else "") if deadline else ""
         yield visible(f"  {each.id}: {telling.bound(each.before)} → {telling.bound(each.after)}{grown}{deadline}")
     yield ""
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from archgen.timing.analysis import Reason
 from archgen.timing.pacing import Beat, Paces, trigger_place
 from archgen.timing.propagate import arrival, is_kept, renewed
-from archgen.timing.sums import UNBOUNDED, largest, smallest, times, total, unknown
+from archgen.timing.sums import UNBOUNDED, known, largest, smallest, times, total, unknown
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
@@ -52,8 +52,11 @@ def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) ->
     beats = [_arriving(found, arc) for arc in arcs]
     twice = len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
-        Reason(f"{key} brings {told(rate, 'Hz')} from {arc.source}{f' on {arc.topic}' if twice else ''}", arc.at)
-        for arc, (rate, _) in zip(arcs, beats, strict=True)
+        Reason(
+            f"{key} brings {told(rate, 'Hz')} from {arc.source}{f' on {arc.topic}' if twice else ''}{_apart(gap)}",
+            arc.at,
+        )
+        for arc, (rate, gap) in zip(arcs, beats, strict=True)
     ]
     if not arcs or key in found.state.system.external.get(activity.id, ()):
         beats.append((unknown(key), unknown(key)))
@@ -61,9 +64,17 @@ def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) ->
     return (total(rate for rate, _ in beats), smallest(gap for _, gap in beats)), told_
 
 
+def _apart(gap: Value) -> str:
+    return f", at most {duration(gap.value)} apart" if gap.value is not None and known(gap) else ""
+
+
 def _any(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> tuple[Beat, list[Reason]]:
     several = len(inputs) > 1
-    reasons = [Reason("fired by any of its triggers", trigger_place(activity))] if several else []
+    reasons = (
+        [Reason("fired by any of its triggers: rates add up, the smallest gap counts", trigger_place(activity))]
+        if several
+        else []
+    )
     beats: list[Beat] = []
     for key, arcs in inputs.items():
         beat, more = _input(found, activity, key, arcs)
@@ -73,7 +84,12 @@ def _any(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
 
 
 def _all(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> tuple[Beat, list[Reason]]:
-    reasons = [Reason("fires when all of its triggers have something new", trigger_place(activity))]
+    reasons = [
+        Reason(
+            "fires when all of its triggers have something new: with the smallest rate, and the largest gap",
+            trigger_place(activity),
+        )
+    ]
     beats: dict[str, Beat] = {}
     for key, arcs in inputs.items():
         if is_kept(found.state.system, arcs):

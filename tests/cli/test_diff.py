@@ -59,7 +59,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
         "\n"
         "Latency of chains\n"
-        "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms (met)\n"
+        "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
         "1 change (1 changed); concerns certh\n"
     )
@@ -106,7 +106,7 @@ def test_consequences_and_cured_findings(run: Run, robot: Path) -> None:
         in out
     )
     assert "  warning[unread-output]: nobody reads `image` of `sensing.camera` (archgen.yaml:8:26)\n" in out
-    assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms (met)\n" in out
+    assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms: met\n" in out
     assert out.rstrip().endswith("; concerns certh, sssa")
 
 
