@@ -28,6 +28,9 @@ class Paces:
     """Of each period and jitter."""
     times: dict[int, Value] = field(default_factory=dict)
 
+    carried: dict[tuple[str, str, str, int | None], Value] = field(default_factory=dict)
+    """Bytes a second of an output (activity and key) on a topic, with messages of a size."""
+
     def time(self, ticks: int) -> Value:
         """Give a duration in ns."""
         found = self.times.get(ticks)

@@ -35,6 +35,8 @@ class State:
     events: dict[str, Streams | Cause] = field(default_factory=dict)
     responses: dict[str, Found] = field(default_factory=dict)
     diverged: set[str] = field(default_factory=set)
+    left: dict[str, Streams | Cause] = field(default_factory=dict)
+    """What leaves each activity, as far as anybody asked once all was found."""
 
 
 def propagate(system: System, triggers: Triggers) -> State:
@@ -247,14 +249,31 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
     if response.value is None:
-        return Cause(response.cause.missing, tuple(_LATER.get(note, note) for note in response.cause.notes))
+        return _unanswered(response.cause)
     if arc.worst is None:
         return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
+    return late(_done(source, response.value, events, from_start=from_start), arc.worst - (arc.best or 0))
+
+
+def leaving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool = False) -> Streams | Cause:
+    """Give what is left of an event model behind its source's response, before any link."""
+    if isinstance(events, Cause) or not events:
+        return events
+    source, response = state.system.activities[arc.source], state.responses[arc.source]
+    if response.value is None:
+        return _unanswered(response.cause)
+    return _done(source, response.value, events, from_start=from_start)
+
+
+def _done(source: Activity, response: int, events: Streams, *, from_start: bool) -> Streams:
     best = 0 if from_start else source.bcet or 0
-    done = late(events, max(response.value - best, 0))
-    if source.response is None:  # what is only declared may rest on several cores at once
-        done = apart(done, best)
-    return late(done, arc.worst - (arc.best or 0))
+    done = late(events, max(response - best, 0))
+    # What is only declared may rest on several cores at once.
+    return apart(done, best) if source.response is None else done
+
+
+def _unanswered(cause: Cause) -> Cause:
+    return Cause(cause.missing, tuple(_LATER.get(note, note) for note in cause.notes))
 
 
 def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:
