@@ -26,10 +26,10 @@ Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
 _WORDS = {
     "declared": "declared as the worst case",
     "dedicated": "its own queue, on a core of its own",
-    "host": "the longest time for which all work on {where} can keep it busy, in whatever order",
-    "priorities": "everything of its priority or a higher one on {where}, over all activations of the busy period",
-    "executor": "all work of its executor on {where}, in whatever order",
-    "cores": "its own work, and a share of all other work on the {cores} cores of {where}",
+    "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
+    "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
+    "executor": "all work of its executor on {0}, in whatever order",
+    "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
 
@@ -43,9 +43,9 @@ def all_responses(state: State, resources: Iterable[Resource]) -> dict[str, Resp
 def _response(state: State, name: str, found: Found, resource: Resource | None) -> Response:
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
-    words = _WORDS[found.tier].format(where=resource.id if resource else "", cores=resource.cores if resource else 1)
+    shared = (resource.id, resource.cores) if resource else ("", 1)
     place = activity.places.get("response" if found.tier == "declared" else "wcet", activity.at)
-    return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(words, place),))
+    return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(_WORDS[found.tier], place, shared),))
 
 
 def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource | None) -> Value:

@@ -13,7 +13,10 @@ from archgen.timing.sums import UNBOUNDED, largest, smallest, times, total, unkn
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
-from archgen.timing.wording import duration, told
+
+
+_BRINGS = "{0} brings {1} from {2}"
+_BRINGS_ON = "{0} brings {1} from {2} on {3}"
 
 
 def fired(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
@@ -29,10 +32,11 @@ def fired(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
         reasons.append(Reason(f"one in {activity.every} fires it", activity.places.get("every", activity.at)))
     if activity.throttle:
         beat = _throttled(found, activity, beat)
-        gap = duration(activity.throttle * found.state.system.tick)
-        reasons.append(Reason(f"throttled: at least {gap} apart", activity.places.get("throttle", activity.at)))
+        gap = activity.throttle * found.state.system.tick
+        place = activity.places.get("throttle", activity.at)
+        reasons.append(Reason("throttled: at least {0} apart", place, (gap,)))
     if activity.jitter:
-        beat = beat[0], total((beat[1], Value(activity.jitter * found.state.system.tick)))
+        beat = beat[0], total((beat[1], found.time(activity.jitter)))
     return beat, reasons
 
 
@@ -43,16 +47,16 @@ def _arriving(found: Paces, arc: Arc) -> Beat:
         return unknown(arc.source), unknown(arc.source)
     if arc.worst is None:
         return pace.rate, total((pace.gap, unknown(arc.link or arc.source)))
-    later = (arc.worst - (arc.best or 0)) * found.state.system.tick
-    return pace.rate, total((pace.gap, Value(later))) if later else pace.gap
+    later = arc.worst - (arc.best or 0)
+    return pace.rate, total((pace.gap, found.time(later))) if later else pace.gap
 
 
 def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> tuple[Beat, list[Reason]]:
     """Give what arrives at an input: any of its sources fires it."""
     beats = [_arriving(found, arc) for arc in arcs]
-    twice = len({arc.source for arc in arcs}) < len(arcs)
+    twice = len(arcs) > 1 and len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
-        Reason(f"{key} brings {told(rate, 'Hz')} from {arc.source}{f' on {arc.topic}' if twice else ''}", arc.at)
+        Reason(_BRINGS_ON if twice else _BRINGS, arc.at, (key, rate, arc.source, arc.topic))
         for arc, (rate, _) in zip(arcs, beats, strict=True)
     ]
     if not arcs or key in found.state.system.external.get(activity.id, ()):

@@ -65,7 +65,7 @@ def _shape(found: Paces, events: Streams | Cause) -> tuple[Value, Value]:
 def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) -> None:
     """Find how often each output is published: at each activation, R - B later, unless it is conditional."""
     pace, name = found.of[activity.id], activity.id
-    spread = _spread(found.responses[name]) if activity.outputs else ZERO
+    spread = _spread(found, activity) if activity.outputs else ZERO
     usual: Pace | None = None
     for key in activity.outputs:
         serves = (name, key) in found.state.system.served
@@ -98,13 +98,12 @@ def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, rate: V
     return replace(pace, rate=upper, gap=gap, distance=ZERO, reasons=(Reason(f"{key} is conditional", place),))
 
 
-def _spread(response: Response) -> Value:
+def _spread(found: Paces, activity: Activity) -> Value:
     """Give how much later than the earliest an output can be, R - B. A best case that nobody wrote is taken as 0."""
-    best = response.best.value or Fraction(0)
-    worst = response.worst
-    if worst.value is None or not worst.complete:
-        return replace(worst, value=None)
-    return Value(max(worst.value - best, Fraction(0)))
+    ticks = found.state.responses[activity.id].value
+    if ticks is None:
+        return replace(found.responses[activity.id].worst, value=None)
+    return found.time(max(ticks - (activity.bcet or 0), 0))
 
 
 def _closer(pace: Pace, spread: Value) -> Value:

@@ -15,7 +15,7 @@ from archgen.timing.response import Effort, alone, responses
 from archgen.timing.rings import components
 from archgen.timing.streams import Stream, Streams, all_of, apart, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
-from archgen.timing.threads import DIVERGED, Found
+from archgen.timing.threads import DIVERGED, Found, Thread
 from archgen.timing.triggers import Triggers, states_itself
 from archgen.timing.value import Cause, united
 from archgen.timing.windows import Budget
@@ -63,6 +63,7 @@ class _Propagation:
                 for name in unit:
                     self.interferes.setdefault(name, []).append(key)
         self.seen: dict[str, dict[str, Streams | Cause]] = {}
+        self.before: dict[str, list[Thread]] = {}
         self.after = self._after()
 
     def run(self) -> State:
@@ -139,7 +140,7 @@ class _Propagation:
                 self.resources[step],
                 state.events,
                 state.responses,
-                Effort(self.budget, self._stale(step)),
+                Effort(self.budget, self._stale(step), self.before.setdefault(step, [])),
             )
             changed = any(state.responses.get(name) != response for name, response in found.items())
             state.responses.update(found)

@@ -30,8 +30,13 @@ def total(values: Iterable[Value]) -> Value:
     found = tuple(values)
     if len(found) == 1:
         return found[0]
-    if all(one.side == "exact" and one.value is not None and not one.assumptions for one in found):
-        return Value(added([one.value for one in found if one.value]))
+    exact: list[Fraction] = []
+    for one in found:
+        if one.value is None or one.assumptions or one.side != "exact":
+            break
+        exact.append(one.value)
+    else:
+        return Value(added(exact))
     reasons = _reasons(found)
     if any(one.value is None and one.complete for one in found):
         return replace(reasons, value=None, complete=True, side="exact")

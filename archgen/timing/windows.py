@@ -56,6 +56,17 @@ class Work(NamedTuple):
     response: int = 0
 
 
+def noted(cost: int, streams: Streams, response: int) -> Work:
+    """Note work with its response where that says anything: a job that is done before the next comes is carried in alone."""
+    if len(streams) == 1 and response <= _between(streams[0]):
+        return Work(cost, streams)
+    return Work(cost, streams, response)
+
+
+def _between(stream: Stream) -> int:
+    return min(stream.period // stream.number, stream.distance or stream.period)
+
+
 class Demand(NamedTuple):
     """The most work that comes in a window of a length; how many terms that takes; at least `rate` t + `ahead` of it comes."""
 
@@ -100,8 +111,7 @@ class Load:
         for work in works:
             if work.cost and work.streams:
                 first = work.streams[0]
-                between = min(first.period // first.number, first.distance or first.period)
-                if len(work.streams) == 1 and work.response <= between:
+                if len(work.streams) == 1 and work.response <= _between(first):
                     self.add((work,))
                     self._once += work.cost * first.size
                 else:
