@@ -11,7 +11,7 @@ from typing import Literal
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
 from archgen.timing.placement import Resource
 from archgen.timing.propagate import State
-from archgen.timing.sums import times, total, unknown
+from archgen.timing.sums import kept, total, unknown
 from archgen.timing.system import Activity, System
 from archgen.timing.threads import Found
 from archgen.timing.ticks import SECOND
@@ -83,7 +83,10 @@ def share(system: System, name: str, pace: Pace) -> Value:
         return Value(Fraction(0))
     if activity.wcet is None:
         return unknown(name)
-    return times(pace.rate, activity.wcet * system.tick / SECOND)
+    if pace.rate.value is None:
+        return pace.rate
+    (often, per), (tick, parts) = pace.rate.value.as_integer_ratio(), system.tick.as_integer_ratio()
+    return kept(pace.rate, Fraction(often * activity.wcet * tick, per * parts * SECOND))
 
 
 def _host(
@@ -148,7 +151,8 @@ def _in_time(pace: Pace, response: Response) -> bool:
         return True
     if response.worst.value is None or not response.worst.complete or not pace.rate.value:
         return False
-    return response.worst.value <= SECOND / pace.rate.value
+    (worst, parts), (often, per) = response.worst.value.as_integer_ratio(), pace.rate.value.as_integer_ratio()
+    return worst * often <= SECOND * parts * per
 
 
 @lru_cache(_MANY)

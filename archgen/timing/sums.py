@@ -69,7 +69,12 @@ def times(value: Value, factor: Fraction | int) -> Value:
     """Multiply, keeping what it rests on."""
     if value.value is None or factor == 1:
         return value
-    return Value(value.value * factor, value.complete, value.missing, value.assumptions, value.side)
+    return kept(value, value.value * factor)
+
+
+def kept(value: Value, figure: Fraction) -> Value:
+    """Give another figure that rests on the same."""
+    return Value(figure, value.complete, value.missing, value.assumptions, value.side)
 
 
 def bounded(values: Iterable[Value], side: Literal["at least", "at most"] = "at most") -> Value:

@@ -46,8 +46,8 @@ def _topic(
     )
 
 
-def _bytes(name: str, size: int | None, rates: Iterable[Value]) -> Value:
-    rate = total(rates)
+def _bytes(name: str, size: int | None, rates: Sequence[Value]) -> Value:
+    rate = rates[0] if len(rates) == 1 else total(rates)
     if rate.value == 0 and rate.complete:
         return ZERO
     return unknown(name) if size is None else times(rate, size)

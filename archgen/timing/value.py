@@ -34,7 +34,9 @@ MOST_NAMED = 12
 def added(parts: Iterable[Fraction]) -> Fraction:
     """Add up over one denominator: to bring each partial sum to lowest terms takes most of the time of all analyses."""
     found = list(parts)
-    return found[0] if len(found) == 1 else Fraction(*summed([part.as_integer_ratio() for part in found]))
+    if 0 < len(found) <= 2:  # noqa: PLR2004 - nothing is laid together twice
+        return found[0] if len(found) == 1 else found[0] + found[1]
+    return Fraction(*summed([part.as_integer_ratio() for part in found]))
 
 
 def summed(parts: Iterable[tuple[int, int]]) -> tuple[int, int]:

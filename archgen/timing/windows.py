@@ -155,7 +155,8 @@ def _least(stream: Stream, cost: int) -> tuple[int, int]:
 def without(whole: Demand, part: Demand) -> Demand:
     """Leave a part of some work out."""
     rest = (whole.size + part.size, whole.rate - part.rate, whole.ahead - part.ahead)
-    return Demand(lambda window: whole.within(window) - part.within(window), *rest)
+    of_whole, of_part = whole.within, part.within
+    return Demand(lambda window: of_whole(window) - of_part(window), *rest)
 
 
 def together(one: Demand, other: Demand) -> Demand:
@@ -191,6 +192,9 @@ def worst(own: Work, others: Demand, budget: Budget, whole: int = 0) -> int:
 def shared(parts: Iterable[tuple[Demand, int]]) -> Demand:
     """Divide each part of the others' work by the number of cores (or threads) that it must hold to get in the way."""
     fixed = tuple(parts)
+    if len(fixed) == 1:
+        (within, size, rate, ahead), only = fixed[0][0], fixed[0][1]
+        return Demand(lambda window: -(-within(window) // only), size, rate // only, ahead // only)
     return Demand(
         lambda window: sum(-(-demand.within(window) // cores) for demand, cores in fixed),
         sum(demand.size for demand, _ in fixed),
