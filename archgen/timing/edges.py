@@ -32,6 +32,8 @@ class Known:
     fits: dict[tuple[tuple[int, int], tuple[int, int], int], tuple[Fraction, Fraction, Value]] = field(default_factory=dict)
     """Loss, reads of each sample, and the beat of exact rates: once for each pair of rates and number of messages read at once."""
     counts: dict[int, Value] = field(default_factory=dict)
+    dropped: dict[str, Value] = field(default_factory=dict)
+    """By each reader."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -62,7 +64,9 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
     is_fired = fires(known.state.system, arc)
     queue = _queue(known, arc, is_fired=is_fired)
     if is_fired:
-        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, queue)
+        if arc.target not in known.dropped:
+            known.dropped[arc.target] = _dropped(known, arc.target)
+        return EdgePace(arc, known.dropped[arc.target], _ONE, ZERO, queue)
     sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
@@ -92,10 +96,10 @@ def _at_once(known: Known, arc: Arc) -> int:
     return arc.depth if polls and arc.depth_written and arc.depth else 1
 
 
-def _dropped(known: Known, arc: Arc) -> Value:
+def _dropped(known: Known, reader: str) -> Value:
     """Give the share of triggers that `every` and `throttle` leave out."""
     system = known.state.system
-    target = system.activities[arc.target]
+    target = system.activities[reader]
     if not target.throttle:
         return ZERO if target.every == 1 else Value(1 - Fraction(1, target.every))
     firing = [a for a in system.into.get(target.id, ()) if a.role == "data" and fires(system, a)]

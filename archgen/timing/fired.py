@@ -53,6 +53,9 @@ def _arriving(found: Paces, arc: Arc) -> Beat:
 
 def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> tuple[Beat, list[Reason]]:
     """Give what arrives at an input: any of its sources fires it."""
+    if len(arcs) == 1 and key not in found.state.system.external.get(activity.id, ()):
+        rate, gap = _arriving(found, arcs[0])
+        return (rate, smallest((gap,))), [Reason(_BRINGS, arcs[0].at, (key, rate, arcs[0].source))]
     beats = [_arriving(found, arc) for arc in arcs]
     twice = len(arcs) > 1 and len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
@@ -113,6 +116,9 @@ def _slowest(
 
 def _strict(found: Paces, activity: Activity, inputs: Iterable[tuple[str, tuple[Arc, ...]]]) -> bool:
     for key, arcs in inputs:
+        sent = found.state.events[arcs[0].source] if len(arcs) == 1 else ()
+        if sent and not isinstance(sent, Cause) and sent[0].jitter:
+            return False  # it never gets less on its way
         events = arrival(found.state, activity, key, arcs)
         if isinstance(events, Cause) or len(events) != 1 or events[0].jitter or events[0].distance:
             return False

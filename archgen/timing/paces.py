@@ -66,6 +66,7 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
     """Find how often each output is published: at each activation, R - B later, unless it is conditional."""
     pace, name = found.of[activity.id], activity.id
     spread = _spread(found, activity) if activity.outputs else ZERO
+    shape = _shifted(found, activity, pace, spread) if activity.outputs else (ZERO, ZERO)
     usual: Pace | None = None
     for key in activity.outputs:
         serves = (name, key) in found.state.system.served
@@ -73,20 +74,30 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
         if key in activity.conditional:
             found.outputs[name, key] = _conditional(found, activity, key, pace, now[0])
         elif serves:
-            found.outputs[name, key] = _later(pace, now, spread)
+            found.outputs[name, key] = _later(pace, now, spread, shape)
         else:
-            usual = usual or _later(pace, beat, spread)
+            usual = usual or _later(pace, beat, spread, shape)
             found.outputs[name, key] = usual
 
 
-def _later(pace: Pace, beat: Beat, spread: Value) -> Pace:
+def _shifted(found: Paces, activity: Activity, pace: Pace, spread: Value) -> tuple[Value, Value]:
+    """Give jitter and smallest gap of what comes up to `spread` later: in ticks, where all is known."""
+    events, worst = found.state.events[activity.id], found.state.responses[activity.id].value
+    if isinstance(events, Cause) or not events or worst is None:
+        return total((pace.jitter, spread)), _closer(pace, spread)
+    more = max(worst - (activity.bcet or 0), 0)
+    one = single(events)
+    distance = one.spacing if len(events) == 1 else 0
+    return found.time(one.jitter + more), found.time(max(distance - more, 0))
+
+
+def _later(pace: Pace, beat: Beat, spread: Value, shape: tuple[Value, Value]) -> Pace:
     """Give the pace of what comes up to `spread` later than it might."""
     rate, gap = beat
     if spread.value == 0:
         return Pace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
     gap = gap if gap.value is None else total((gap, spread))
-    jitter = total((pace.jitter, spread))
-    return Pace(pace.behaviour, rate, gap, jitter, _closer(pace, spread), pace.inferred)
+    return Pace(pace.behaviour, rate, gap, *shape, pace.inferred)
 
 
 def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, rate: Value) -> Pace:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from heapq import heapify, heapreplace
 
 from archgen.timing.analysis import LinkLoad, Pace, TopicLoad
@@ -13,7 +14,7 @@ from archgen.timing.propagate import State
 from archgen.timing.queueing import longest
 from archgen.timing.sending import sent
 from archgen.timing.streams import Streams, eta
-from archgen.timing.sums import UNBOUNDED, because, times, total, unknown
+from archgen.timing.sums import UNBOUNDED, because, kept, times, total, unknown
 from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value, summed
@@ -50,7 +51,15 @@ def _bytes(name: str, size: int | None, rates: Sequence[Value]) -> Value:
     rate = rates[0] if len(rates) == 1 else total(rates)
     if rate.value == 0 and rate.complete:
         return ZERO
-    return unknown(name) if size is None else times(rate, size)
+    if size is None or rate.value is None:
+        return unknown(name) if size is None else rate
+    return kept(rate, _product(*rate.value.as_integer_ratio(), size))
+
+
+@lru_cache(1 << 12)
+def _product(often: int, per: int, size: int) -> Fraction:
+    """Multiply: many topics have the same rate, and messages of the same size."""
+    return Fraction(often * size, per)
 
 
 def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
