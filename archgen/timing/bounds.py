@@ -45,7 +45,9 @@ def _response(state: State, name: str, found: Found, resource: Resource | None) 
     best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
     shared = (resource.id, resource.cores) if resource else ("", 1)
     place = activity.places.get("response" if found.tier == "declared" else "wcet", activity.at)
-    return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(_WORDS[found.tier], place, shared),))
+    return Response(
+        best, _worst(activity, found, tick, resource), found.tier, (Reason(_WORDS[found.tier], place, shared),)
+    )
 
 
 def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource | None) -> Value:

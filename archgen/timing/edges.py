@@ -29,7 +29,9 @@ class Known:
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
     """Found once for each reader."""
-    fits: dict[tuple[tuple[int, int], tuple[int, int], int], tuple[Fraction, Fraction, Value]] = field(default_factory=dict)
+    fits: dict[tuple[tuple[int, int], tuple[int, int], int], tuple[Fraction, Fraction, Value]] = field(
+        default_factory=dict
+    )
     """Loss, reads of each sample, and the beat of exact rates: once for each pair of rates and number of messages read at once."""
     counts: dict[int, Value] = field(default_factory=dict)
     dropped: dict[str, Value] = field(default_factory=dict)

@@ -14,7 +14,6 @@ from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
 
-
 _BRINGS = "{0} brings {1} from {2}"
 _BRINGS_ON = "{0} brings {1} from {2} on {3}"
 
