@@ -56,6 +56,7 @@ def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[objec
     yield checked.files, checked.all_files, [(file, sources.text(file)) for file in sources.files()]
     yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked.findings
     yield template and template.read_bytes()
+    yield outputs.history_stamp(checked, ask)
 
 
 def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chosen: Sequence[Backend]) -> Iterator[str]:

@@ -8,14 +8,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from archgen import git
 from archgen.emit import folder, kept, tree
 from archgen.emit.picture import Picture
+from archgen.history import history
 from archgen.model import selector
+from archgen.model.history import History
 from archgen.model.selector import Selection
 from archgen.model.selector_words import Problem
 from archgen.pipeline import Checked
+from archgen.project import ProjectNotFoundError
 from archgen.revision import revision
-from archgen.views import drawings, pages, record, statistics
+from archgen.views import drawings, growth, pages, record, statistics
 from archgen.views import report as report_view
 from archgen.views.bars import Drawing
 from archgen.views.index import Index, Scope, index
@@ -44,6 +48,8 @@ class Ask:
     revision: str | None = None
     progress: Progress | None = None
     warn: Callable[[str], None] = lambda _text: None
+    history: bool = True
+    """Whether documents show how the project grew, as far as git tells."""
     allowed: Collection[str] | None = None
     """The only ones of the project's own backends that may run; None for all."""
 
@@ -122,7 +128,9 @@ class Made:
 def make(checked: Checked, ask: Ask) -> Made:
     """Make the views."""
     found = replace(view(checked, ask), timed=timing(checked.architecture))
+    grown = history_of(checked, ask)
     drawn = drawings.drawings(found, ask.selection, ask.level or "implementation")
+    drawn |= {chart.id: chart for chart in growth.charts(grown)}
     edition = Edition(
         revision=revision_of(checked, ask),
         level=ask.level or "implementation",
@@ -130,9 +138,31 @@ def make(checked: Checked, ask: Ask) -> Made:
         texts=checked.chapters.texts,
         graphs=drawn,
         statistics=statistics.statistics(checked.architecture),
+        history=grown,
         broken=checked.broken,
     )
     return Made(found, edition, drawn)
+
+
+def history_of(checked: Checked, ask: Ask) -> History:
+    """Give how the project grew month by month; empty where it is not asked for, of a part, or outside of a repository."""
+    if not ask.history or ask.selection is not None or checked.loaded.files.commit:
+        return History()
+    try:
+        return history(checked.loaded.files.root / checked.loaded.first, "month", cache=kept.folder())
+    except (git.GitError, ProjectNotFoundError):
+        return History()
+
+
+def history_stamp(checked: Checked, ask: Ask) -> str:
+    """Give a text that changes whenever the history may: cheap beside reading it."""
+    if not ask.history or ask.selection is not None or checked.loaded.files.commit:
+        return ""
+    try:
+        found = git.repository(checked.root)
+        return f"{git.resolve(found, 'HEAD')} {found.shallow}"
+    except git.GitError:
+        return ""
 
 
 def revision_of(checked: Checked, ask: Ask) -> str:

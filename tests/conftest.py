@@ -79,7 +79,7 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
     place = base if worker_id == "master" else base.parent
 
     def make(folder: Path) -> None:
-        made = ("--backend", "wiki", "--revision", REVISION, "-o", folder)
+        made = ("--backend", "wiki", "--revision", REVISION, "--no-history", "-o", folder)
         archgen("build", RAMCIP, *made, cwd=place, env={"XDG_CACHE_HOME": str(place)})
 
     return made_once(place / "ramcip", make)

@@ -23,7 +23,7 @@ ELSEWHERE = {
     "COLUMNS": "53",
     "NO_COLOR": "1",
 }
-EVERYTHING = ("--backend", "wiki", "--revision", REVISION)
+EVERYTHING = ("--backend", "wiki", "--revision", REVISION, "--no-history")
 
 
 @pytest.fixture(scope="module")

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 @options.select
 @options.level
 @options.revision
+@options.history
 @options.keep_going
 @click.option(
     "--trust",
@@ -45,6 +46,7 @@ def command(  # noqa: PLR0913 - one for each option
     select: str | None,
     level: Level | None,
     revision: str | None,
+    history: bool,
     keep_going: bool,
     trust: str | None,
 ) -> None:
@@ -54,7 +56,9 @@ def command(  # noqa: PLR0913 - one for each option
 
     checked = run.ready(project, keep_going=keep_going)
     allowed = run.trusted(project, trust)
-    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn, allowed)
+    ask = outputs.Ask(
+        run.selected(checked, select), select or "", level, revision, run.progress(), run.warn, history, allowed
+    )
     target = output or checked.out
     with run.phrased():
         for path in build(checked, ask, target, template, backend):

@@ -89,11 +89,21 @@ FORMATS: Mapping[str, Write] = {"text": _text, "json": _json}
 @click.argument("before", required=False, metavar="[A]")
 @click.argument("after", required=False, metavar="[B]")
 @click.option("--format", "form", type=click.Choice(list(FORMATS)), default="text", show_default=True)
+@click.option(
+    "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
+)
 @click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
 @options.select
 @options.project_option
 def command(  # noqa: PLR0913 - the options of the verb, each by its name
-    before: str | None, after: str | None, form: str, *, exit_code: bool, select: str | None, project: Path | None
+    before: str | None,
+    after: str | None,
+    form: str,
+    *,
+    breaking: bool,
+    exit_code: bool,
+    select: str | None,
+    project: Path | None,
 ) -> None:
     """Compare two versions of the architecture: models, not lines.
 
@@ -102,8 +112,11 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     Order, comments, formatting and moves between files are no changes.
     """
     from archgen import sides
+    from archgen.compare.breaking import only
 
     old, new = _sides(before, after, project)
     found = _selected(sides.compared(old, new), old, new, select)
+    if breaking:
+        found = only(found)
     sys.stdout.write(FORMATS[form](found, old, new))
-    sys.exit(1 if exit_code and not found.empty else 0)
+    sys.exit(1 if (exit_code and not found.empty) or (breaking and found.failing) else 0)

@@ -36,6 +36,12 @@ keep_going = click.option(
 strict = click.option("--strict", is_flag=True, help="Count warnings as errors in the exit status.")
 revision = click.option("--revision", metavar="TEXT", help="Revision to print.  [default: git's last commit]")
 
+history = click.option(
+    "--history/--no-history",
+    default=True,
+    help="Show how the project grew month by month, from git.  [default: history]",
+)
+
 
 def output(what: str, default: str) -> Callable[[Command], Command]:
     """Make the option `-o` of a verb that writes."""

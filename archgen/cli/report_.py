@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 @options.select
 @options.level
 @options.revision
+@options.history
 @options.keep_going
 def command(  # noqa: PLR0913 - one for each option
     *,
@@ -35,6 +36,7 @@ def command(  # noqa: PLR0913 - one for each option
     select: str | None,
     level: Level | None,
     revision: str | None,
+    history: bool,
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a Word document that can be handed in."""
@@ -43,7 +45,7 @@ def command(  # noqa: PLR0913 - one for each option
     del form  # one for now; the option is there so that scripts say what they want
     checked = run.ready(project, keep_going=keep_going)
     selection = run.selected(checked, select)
-    ask = outputs.Ask(selection, select or "", level, revision, run.progress(), run.warn)
+    ask = outputs.Ask(selection, select or "", level, revision, run.progress(), run.warn, history)
     target = output or checked.out / "report.docx"
     with run.phrased():
         outputs.report(checked, ask, target, template)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
 import click
@@ -24,7 +25,9 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     """
     from archgen import simulation
     from archgen.findings.escape import visible
-    from archgen.simulation import compared
+    from archgen.simulation import compared, record
+    from archgen.simulation import text as words
+    from archgen.simulation.engine import FloodError
     from archgen.timing.analyse import analyse
     from archgen.timing.chains import chains
 
@@ -33,21 +36,42 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     architecture = checked.architecture
     _known(asked, tuple(architecture.chains))
     analysis = analyse(architecture)
+    if analysis.endless:
+        raise click.ClickException(visible(_endless(analysis.endless)))
     found = {key: one for key, one in chains(analysis, architecture).items() if not asked or key in asked}
     through = {key: one.through for key, one in found.items()}
-    seen = simulation.simulate(analysis.system, seconds, seeds, through, compared.pauses(analysis))
+    try:
+        seen = simulation.simulate(analysis.system, seconds, seeds, through, compared.pauses(analysis))
+    except FloodError as flood:
+        raise click.ClickException(_flooded(flood.at)) from None
     if form == "json":
-        click.echo(json.dumps(compared.plain(seen, analysis, found), ensure_ascii=False, indent=2))
+        click.echo(json.dumps(record.plain(seen, analysis, found), ensure_ascii=False, indent=2))
     else:
-        click.echo(compared.text(visible(architecture.project.title), seen, analysis, found), nl=False)
+        click.echo(words.text(visible(architecture.project.title), seen, analysis, found), nl=False)
     run.finish(checked)
+
+
+def _endless(rings: tuple[tuple[str, ...], ...]) -> str:
+    ways = "; ".join(" > ".join((*ring, ring[0])) for ring in rings)
+    return f"events would go round for ever in {ways}: see `archgen explain endless-trigger`"
+
+
+def _flooded(at: Fraction) -> str:
+    from archgen.timing.wording import duration
+
+    return (
+        f"given up after {duration(at)} of simulated time: each event makes more than one other, or far more is asked for "
+        "than is ever done. `archgen timing` shows hosts and links with too much load"
+    )
 
 
 def _known(asked: tuple[str, ...], chains: tuple[str, ...]) -> None:
     from archgen.findings.escape import visible
     from archgen.suggest import did_you_mean
+    from archgen.timing.wording import listed
 
     for name in asked:
         if name not in chains:
             guess = did_you_mean(name, chains)
-            raise click.UsageError(visible(f"there is no chain '{name}'" + (f"; {guess}" if guess else "")))
+            there = f"the chains are {listed(chains)}" if chains else "the project has no chains"
+            raise click.UsageError(visible(f"there is no chain '{name}'; {guess or there}"))

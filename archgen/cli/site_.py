@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 @options.select
 @options.level
 @options.revision
+@options.history
 @options.keep_going
 def command(  # noqa: PLR0913 - one for each option
     *,
@@ -27,13 +28,14 @@ def command(  # noqa: PLR0913 - one for each option
     select: str | None,
     level: Level | None,
     revision: str | None,
+    history: bool,
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
     from archgen import outputs
 
     checked = run.ready(project, keep_going=keep_going)
-    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn)
+    ask = outputs.Ask(run.selected(checked, select), select or "", level, revision, run.progress(), run.warn, history)
     target = output or checked.out / "site"
     with run.phrased():
         outputs.site(checked, ask, target)

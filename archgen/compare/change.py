@@ -89,6 +89,8 @@ class Comparison:
     silenced: tuple[Diagnostic, ...] = ()
     breaking: Severity = Severity.WARNING
     idle: tuple[Accepted, ...] = ()
+    narrowed: bool = False
+    """Only what breaks a partner was kept."""
 
     @property
     def failing(self) -> bool:

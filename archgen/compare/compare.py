@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 
+from archgen.compare.breaking import breaking, idle, severity
 from archgen.compare.chains import chains
 from archgen.compare.change import Comparison
 from archgen.compare.differences import Differences
 from archgen.compare.elements import Element, Key, elements
 from archgen.compare.findings import findings
+from archgen.compare.losses.both import Both
 from archgen.compare.match import match
 from archgen.compare.names import Names
 from archgen.compare.owners import owners
+from archgen.compare.timed import timed
 from archgen.compare.told import Told
 from archgen.compare.version import Version
 from archgen.compare.wiring import wires
+from archgen.diagnostic import Severity
 from archgen.model.architecture import Architecture
+from archgen.model.review import Accepted
 
 
 def compare(before: Version, after: Version) -> Comparison:
@@ -28,6 +33,13 @@ def compare(before: Version, after: Version) -> Comparison:
     told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost, _unnamed(after.architecture))
     changes = Differences(*listed, names, told).all(old, new)
     judged = findings(before, after, names)
+    timing = timed(before.architecture, after.architecture, changes)
+    moved = chains(before.architecture, after.architecture, names, timing)
+    policy = severity(before.architecture.review, after.architecture.review)
+    unused: tuple[Accepted, ...] = ()
+    if policy is not Severity.OFF:
+        changes = breaking(Both(before.architecture, after.architecture, names, told, changes), moved, timing)
+        unused = idle(changes, after.architecture.review)
     return Comparison(
         before,
         after,
@@ -36,9 +48,11 @@ def compare(before: Version, after: Version) -> Comparison:
         changes,
         judged.new,
         judged.cured,
-        chains(before.architecture, after.architecture, names, changes),
+        moved,
         owners(changes, told),
         judged.silenced,
+        breaking=policy,
+        idle=unused,
     )
 
 

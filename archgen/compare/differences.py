@@ -158,7 +158,7 @@ class Differences:
         key = ("input", each.input)
         if (key in self.before) != (key in self.after):
             return self._outermost(key)
-        if each.lost and each.gained:
+        if each.lost and any(("output", name) in self.after for name in each.gained):
             return None
         here, there = (self.before, self.after) if each.lost else (self.after, self.before)
         moved = [("output", name) for name in sorted(each.lost or each.gained)]

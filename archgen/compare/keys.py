@@ -44,6 +44,8 @@ def _follows(key: str, old: Element, new: Element, before: Mapping[Key, Element]
         return SOME in {one, other}
     if new.sort == "project":
         return (key in {"id", "title"} and None in {one, other}) or (key == "chapters" and _only_chapters(one, other))
+    if new.sort == "message":
+        return key == "parts" and old.values.get("fields") != new.values.get("fields")
     return new.sort == "port" and key == "carried"
 
 

@@ -67,6 +67,8 @@ def changed_key(change: Change) -> str:
         return f"{said} {_of_port(change)}"
     if key in _FLAT and after is not None and before is not None:
         return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
+    if key == "topic" and (".serves." in change.element or ".calls." in change.element):
+        key = "name"
     if isinstance(before, list) or isinstance(after, list):
         return f"{said}{_sets(key, before, after)}"
     return f"{said}: {_values(_name(key), before, after)}"

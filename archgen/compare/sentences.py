@@ -147,6 +147,8 @@ def _reads(each: Rewired, reader: str, told: Told) -> str:
     """Say which sources an input gained and lost."""
     lost = [_shown("output", name, told) for name in sorted(each.lost)]
     gained = sorted(each.gained)
+    if lost and gained and not any(("output", name) in told.after for name in gained):
+        return f"{reader} no longer reads {_ticked(lost)}: {_ticked(gained)} {'has' if len(gained) == 1 else 'have'} no output any more"
     if lost and gained:
         return f"{reader} now reads {_ticked(gained)} instead of {_ticked(lost)}"
     if lost:

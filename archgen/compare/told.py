@@ -36,7 +36,9 @@ class Told:
     def unread(self, key: Key, before: object, after: object) -> bool:
         """Say whether a value that is missing in one version may stand in a part of it that could not be read."""
         lost = self.lost[0] if before is None else self.lost[1] if after is None else frozenset()
-        return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint(key[1].split(".")))
+        there = after if before is None else before
+        named = there.split(".") if isinstance(there, str) else []  # what a reference names may be what is not there
+        return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint([*key[1].split("."), *named]))
 
     def using(self, sort: str, key: str, value: str) -> list[str]:
         """Name the elements of the second version that have a value at a key."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from archgen.compare import ChainChange, Change, Comparison
 from archgen.diagnostic import Diagnostic, Severity
+from archgen.findings import diff_verdict
 from archgen.findings.escape import plain_line, visible
 from archgen.timing.analysis import ChainResult
 from archgen.timing.sums import boundless
@@ -36,10 +37,14 @@ _SECTIONS = {
 
 def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
     """Give the lines of a comparison."""
+    if found.narrowed:
+        yield from breaking(found, colour=colour)
+        yield from diff_verdict.lines(found)
+        return
     if found.empty:
         yield "no changes"
         return
-    yield from _breaking(found, colour=colour)
+    yield from breaking(found, colour=colour)
     for heading, changes in _sections([change for change in found.changes if not change.breaks], found):
         yield _paint(visible(heading), "1", colour=colour)
         for change in changes:
@@ -61,14 +66,16 @@ def summary(found: Comparison) -> str:
     words += [_counted(len(found.cured), "cured finding")] if found.cured else []
     words += [_counted(len(found.silenced), "silenced finding")] if found.silenced else []
     concerns = f"; concerns {', '.join(found.owners)}" if found.owners else ""
-    return visible(", ".join(words) + concerns)
+    broken = sorted({partner for change in found.changes for partner in change.broken})
+    breaks = f"; breaks {', '.join(broken)}" if broken else ""
+    return visible(", ".join(words) + concerns + breaks)
 
 
 def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
+def breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
     """Give the changes that break a partner, with the reasons."""
     breaking = [change for change in found.changes if change.breaks]
     if not breaking:
@@ -79,7 +86,9 @@ def _breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
         for why in dict.fromkeys(each.why for each in change.breaks):
             yield visible(f"      {why}")
         if change.accepted is not None:
-            yield visible(f"      accepted: {change.accepted}")
+            older = found.before.architecture.review.accepted.get(change.element)
+            entry = " (by an entry that was there before)" if older and older.reason == change.accepted else ""
+            yield visible(f"      accepted{entry}: {change.accepted}")
     yield ""
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Loaded:
     """A project, read. `documents` are in normal form, in the order in which they are merged.
 
-    `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
+    `first` is the file that was read first. `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
     stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to the project's folder.
     `chapters` are the entries of `report.chapters`, None where nobody wrote them.
     Nothing is used of the files in `broken`. `lost` are the keys in them, and in whatever else was not understood, so that
@@ -35,6 +35,7 @@ class Loaded:
     """
 
     files: Files
+    first: str
     id: str
     title: str
     documents: tuple[Document, ...]
@@ -90,6 +91,7 @@ def _finish(reading: Reading, first: str) -> Loaded:
     chapters = next((value for value in _values(reading, "report", "chapters") if isinstance(value, Listing)), None)
     return Loaded(
         files=reading.files,
+        first=first,
         id=slug,
         title=" ".join(words).capitalize() or "Project",
         documents=tuple(reading.documents),

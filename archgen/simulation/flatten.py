@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from archgen.simulation.places import Places
 from archgen.simulation.plan import (
     ANY,
     FINEST,
@@ -15,10 +16,10 @@ from archgen.simulation.plan import (
     TRIGGERED,
     Output,
     Plan,
-    Processor,
     Step,
     Wire,
 )
+from archgen.timing.selective import selective
 from archgen.timing.system import Activity, Arc, System
 
 _SECOND = 10**9
@@ -31,27 +32,23 @@ def flatten(system: System, pauses: Pauses | None = None) -> Plan:
     made = _Flat(system, pauses or {})
     wires = tuple(made.wire(arc) for arc in system.arcs)
     steps = tuple(made.step(activity) for activity in system.activities.values())
-    answers = {
-        e: back
-        for e, arc in enumerate(system.arcs)
-        if arc.role == "request"
-        for back, other in enumerate(system.arcs)
-        if other.role == "answer" and (other.source, other.target, other.topic) == (arc.target, arc.source, arc.topic)
-    }
+    back = {(arc.target, arc.source, arc.topic): e for e, arc in enumerate(system.arcs) if arc.role == "answer"}
+    asked = ((e, (arc.source, arc.target, arc.topic)) for e, arc in enumerate(system.arcs) if arc.role == "request")
+    answers = {e: back[key] for e, key in asked if key in back}
     return Plan(
         system.tick / made.scale,
         steps,
         wires,
         system.arcs,
-        tuple(made.processor_of_thread),
-        tuple(map(tuple, made.members)),
-        tuple(made.affinity),
-        tuple(made.pool_of_thread),
-        tuple(made.pools),
-        tuple(made.processors),
+        tuple(made.places.processor_of_thread),
+        tuple(map(tuple, made.places.members)),
+        tuple(made.places.affinity),
+        tuple(made.places.pool_of_thread),
+        tuple(made.places.pools),
+        tuple(made.places.processors),
         tuple(made.links),
         tuple(made.queues),
-        made.cores(),
+        made.places.cores(),
         answers,
         tuple(made.unknown),
     )
@@ -65,23 +62,15 @@ class _Flat:
         self.pauses = pauses
         self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * FINEST)))
         self.number = {key: at for at, key in enumerate(system.activities)}
+        self.places = Places(system, self.number)
         self.links: dict[str, int] = {}
         self.queues: dict[tuple[str, str, str], int] = {}
         self.unknown: dict[str, None] = {}
-        self.processors: list[Processor] = []
-        self.places: dict[tuple[str, int | None], int] = {}
-        self.processor_of_thread: list[int] = []
-        self.members: list[list[int]] = []
-        self.executors: dict[str, int] = {}
-        self.pools: list[int] = []
-        self.pool_numbers: dict[str, int] = {}
-        self.pool_of_thread: list[int] = []
-        self.affinity: list[int] = []
-        self.pinned: dict[str, list[int]] = {}
-        for activity in system.activities.values():
-            if activity.host is not None and activity.core is not None:
-                cores = self.pinned.setdefault(activity.host, [])
-                cores += [activity.core] if activity.core not in cores else []
+        self.into: dict[str, list[tuple[int, Arc]]] = {}
+        self.out_of: dict[str, list[tuple[int, Arc]]] = {}
+        for e, arc in enumerate(system.arcs):
+            self.into.setdefault(arc.target, []).append((e, arc))
+            self.out_of.setdefault(arc.source, []).append((e, arc))
 
     def units(self, ticks: int) -> int:
         return ticks * self.scale
@@ -118,6 +107,7 @@ class _Flat:
             transmission=transmission,
             limit=None if arc.worst is None else worst,
             request=request,
+            selective=selective(self.system, arc),
         )
 
     def step(self, activity: Activity) -> Step:
@@ -126,7 +116,7 @@ class _Flat:
         if activity.wcet is None and (activity.response is not None or kind == KEPT):
             self.unknown.pop(f"execution time of {activity.id}", None)
         fixed = activity.mode == "all"
-        into = [(e, arc) for e, arc in enumerate(self.system.arcs) if arc.target == activity.id]
+        into = self.into.get(activity.id, [])
         return Step(
             activity.id,
             kind,
@@ -143,17 +133,10 @@ class _Flat:
             tuple(e for e, _ in into),
             tuple(self.output(activity, key) for key in self.outputs(activity)),
             tuple(self.calls(activity)),
-            self.thread(activity),
+            self.places.thread(activity),
             activity.priority,
+            activity.behaviour == "periodic",
         )
-
-    def cores(self) -> dict[str, int]:
-        """Give the cores of each host that something runs on."""
-        found: dict[str, int] = {}
-        for processor in self.processors:
-            if processor.host is not None:
-                found[processor.host] = found.get(processor.host, 0) + processor.cores
-        return found
 
     def kind(self, activity: Activity) -> int:
         if activity.behaviour == "once":
@@ -163,6 +146,8 @@ class _Flat:
                 return PERIODIC
             self.unknown[f"period of {activity.id}"] = None
             return IDLE
+        if activity.period and not self.fired(activity):
+            return PERIODIC
         if activity.behaviour is None:
             self.unknown[f"behaviour of {activity.id}"] = None
         for outside in self.system.external.get(activity.id, ()):
@@ -170,24 +155,25 @@ class _Flat:
                 self.unknown[f"events from outside at {outside}"] = None
         return TRIGGERED
 
+    def fired(self, activity: Activity) -> bool:
+        """Tell whether something within the architecture fires an activity; else it keeps the period that it states."""
+        return any(
+            arc.role == "request" or (arc.role == "data" and arc.input in activity.triggers)
+            for arc in self.system.into.get(activity.id, ())
+        )
+
     def kept(self, activity: Activity) -> tuple[int, ...]:
-        once = {
-            arc.input
-            for arc in self.system.arcs
-            if arc.target == activity.id and self.system.activities[arc.source].behaviour == "once"
-        }
+        into = self.into.get(activity.id, [])
+        once = {arc.input for _, arc in into if self.system.activities[arc.source].behaviour == "once"}
         return tuple(slot for slot, key in enumerate(activity.triggers) if key in once)
 
     def outputs(self, activity: Activity) -> tuple[str, ...]:
-        carried = [arc.output for arc in self.system.arcs if arc.source == activity.id and arc.role == "data"]
+        carried = [arc.output for _, arc in self.out_of.get(activity.id, []) if arc.role == "data"]
         return tuple(dict.fromkeys((*carried, *(key for key in activity.outputs if key in activity.conditional))))
 
     def output(self, activity: Activity, key: str) -> Output:
-        wires = tuple(
-            e
-            for e, arc in enumerate(self.system.arcs)
-            if arc.source == activity.id and arc.output == key and arc.role == "data"
-        )
+        sent = self.out_of.get(activity.id, [])
+        wires = tuple(e for e, arc in sent if arc.output == key and arc.role == "data")
         largest = activity.max_gaps.get(key)
         pause = self.pauses.get((activity.id, key))
         patience = None
@@ -197,63 +183,10 @@ class _Flat:
 
     def calls(self, activity: Activity) -> list[tuple[Fraction, tuple[int, ...]]]:
         found: dict[str, list[int]] = {}
-        for e, arc in enumerate(self.system.arcs):
-            if arc.source == activity.id and arc.role == "request":
+        for e, arc in self.out_of.get(activity.id, []):
+            if arc.role == "request":
                 found.setdefault(arc.output, []).append(e)
         return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in found.items()]
-
-    def thread(self, activity: Activity) -> int:
-        """Give the thread: one of its own, or that of its container."""
-        container = activity.container
-        threads = self.system.threads.get(container) if container is not None else None
-        if container is not None and threads == 1:
-            if container not in self.executors:
-                together = [a for a in self.system.activities.values() if a.container == container]
-                self.executors[container] = self.new_thread(together, -1)
-            return self.executors[container]
-        pool = -1
-        if container is not None and threads is not None:
-            if container not in self.pool_numbers:
-                self.pool_numbers[container] = len(self.pools)
-                self.pools.append(threads)
-            pool = self.pool_numbers[container]
-        return self.new_thread([activity], pool)
-
-    def new_thread(self, members: list[Activity], pool: int) -> int:
-        self.members.append([self.number[activity.id] for activity in members])
-        core = next((a.core for a in members if a.core is not None), None)
-        self.processor_of_thread.append(self.processor(members[0], core))
-        self.affinity.append(self.pin(members[0].host, core))
-        self.pool_of_thread.append(pool)
-        return len(self.members) - 1
-
-    def processor(self, activity: Activity, core: int | None) -> int:
-        """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
-        host = activity.host
-        if host is None:
-            self.processors.append(Processor(activity.id, None, 1))
-            return len(self.processors) - 1
-        cores = self.system.cores.get(host) or 1
-        if cores == 1 or self.mixed(host):
-            core = None
-        if (host, core) not in self.places:
-            self.places[host, core] = len(self.processors)
-            free = max(cores - len(self.pinned.get(host, ())), 1) if cores > 1 and not self.mixed(host) else cores
-            name = host if core is None else f"{host} core {core}"
-            self.processors.append(Processor(name, host, free if core is None else 1))
-        return self.places[host, core]
-
-    def mixed(self, host: str) -> bool:
-        """Tell whether no core is left for what is not pinned: then it runs anywhere, between what is."""
-        cores = self.system.cores.get(host) or 1
-        loose = any(a.host == host and a.core is None for a in self.system.activities.values())
-        return 1 < cores <= len(self.pinned.get(host, ())) and loose
-
-    def pin(self, host: str | None, core: int | None) -> int:
-        """Give the core that a thread must have, among the shared ones of a host where no core is left."""
-        if host is None or core is None or not self.mixed(host):
-            return -1
-        return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)
 
 
 def _slot(reader: Activity, arc: Arc) -> int:

@@ -14,7 +14,8 @@ from fractions import Fraction
 from archgen.timing.system import Arc
 
 PERIODIC, TRIGGERED, KEPT, IDLE = range(4)
-"""What starts an activity: the clock, an arrival, the start of everything (its data are kept), nothing that is known."""
+"""What starts an activity: the clock (or the world outside, by a stated period), an arrival, the start of everything (its
+data are kept), nothing that is known."""
 SAMPLED, ANY = -2, -1
 """Slots of wires that fire nobody, and of those that fire by themselves."""
 FINEST = 1000
@@ -40,6 +41,9 @@ class Wire:
     limit: int | None
     """What the link's declared latency promises, queueing included; None where nothing is declared."""
     request: bool
+    selective: bool = False
+    """Not every job of its source sends on it, and nothing is promised: a conditional output without `max_gap`, less than
+    one call for each activation, an answer for one of several who ask."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,8 @@ class Step:
     calls: tuple[tuple[Fraction, tuple[int, ...]], ...]
     thread: int
     priority: int | None
+    samples: bool
+    """It samples the world; where it does not, its activation is the event."""
 
 
 @dataclass(frozen=True, slots=True)

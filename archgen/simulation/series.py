@@ -9,9 +9,10 @@ a reaction is one figure.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 Span = tuple[int, int]
 """Figures from the first to the second are equally likely, and as likely as they are many; or one figure, twice."""
@@ -21,34 +22,70 @@ Span = tuple[int, int]
 class Series:
     """What one run showed of a chain, in units of time."""
 
-    reactions: tuple[Span, ...]
-    ages: tuple[Span, ...]
-    reduced_reaction: int | None
+    reactions: tuple[Span, ...] = ()
+    ages: tuple[Span, ...] = ()
+    reduced_reaction: int | None = None
     """From the sampling (not the event) to the end that first carries it, the largest."""
-    reduced_age: int | None
+    reduced_age: int | None = None
     """From the sampling to an end that carries it, the largest."""
+    inputs: int = 0
+    """The jobs of the first activity that the figures are of."""
 
 
-def series(samplings: Sequence[int], logs: Sequence[Sequence[int]], ends: Sequence[int], *, samples: bool) -> Series:
-    """Read a chain's figures.
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """What one run left of a chain.
 
     `samplings` are the activations of the first activity's jobs; `logs` tell for each later activity, by its job, which
     job of the one before it its data came from (-1 for none); `ends` are when the last one's jobs ended. `samples`
-    tells that the first activity samples the world; else its activation is the event. What is published once is no event: there is nothing to see.
+    tells that the first activity samples the world; else its activation is the event. `passed` tells of each step which
+    jobs sent something to the next activity, None where all do.
     """
+
+    samplings: Sequence[int]
+    logs: Sequence[Sequence[int]]
+    ends: Sequence[int]
+    passed: Sequence[Collection[int] | None]
+    samples: bool
+
+
+def series(trace: Trace, *, passing: bool = False) -> Series:
+    """Read a chain's figures. What is published once is no event: there is nothing to see.
+
+    With `passing` only those inputs count that each activity on the way sent on as soon as it had worked on them, as
+    bounds assume where an output is conditional. An age is then that of a sample behind which such an input came.
+    """
+    samplings, ends = trace.samplings, trace.ends
     if not samplings:
-        return Series((), (), None, None)
-    carried = [(end, source) for job, end in enumerate(ends) if (source := _source(job, logs)) >= 0]
-    firsts = list(_firsts(carried))
-    if samples:
-        reactions = tuple((end - samplings[new], end - samplings[old]) for old, new, end in firsts if old >= 0)
-    else:
-        reactions = tuple(
-            (end - samplings[job],) * 2 for old, new, end in firsts if old >= 0 for job in range(old + 1, new + 1)
-        )
-    ages = tuple((end - samplings[source], then - samplings[source]) for (end, source), (then, _) in pairwise(carried))
-    reduced = [end - samplings[old + 1] for old, _, end in firsts if old >= 0]
-    return Series(reactions, ages, max(reduced, default=None), max((low for low, _ in ages), default=None))
+        return Series()
+    wanted = _passing(trace) if passing else range(len(samplings) + 1)
+    carried = [(end, source) for job, end in enumerate(ends) if (source := _source(job, trace.logs)) >= 0]
+    firsts = [
+        (job, end) for old, new, end in _firsts(carried) if old >= 0 for job in range(old + 1, new + 1) if job in wanted
+    ]
+    back = 1 if trace.samples else 0
+    ages = tuple(
+        (end - samplings[source], then - samplings[source])
+        for (end, source), (then, _) in pairwise(carried)
+        if source + 1 in wanted
+    )
+    return Series(
+        tuple((end - samplings[job], end - samplings[job - back]) for job, end in firsts),
+        ages,
+        max((end - samplings[job] for job, end in firsts), default=None),
+        max((low for low, _ in ages), default=None),
+        len(firsts),
+    )
+
+
+def _passing(trace: Trace) -> frozenset[int]:
+    """Find the first activity's jobs that were sent on by each first job that worked on them."""
+    found = {job: job for job in range(len(trace.samplings))}
+    for log, passed in zip(trace.logs, trace.passed, strict=True):
+        newest = list(accumulate(log, max))
+        readers = {job: bisect_left(newest, at) for job, at in found.items() if passed is None or at in passed}
+        found = {job: at for job, at in readers.items() if at < len(newest)}
+    return frozenset(found)
 
 
 def _source(job: int, logs: Sequence[Sequence[int]]) -> int:

@@ -40,6 +40,8 @@ class Steps:
         self.turn = [dice.randrange(step.every) for step in steps]
         self.fired = [-1] * count
         """When it was fired last."""
+        self.let_through = [-1] * count
+        """When data fired it last, jitter not counted."""
         self.mask = [sum(1 << slot for slot in step.kept) for step in steps]
         self.pending: list[deque[Job]] = [deque() for _ in steps]
         self.started = [0] * count
@@ -53,6 +55,9 @@ class Steps:
         self.taken: list[list[int]] = [[] for _ in steps]
         """Those that are answered at the next end."""
         self.due = [[dice.randrange(number.denominator) for number, _ in step.calls] for step in steps]
+        self.held: list[deque[tuple[int, Any]]] = [deque() for _ in steps]
+        """What fired an activity that is not a clock, and is held back by its jitter: wire, and number as in a job."""
+        self.held_until = [0] * count
         self.promises: list[deque[Job]] = [deque() for _ in steps]
         self.promise_end = [0] * count
         self.worst = [0] * count
@@ -100,6 +105,9 @@ class Wires:
         self.link_busy = [0] * len(plan.links)
         logs: list[list[int]] = [[] for _ in wires]
         self.log = logs
+        self.noted = [wire.selective and e in logged for e, wire in enumerate(wires)]
+        self.passed: list[list[int]] = [[] for _ in wires]
+        """The jobs of the source that sent something on the noted ones."""
         self.logged = [tuple(e for e in step.wires if e in logged) for step in plan.steps]
         self.sampled = [_sampled(plan, step) for step in plan.steps]
 

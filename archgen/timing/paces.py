@@ -68,6 +68,8 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
     spread = _spread(found, activity) if activity.outputs else ZERO
     shape = _shifted(found, activity, pace, spread) if activity.outputs else (ZERO, ZERO)
     usual: Pace | None = None
+    if asked is not None and activity.behaviour == "event":
+        beat = total((beat[0], asked)), beat[1]  # whoever asks activates it as well
     for key in activity.outputs:
         serves = (name, key) in found.state.system.served
         now = (asked or unknown(name), unknown(name)) if serves else beat

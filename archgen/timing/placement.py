@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
-from archgen.frozen import dataclass
 from archgen.timing.system import Activity, System
 
 Unit = tuple[str, ...]

@@ -39,17 +39,17 @@ class State:
     """What leaves each activity, as far as anybody asked once all was found."""
 
 
-def propagate(system: System, triggers: Triggers) -> State:
-    """Find the event model and the worst response of every activity."""
-    return _Propagation(State(system, triggers), resources(system)).run()
+def propagate(system: System, triggers: Triggers, budget: Budget | None = None) -> State:
+    """Find the event model and the worst response of every activity. Who looks several times gives one budget for all."""
+    return _Propagation(State(system, triggers), resources(system), budget or Budget()).run()
 
 
 class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
-    def __init__(self, state: State, shared: Iterable[Resource]) -> None:
+    def __init__(self, state: State, shared: Iterable[Resource], budget: Budget) -> None:
         self.state = state
-        self.budget = Budget()
+        self.budget = budget
         self.resources: dict[str, Resource] = {}
         self.runs_on: dict[str, list[str]] = {}
         self.interferes: dict[str, list[str]] = {}

@@ -27,10 +27,11 @@ SATURATED, DIVERGED = Cause(notes=("unbounded",)), Cause(notes=("diverged",))
 def settled(system: System) -> tuple[System, Triggers, State]:
     """Find the state of a system, with the latency of those links that state none but could."""
     waits: dict[str, int | None] = {arc.link: 0 for arc in system.arcs if _asks(system, arc) and arc.link is not None}
+    budget = Budget()
     for turn in count(1):
         tried = _with(system, waits) if waits else system
         firing = triggers(tried)
-        state = propagate(tried, firing)
+        state = propagate(tried, firing, budget)
         crossing = grouped((arc.link or "", arc) for arc in tried.arcs if arc.link in waits)
         found = {link: None if was is None else _wait(state, link, crossing[link]) for link, was in waits.items()}
         if found == waits:

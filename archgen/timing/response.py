@@ -16,7 +16,18 @@ from typing import NamedTuple
 from archgen.timing.analysis import Tier
 from archgen.timing.placement import Resource
 from archgen.timing.system import System
-from archgen.timing.threads import DIVERGED, OVERLOAD, UNBOUNDED, Events, Found, Thread, thread_of, utilisation, work_of
+from archgen.timing.threads import (
+    DIVERGED,
+    OVERLOAD,
+    UNBOUNDED,
+    Events,
+    Found,
+    Thread,
+    crowded,
+    thread_of,
+    utilisation,
+    work_of,
+)
 from archgen.timing.value import Cause, added, united
 from archgen.timing.windows import (
     NO_DEMAND,
@@ -77,12 +88,13 @@ def responses(
     What has a higher priority than all that is stale is left out, and so is all where nothing changed that counts.
     """
     budget, stale, before = effort
-    threads = [thread_of(system, unit, events, known) for unit in resource.units]
-    foreign = [thread_of(system, unit, events, known) for unit in resource.foreign]
+    made = [thread_of(system, unit, events, known) for unit in (*resource.units, *resource.foreign)]
+    made = crowded(system, made, events)
     if before is not None and resource.cores > 1:
-        if before == threads + foreign:
+        if before == made:
             return {}
-        before[:] = threads + foreign
+        before[:] = made
+    threads, foreign = made[: len(resource.units)], made[len(resource.units) :]
     if stale is not None and resource.cores == 1:
         touched = max(
             (_high(thread) for thread in (*threads, *foreign) if not stale.isdisjoint(thread.unit)), default=-1

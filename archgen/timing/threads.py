@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
@@ -69,14 +70,34 @@ def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Fo
     found = [Work(0, ()) if name in idle else work_of(system, name, events, known) for name in unit]
     causes = [one for one in found if isinstance(one, Cause)]
     works = tuple(one for one in found if isinstance(one, Work))
-    priorities = [system.activities[name].priority for name in unit]
-    written = [one for one in priorities if one is not None]
+    written = [one for name in unit if (one := system.activities[name].priority) is not None]
     return Thread(
         unit,
         works,
         united(causes) if causes else None,
-        min(written) if len(written) == len(priorities) else None,
+        _least(system, unit),
         max(written, default=None),
         added(utilisation(work.cost, work.streams) for work in works),
         system.activities[unit[0]].container,
     )
+
+
+def crowded(system: System, threads: Sequence[Thread], events: Events) -> list[Thread]:
+    """Lower those whose container has fewer threads than members: who waits for one waits for the least urgent member too."""
+    members: dict[str, list[str]] = {}
+    for thread in threads:
+        if thread.container is not None:
+            members.setdefault(thread.container, []).extend(name for name in thread.unit if events[name] != ())
+    lows = {
+        container: _least(system, names)
+        for container, names in members.items()
+        if 1 < (system.threads.get(container) or 1) < len(names)
+    }
+    return [replace(t, low=lows[t.container]) if t.container and t.container in lows else t for t in threads]
+
+
+def _least(system: System, names: Iterable[str]) -> int | None:
+    """Give the least priority of several, None where one of them has none."""
+    priorities = [system.activities[name].priority for name in names]
+    written = [one for one in priorities if one is not None]
+    return min(written) if len(written) == len(priorities) else None

@@ -20,6 +20,8 @@ _STEPS = 40_000_000
 """Terms that one analysis may look at, some seconds' worth."""
 _ONE_SEARCH = 6_000_000
 """Terms that one search may look at: what one of them wastes is not taken from all others."""
+_ACTIVATION = 8
+"""To look at one more activation takes as long as so many terms."""
 _SHIFT = 64
 _WHOLE = 1 << _SHIFT
 """Shares of a processor are counted in so many parts, rounded down."""
@@ -179,6 +181,7 @@ def worst(own: Work, others: Demand, budget: Budget, whole: int = 0) -> int:
     times, spend = arrivals(own.streams), budget.search()
     arrived, longest, done, finish = next(times, 0), 0, 0, 0
     while True:
+        spend(_ACTIVATION)
         done += own.cost
         following = next(times, None)
         least = whole if following is None else min(whole, following + 1)
@@ -209,7 +212,7 @@ def _settle(fixed: int, others: Demand, spend: Callable[[int], None], *, start: 
     least = ((fixed << _SHIFT) + ahead) // (_WHOLE - rate) if rate < _WHOLE else 0
     window = max(start, fixed, least, 1)
     while True:
-        spend(size)
+        spend(size + 1)
         needed = fixed + within(window)
         if needed <= window:
             return needed if window == 1 else window

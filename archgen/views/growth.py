@@ -13,6 +13,7 @@ from archgen.views.words import plural
 
 _MOST = 24
 """So many bars are read at a glance; the table has them all."""
+_FINDINGS = "Errors / warnings / notes"
 
 
 def charts(history: History) -> tuple[Chart, ...]:
@@ -66,7 +67,7 @@ def table(history: History) -> Table:
         Column("Month" if history.by == "month" else "Revision", 1.1),
         *(
             Column(title, 0.9, "right")
-            for title in ("Components", "Connections", *map(str.capitalize, STEPS), "Findings")
+            for title in ("Components", "Connections", *map(str.capitalize, STEPS), _FINDINGS)
         ),
     )
     rows = tuple(
@@ -78,7 +79,7 @@ def table(history: History) -> Table:
                     str(point.whole.components),
                     str(point.connections),
                     *(share(point.whole, step) for step in STEPS),
-                    short(point.whole.findings),
+                    _slashed(point.whole.findings),
                 ),
             )
         )
@@ -92,7 +93,7 @@ def _groups(history: History) -> tuple[Table, ...]:
     before = {(row.scope, row.id): row for row in history.points[0].rows}
     columns = (
         Column("Of", 2),
-        *(Column(title, 1.2, "right") for title in ("Components", "Mapped", "Timed", "Findings")),
+        *(Column(title, 1.2, "right") for title in ("Components", "Mapped", "Timed", _FINDINGS)),
     )
     rows = tuple(
         _compared(row, before.get((row.scope, row.id))) for row in history.points[-1].rows if row.scope != "project"
@@ -106,7 +107,7 @@ def _compared(row: Row, before: Row | None) -> tuple[Inlines, ...]:
         (str(before.components) if before else "", str(row.components)),
         (share(before, "mapped") if before else "", share(row, "mapped")),
         (share(before, "timed") if before else "", share(row, "timed")),
-        (short(before.findings) if before else "", short(row.findings)),
+        (_slashed(before.findings) if before else "", _slashed(row.findings)),
     )
     return (words.text(row.title), *(words.text(change(was, now)) for was, now in pairs))
 
@@ -132,6 +133,10 @@ def short(findings: Findings) -> str:
     return ", ".join(plural(count, name) for count, name in counts if count) or "-"
 
 
+def _slashed(findings: Findings) -> str:
+    return f"{findings.error} / {findings.warning} / {findings.note}"
+
+
 def _progress(point: Point, history: History) -> Bar:
     whole = point.whole
     rest = whole.components - whole.mapped
@@ -149,7 +154,7 @@ def _findings(point: Point, history: History) -> Bar:
         Stretch(of.warning, "open", "", plural(of.warning, "warning")),
         Stretch(of.note, "best", "", plural(of.note, "note")),
     )
-    return Bar(when(point, history), tuple(s for s in stretches if s.length), short(of))
+    return Bar(when(point, history), tuple(s for s in stretches if s.length), str(_total(point)))
 
 
 def _count(point: Point) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
-from archgen.views import pages_rest, tables, timing_chapter, words
+from archgen.views import growth, pages_rest, tables, timing_chapter, words
 from archgen.views.functional import component_blocks, group_blocks
 from archgen.views.implementation import implementation_blocks, node_blocks
 from archgen.views.index import Index
@@ -134,7 +134,8 @@ class _Pages:
         yield self._spanning("requirements", "Requirements", trace, tables.free_requirements(self.view))
         said = Paragraph(words.text(f"archgen finds {tables.severities(self.view.findings)} in this architecture."))
         yield self._spanning("findings", "Open points", said, tables.open_points(self.view.findings))
-        yield self._spanning("progress", "Progress", *self.edition.statistics)
+        grown = growth.blocks(self.edition.history, tuple(self.edition.graphs))
+        yield self._spanning("progress", "Progress", *self.edition.statistics, *grown)
         yield from self._timing()
         views = [f"views/{name}" for name in self.found.views]
         yield self._spanning("views", "Views", *self.figures(*views))

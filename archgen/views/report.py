@@ -8,7 +8,8 @@ from typing import Literal
 
 from archgen.model.component import Component, Group
 from archgen.model.document import GENERATED, Chapter
-from archgen.views import tables, timing_chapter, words
+from archgen.model.history import History
+from archgen.views import growth, tables, timing_chapter, words
 from archgen.views.bars import Drawing
 from archgen.views.functional import component_blocks, group_blocks
 from archgen.views.implementation import implementation_blocks, node_blocks
@@ -28,6 +29,7 @@ class Edition:
     texts: Mapping[str, Chapter] = field(default_factory=dict)
     graphs: Mapping[str, Drawing] = field(default_factory=dict)
     statistics: tuple[Table, ...] = ()
+    history: History = field(default_factory=History)
     broken: bool = False
     """Errors were found, and what is sound is shown all the same."""
 
@@ -187,7 +189,8 @@ class _Chapters:
         return self._appendix("findings", "Open points", said, tables.open_points(self.view.findings))
 
     def _statistics(self) -> list[Section]:
-        return self._appendix("progress", "Statistics", *self.edition.statistics)
+        grown = growth.blocks(self.edition.history, tuple(self.edition.graphs))
+        return self._appendix("progress", "Statistics", *self.edition.statistics, *grown)
 
     def _appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:
         present = tuple(_present(*blocks))

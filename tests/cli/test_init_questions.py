@@ -69,12 +69,15 @@ class Terminal:
 def terminal(tmp_path: Path) -> Iterator[Callable[..., Terminal]]:
     """Give a function that starts `archgen init` on a terminal; what still runs in the end is stopped."""
     started: list[Terminal] = []
+    # Where the tests run in the background, they ignore what Ctrl-C sends, and so would what they start.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def start(*words: str) -> Terminal:
         started.append(Terminal(tmp_path, *words))
         return started[-1]
 
     yield start
+    signal.signal(signal.SIGINT, before)
     for one in started:
         one.process.kill()
         one.process.wait(20)
@@ -112,9 +115,10 @@ def test_ctrl_c_leaves_nothing(terminal: Start, tmp_path: Path) -> None:
     asked = terminal("robot")
     asked.answer("Title of the project [Robot]:", "")
     asked.until("[jazzy]:")
-    while asked.process.poll() is None:  # one that comes before it waits for the answer is seen after the next
-        os.killpg(asked.process.pid, signal.SIGINT)
-        time.sleep(0.1)
+    for _ in range(200):  # one that comes before it waits for the answer is seen after the next
+        if asked.process.poll() is None:
+            os.killpg(asked.process.pid, signal.SIGINT)
+            time.sleep(0.1)
     assert asked.process.returncode == 130
     assert list(tmp_path.iterdir()) == []
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from archgen.simulation.engine import Run
+from archgen.simulation.engine import go
 from archgen.simulation.flatten import flatten
 from archgen.timing.system import Activity, Arc, System
 
@@ -57,8 +57,7 @@ def system(
 def jobs(of: System, until: int, seed: int = 0) -> dict[str, list[tuple[float, float, float]]]:
     """Run a system (seed 0: all phases zero, all execution times the longest); give (fired, started, ended) in ms."""
     plan = flatten(of)
-    run = Run(plan, seed, range(len(plan.steps)))
-    run.go(until * MS)
+    run = go(plan, seed, until * MS, range(len(plan.steps)))
     return {
         step.id: [
             (fired / MS, start / MS, end / MS)

@@ -155,3 +155,28 @@ def test_what_is_published_once_is_always_there() -> None:
     activities = [once, timed("clock", 10, 0), event("both", 1, "map", "clock", mode="all")]
     found = jobs(system(activities, [arc("map", "both"), arc("clock", "both")]), 25)
     assert [job[0] for job in found["both"]] == [0, 10, 20]
+
+
+def test_a_throttle_counts_from_what_it_let_through_not_from_when_jitter_let_it_go() -> None:
+    # Every tick of 10 is held back by up to 12; of each three one gets through.
+    activities = [timed("clock", 10, 0), event("slowed", 1, "clock", throttle=30, jitter=12)]
+    found = jobs(system(activities, [arc("clock", "slowed")]), 299)["slowed"]
+    assert [fired for fired, _, _ in found] == [12 + 30 * at for at in range(10)]
+
+
+def test_what_jitter_holds_back_enters_the_queue_when_it_is_let_go() -> None:
+    activities = [timed("clock", 4, 0), event("late", 1, "clock", jitter=10)]
+    found = jobs(system(activities, [arc("clock", "late", depth=1)]), 23)["late"]
+    assert [fired for fired, _, _ in found] == [10, 14, 18, 22]
+
+
+def test_events_from_outside_come_at_the_period_that_is_stated() -> None:
+    found = jobs(system([event("bumper", 1, "world", period=8)], external={"bumper": ("world",)}), 20)
+    assert found["bumper"] == [(0, 0, 1), (8, 8, 9), (16, 16, 17)]
+
+
+def test_a_container_without_a_host_has_a_core_of_its_own_for_each_thread() -> None:
+    activities = [timed(name, 40, 4, container="box") for name in "abc"]
+    one, two = (jobs(system(activities, threads={"box": threads}), 39) for threads in (1, 2))
+    assert sorted(job for each in one.values() for job in each) == [(0, 0, 4), (0, 4, 8), (0, 8, 12)]
+    assert sorted(job for each in two.values() for job in each) == [(0, 0, 4), (0, 0, 4), (0, 4, 8)]

@@ -13,9 +13,6 @@ from archgen.timing.chains import chains
 from archgen.timing.value import Value
 from tests.timing.random_systems import architecture
 
-_PROMISES = ("in this very activation", "for this very input")
-"""Assumptions of a bound that no run keeps: a call, or a conditional output, just when it is needed."""
-
 
 def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], int]:
     """Simulate a project; say what exceeded its bound, and how many bounds were held against what was seen."""
@@ -44,10 +41,8 @@ def _kept(analysis: Analysis) -> bool:
 
 
 def bounded(value: Value) -> Fraction | None:
-    """Give what a figure bounds from above; None where it rests on what is not known, or on what no run keeps."""
-    if value.side == "at least" or not value.complete:
-        return None
-    return None if any(promise in said for said in value.assumptions for promise in _PROMISES) else value.value
+    """Give what a figure bounds from above; None where it rests on what is not known."""
+    return None if value.side == "at least" or not value.complete else value.value
 
 
 def _activities(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fraction, Value]]:
@@ -67,8 +62,8 @@ def _activities(seen: Result, analysis: Analysis) -> Iterator[tuple[str, Fractio
 def _chains(
     seen: Result, found: dict[str, ChainResult], oldest: dict[str, Value]
 ) -> Iterator[tuple[str, Fraction, Value]]:
-    for key, one in seen.chains.items():
-        way = " > ".join(one.through)
+    for key, chain in seen.chains.items():
+        way, one = " > ".join(chain.through), chain.comparable
         if one.reaction is not None:
             yield f"reaction of {way}", one.reaction.largest, found[key].bound
             best = found[key].best

@@ -203,3 +203,19 @@ def test_a_node_of_two_components_has_two_activities(derived: Derived) -> None:
     found = analyse(derived(text))
     assert list(found.paces) == ["a.a", "a.b", "c"]
     assert found.paces["c"].rate.value == 50
+
+
+def test_who_is_asked_publishes_for_it_too(derived: Derived) -> None:
+    text = """
+groups:
+  g:
+    components:
+      eye: {outputs: {seen: {type: Seen}}, timing: {period: 20 ms}}
+      mind: {inputs: {seen: eye.seen}, outputs: {told: {type: Seen}, serve: {type: Ask}}}
+      asker: {inputs: {ask: mind.serve}, timing: {period: 50 ms}}
+types: {Seen: {message: std_msgs/msg/Empty}, Ask: {message: std_srvs/srv/Empty}}
+"""
+    found = analyse(derived(text))
+    mind = next(name for name in found.paces if "mind" in name)
+    assert found.paces[mind].rate.value == 50 + 20
+    assert found.outputs[mind, "g.mind.told"].rate.value == 50 + 20

@@ -235,3 +235,12 @@ def test_many_tasks_are_quick_and_exact(derived: Derived) -> None:
     found = analyse(derived(tasks(rows)))
     assert found.responses["t0"].worst.value == Fraction(MS, 10)
     assert found.responses["t59"].worst.value == 6 * MS
+
+
+def test_who_waits_for_a_thread_of_its_container_waits_for_the_least_of_those_that_hold_one(derived: Derived) -> None:
+    # b and c may hold both threads when a comes: then a waits, however urgent it is.
+    rows = {name: periodic("20", "2") for name in "abc"}
+    text = tasks(rows).replace("host: pc,", "container: box,") + "containers: {box: {host: pc, threads: 2}}\n"
+    assert worst(analyse(derived(text))) == {"a": 6, "b": 6, "c": 6}
+    wide = text.replace("threads: 2", "threads: 3")
+    assert worst(analyse(derived(wide))) == {"a": 2, "b": 4, "c": 6}

@@ -11,7 +11,7 @@ import pytest
 from archgen.model.architecture import Architecture
 from archgen.timing.analyse import analyse
 from archgen.timing.streams import Stream, eta
-from archgen.timing.windows import Budget, DivergedError, Load, Work, busy, without, worst
+from archgen.timing.windows import NO_DEMAND, Budget, DivergedError, Load, Work, busy, without, worst
 
 Derived = Callable[[str], Architecture]
 
@@ -103,3 +103,10 @@ def test_what_has_no_end_is_given_up_in_time(derived: Derived) -> None:
     assert time.process_time() - start < 10
     assert set(found.diverged) == {name for name, _ in rows}
     assert {response.worst.value for response in found.responses.values()} == {None}
+
+
+def test_a_search_in_which_nothing_else_runs_ends_too() -> None:
+    """Where jitter grew without end, each activation is looked at, and none needs a second look."""
+    streams = (Stream(60_000, 180_858_867_990, 5_610, 1, 1), Stream(60_000, 361_717_702_050, 9_540, 1, 1))
+    with pytest.raises(DivergedError):
+        worst(Work(14_700, streams), NO_DEMAND, Budget(100_000))

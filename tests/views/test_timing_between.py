@@ -99,7 +99,7 @@ def test_servers_say_how_long_their_callers_wait(view: Index) -> None:
         "Answers all of them within",
         "A caller that waits for its answers responds within",
     ]
-    assert row == ["finder", "2", "4 ms", "viewer: 12 ms\nlogger: 12 ms"]
+    assert row == ["finder", "2", "8 ms", "viewer: 16 ms\nlogger: 16 ms"]
 
 
 def test_one_core_is_held_against_both_bounds(view: Index) -> None:

@@ -1,0 +1,180 @@
+"""Chains, hosts and links: which change makes them worse, and whom that breaks."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.compare.conftest import Compared
+from tests.compare.losses.test_losses import broken
+
+BASE = """\
+partners: {certh: CERTH, sssa: SSSA, tum: TUM}
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {outputs: {image: Colour image}}
+  tracking:
+    owner: sssa
+    components:
+      tracker: {inputs: {image: camera.image}, outputs: {tracks: Tracks}}
+  moving:
+    owner: tum
+    components:
+      planner: {inputs: {tracks: tracker.tracks}}
+types: {Colour image: {size: 1 MB}, Tracks: {message: x_msgs/msg/Tracks, size: 10 kB}}
+nodes:
+  eye: {implements: camera, timing: {rate: 10 Hz, wcet: 2 ms}, host: pc}
+  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}
+  feet: {implements: planner, timing: {behaviour: event, wcet: 5 ms}, host: base}
+hosts: {pc: {cores: 1}, base: {cores: 1}}
+links: {lan: {connects: [pc, base], bandwidth: 10 Mbit/s, latency: {best: 1 ms, worst: 2 ms}}}
+chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}
+"""
+LATE = "makes the chain `react` miss its deadline of 250 ms"
+RATE = ("rate: 10 Hz", "rate: 4 Hz")
+
+
+def both(element: str, why: str, *partners: str) -> list[str]:
+    """Give one line for each partner."""
+    return [f"{element} {partner}: {why}" for partner in partners]
+
+
+TABLE = {
+    "a rate that is too low": (
+        BASE,
+        [RATE],
+        both(
+            "sensing.camera/timing.rate",
+            LATE + " (151 ms → 301 ms); `mind` of sssa and `feet` of tum are on it",
+            "sssa",
+            "tum",
+        ),
+    ),
+    "a rate that is still high enough": (BASE, [("rate: 10 Hz", "rate: 8 Hz")], []),
+    "a rate without a deadline": (BASE.replace(", deadline: 250 ms", ""), [RATE], []),
+    "a chain of one's own": (
+        BASE.replace("owner: sssa", "owner: certh").replace("owner: tum", "owner: certh"),
+        [RATE],
+        [],
+    ),
+    "a better rate beside a longer execution": (
+        BASE,
+        [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
+        both(
+            "moving.planner/timing.wcet",
+            f"{LATE} (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            "certh",
+            "sssa",
+        ),
+    ),
+    "a tighter deadline": (
+        BASE,
+        [("deadline: 250 ms", "deadline: 100 ms")],
+        both(
+            "react/deadline",
+            "makes the chain `react` miss its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "certh",
+            "sssa",
+            "tum",
+        ),
+    ),
+    "a longer deadline": (BASE, [("deadline: 250 ms", "deadline: 300 ms")], []),
+    "a chain that was late already": (
+        BASE.replace("250 ms", "100 ms"),
+        [("wcet: 5 ms", "wcet: 6 ms")],
+        both(
+            "moving.planner/timing.wcet",
+            "makes the chain `react` miss its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
+            "certh",
+            "sssa",
+        ),
+    ),
+    "a chain that is less late": (BASE.replace("250 ms", "100 ms"), [("wcet: 5 ms", "wcet: 4 ms")], []),
+    "a figure that is not known any more": (
+        BASE,
+        [("behaviour: event, wcet: 20 ms", "behaviour: event")],
+        both(
+            "tracking.tracker/timing.wcet",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
+            "`eye` of certh and `feet` of tum are on it",
+            "certh",
+            "tum",
+        ),
+    ),
+    "an input that was the way": (
+        BASE,
+        [("inputs: {image: camera.image}, ", "")],
+        [
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of tum is on it"
+        ],
+    ),
+    "a step more on the way": (
+        BASE,
+        [
+            (
+                "outputs: {image: Colour image}}",
+                "outputs: {image: Colour image}}\n      mend: {inputs: {image: camera.image}, outputs: {image: Colour image}}",
+            ),
+            ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
+            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 50 ms}, host: pc}\n"),
+        ],
+        both(
+            "sensing.mend",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            "sssa",
+            "tum",
+        ),
+    ),
+    "a host that shares its core": (
+        BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
+        [("wcet: 20 ms", "wcet: 120 ms")],
+        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of certh runs"],
+    ),
+    "a host with a core less": (
+        BASE[: BASE.index("chains:")].replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 99 ms"),
+        [("pc: {cores: 2}", "pc: {cores: 1}")],
+        both(
+            "pc/cores",
+            "overloads the host `pc` (101 % of its core), where `eye` of certh and `mind` of sssa run",
+            "certh",
+            "sssa",
+        ),
+    ),
+    "a rate that overloads who is fired by it": (
+        BASE[: BASE.index("chains:")],
+        [("rate: 10 Hz", "rate: 46 Hz")],
+        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of sssa runs"],
+    ),
+    "a host that was overloaded before": (
+        BASE[: BASE.index("chains:")].replace("20 ms", "99 ms"),
+        [("99 ms", "120 ms")],
+        [],
+    ),
+    "what runs on another host": (BASE[: BASE.index("chains:")], [("wcet: 5 ms", "wcet: 120 ms")], []),
+    "a link with less bandwidth": (
+        BASE[: BASE.index("chains:")],
+        [("10 Mbit/s", "500 kbit/s")],
+        both(
+            "lan/bandwidth",
+            "asks the link `lan` for 160 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+            "sssa",
+            "tum",
+        ),
+    ),
+    "larger messages": (
+        BASE[: BASE.index("chains:")],
+        [("size: 10 kB", "size: 130 kB")],
+        both(
+            "Tracks/size",
+            "asks the link `lan` for 104 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+            "sssa",
+            "tum",
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize(("project", "edits", "said"), TABLE.values(), ids=TABLE.keys())
+def test_late_and_full(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
+    assert broken(compared, project, edits) == said

@@ -1,0 +1,186 @@
+"""Who is broken by which change: one table, each row a project and what is replaced in it."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.compare import Comparison
+from tests.compare.conftest import Compared
+
+PARTNERS = "partners: {certh: CERTH, sssa: SSSA, tum: TUM}\n"
+GROUPS = """\
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {outputs: {image: Colour image, depth: Depth image}}
+  tracking:
+    owner: sssa
+    components:
+      tracker: {inputs: {image: camera.image}, outputs: {tracks: Tracks}}
+"""
+BASE = PARTNERS + GROUPS
+TYPED = BASE + "types: {Colour image: sensor_msgs/msg/Image, Tracks: x_msgs/msg/Tracks}\n"
+TAKEN = "takes `sensing.camera.image` from sssa, who reads it as `tracking.tracker.image`"
+OUTPUT = ("image: Colour image, ", "")
+DANGLING = ("image: camera.image", "image: ")
+
+FUNCTIONS = {
+    "an output that is read": (BASE, [OUTPUT, DANGLING], [f"sensing.camera.image sssa: {TAKEN}"]),
+    "an output that nobody reads": (BASE, [(", depth: Depth image", "")], []),
+    "an output that only its own partner reads": (BASE.replace("owner: sssa", "owner: certh"), [OUTPUT, DANGLING], []),
+    "an output that is nobody's": (
+        BASE.replace("owner: certh", "title: S"),
+        [OUTPUT, DANGLING],
+        [f"sensing.camera.image sssa: {TAKEN}"],
+    ),
+    "an output that somebody without a partner reads": (
+        BASE.replace("owner: sssa", "title: T"),
+        [OUTPUT, DANGLING],
+        [],
+    ),
+    "an output that is optional to its reader": (
+        BASE.replace("image: camera.image", "image: {from: camera.image, optional: true}"),
+        [OUTPUT, ("from: camera.image, ", "")],
+        [],
+    ),
+    "an output whose reader no longer asks for it": (BASE, [OUTPUT, ("inputs: {image: camera.image}, ", "")], []),
+    "an output whose reader gets another one": (
+        BASE,
+        [OUTPUT, ("camera.image", "camera.depth")],
+        [f"sensing.camera.image sssa: {TAKEN} (and is to read `sensing.camera.depth` instead)"],
+    ),
+    "a component with all it has": (
+        BASE,
+        [("camera: {outputs: {image: Colour image, depth: Depth image}}", "lamp: Lamp"), DANGLING],
+        [f"sensing.camera sssa: {TAKEN}"],
+    ),
+    "an input": (BASE, [("inputs: {image: camera.image}, ", "")], []),
+    "a reader that looks elsewhere": (BASE, [("camera.image", "camera.depth")], []),
+    "an output that a new input has no use for": (
+        BASE,
+        [("{image: camera.image}", "{image: camera.image, more: }")],
+        [],
+    ),
+    "a renamed output that its reader follows": (
+        BASE,
+        [("image: Colour", "picture: Colour"), ("camera.image", "camera.picture")],
+        [],
+    ),
+    "a renamed output that its reader does not follow": (
+        BASE.replace("  tracking:", "      screen: {inputs: {picture: camera.image}}\n  tracking:"),
+        [("image: Colour", "images: Colour"), ("picture: camera.image", "picture: camera.images")],
+        [
+            "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+        ],
+    ),
+    "a component in another group": (
+        BASE.replace("  tracking:", "  eyes: {owner: certh, components: {lamp: Lamp}}\n  tracking:"),
+        [
+            ("      camera: {outputs: {image: Colour image, depth: Depth image}}\n", "      lens: Lens\n"),
+            ("{lamp: Lamp}", "{lamp: Lamp, camera: {outputs: {image: Colour image, depth: Depth image}}}"),
+        ],
+        [],
+    ),
+    "a conceptual type": (
+        BASE,
+        [("image: Colour image", "image: Grey image")],
+        [
+            (
+                "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
+                "(the message stays `sensor_msgs/msg/Image`)"
+            )
+        ],
+    ),
+    "a conceptual type that nobody reads": (BASE, [("Depth image", "Distances")], []),
+    "a type that was not known": (
+        BASE.replace("image: Colour image", "image: "),
+        [("image: , ", "image: Colour image, ")],
+        [],
+    ),
+    "a type that has another name everywhere": (TYPED, [("Colour image", "Picture")], []),
+    "the message of a type": (
+        TYPED,
+        [("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")],
+        [
+            "Colour image/message sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+        ],
+    ),
+    "the message of a type that nobody else reads": (TYPED, [("x_msgs/msg/Tracks", "y_msgs/msg/Tracks")], []),
+    "a hand-over with nothing lost": (BASE, [("owner: certh", "owner: tum")], []),
+    "a hand-over to the reader that takes something from him": (
+        BASE,
+        [("owner: certh", "owner: sssa"), OUTPUT, DANGLING],
+        [f"sensing.camera.image sssa: {TAKEN}"],
+    ),
+}
+SERVING = (
+    PARTNERS
+    + """\
+use_cases: {UC-1: See, UC-2: Move}
+requirements: {R-1: {title: One, use_cases: [UC-1]}, R-2: {title: Two, use_cases: [UC-1]}, R-3: {title: Three, use_cases: [UC-2]}}
+groups:
+  a: {owner: certh, components: {x: {title: X, requirements: [R-1, R-3]}, y: {title: Y, requirements: [R-1]}}}
+  b: {owner: sssa, components: {z: {title: Z, requirements: [R-2]}}}
+"""
+)
+REQUIREMENTS = {
+    "a requirement that another component serves": (SERVING, [("[R-1, R-3]", "[R-3]")], []),
+    "a requirement of a shared use case": (
+        SERVING,
+        [("[R-1, R-3]", "[R-3]"), ("Y, requirements: [R-1]", "Y")],
+        [
+            "a.x/requirements sssa: leaves `R-1` without a component, also for sssa, who serves the same use case",
+            "a.y/requirements sssa: leaves `R-1` without a component, also for sssa, who serves the same use case",
+        ],
+    ),
+    "a requirement of a use case of its own": (
+        SERVING,
+        [("[R-1, R-3]", "[R-1]")],
+        [
+            "a.x/requirements sssa: leaves `R-3` without a component, also for sssa and tum",
+            "a.x/requirements tum: leaves `R-3` without a component, also for sssa and tum",
+        ],
+    ),
+    "a requirement that is dropped itself": (
+        SERVING,
+        [("[R-1, R-3]", "[R-1]"), (", R-3: {title: Three, use_cases: [UC-2]}", "")],
+        [],
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("project", "edits", "said"), (FUNCTIONS | REQUIREMENTS).values(), ids=(FUNCTIONS | REQUIREMENTS).keys()
+)
+def test_functions(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
+    assert broken(compared, project, edits) == said
+
+
+def broken(compared: Compared, project: str, edits: list[tuple[str, str]]) -> list[str]:
+    """Edit a project, and give what breaks whom: `element/key partner: why`."""
+    after = project
+    for old, new in edits:
+        assert old in after, old
+        after = after.replace(old, new)
+    return told(compared(project, after))
+
+
+def told(found: Comparison) -> list[str]:
+    """Give what breaks whom."""
+    return [
+        f"{change.element}{f'/{change.key}' if change.key else ''} {each.partner}: {each.why}"
+        for change in found.changes
+        for each in change.breaks
+    ]
+
+
+def test_hostile_types_stay_inside_their_ticks(compared: Compared) -> None:
+    evil = r'"x` {} <b>[y](z)\n- # `"'
+    found = broken(compared, BASE, [("image: Colour image", f"image: {evil}")])
+    assert found == [
+        (
+            "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, "
+            "`x' {} <b>[y](z) - # '` instead of `Colour image`"
+        )
+    ]

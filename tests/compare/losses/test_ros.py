@@ -1,0 +1,184 @@
+"""What breaks other partners' programs: names, quality of service, definitions of messages."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.compare.conftest import Compared
+from tests.compare.losses.test_losses import BASE, broken
+
+NODES = (
+    BASE
+    + """\
+types: {Colour image: sensor_msgs/msg/Image, Depth image: sensor_msgs/msg/Image}
+nodes:
+  eye: {implements: camera, publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}
+  mind: {implements: tracker, subscribes: {image: {qos: {reliability: reliable}}}}
+"""
+)
+RENAMED = "takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; it is `{}` now"
+DERIVED = NODES.replace("topic: /eye/image, ", "")
+FEWER = ("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 50 ms")
+UNHEARD = "offers best effort only on `/eye/image`, where `mind` of sssa asks for reliable delivery: it receives nothing any more"
+NAMES = {
+    "a topic": (NODES, [("/eye/image", "/eye/rgb")], ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")]),
+    "a topic of another reader's of one's own": (
+        NODES.replace("owner: sssa", "owner: certh"),
+        [("/eye/image", "/eye/rgb")],
+        [],
+    ),
+    "a topic that nobody reads yet": (
+        NODES,
+        [("deadline: 50 ms}}}", "deadline: 50 ms}}, depth: {topic: /eye/depth}}")],
+        [],
+    ),
+    "a topic whose reader is only planned": (
+        NODES.replace("mind: {", "mind: {status: planned, "),
+        [("/eye/image", "/eye/rgb")],
+        [],
+    ),
+    "a topic whose reader is not even planned": (NODES[: NODES.index("  mind:")], [("/eye/image", "/eye/rgb")], []),
+    "a namespace that the name rests on": (
+        NODES.replace("/eye/image", "image"),
+        [("eye: {", "eye: {namespace: /front, ")],
+        [
+            "eye.publishes.image/topic sssa: takes the topic `/image` from sssa, whose `mind` subscribes to it; it is `/front/image` now"
+        ],
+    ),
+    "a namespace that the name does not rest on": (NODES, [("eye: {", "eye: {namespace: /front, ")], []),
+    "a component after which the topic is called": (
+        DERIVED,
+        [("camera", "colour_camera")],
+        [
+            (
+                "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; "
+                "it is `/sensing/colour_camera/image` now"
+            )
+        ],
+    ),
+    "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], []),
+    "a node": (NODES, [("  eye: {", "  left_eye: {")], []),
+    "a node that writes what another one reads": (
+        NODES,
+        [(NODES[NODES.index("  eye:") : NODES.index("  mind:")], "")],
+        [
+            (
+                "eye sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; "
+                "nobody offers it under that name any more"
+            )
+        ],
+    ),
+    "a node that takes over": (
+        NODES,
+        [("  eye: {implements: camera, ", "  lens: {implements: camera, package: other, executable: one, ")],
+        [],
+    ),
+    "a topic of no component": (
+        NODES.replace(
+            "eye: {", "eye: {internal: {publishes: {state: {topic: /eye/state, message: std_msgs/msg/String}}}, "
+        ).replace(
+            "mind: {", "mind: {internal: {subscribes: {state: {topic: /eye/state, message: std_msgs/msg/String}}}, "
+        ),
+        [("publishes: {state: {topic: /eye/state", "publishes: {state: {topic: /eye/status")],
+        [
+            (
+                "eye.internal.publishes.state/topic sssa: takes the topic `/eye/state` from sssa, whose `mind` subscribes to it; "
+                "it is `/eye/status` now"
+            )
+        ],
+    ),
+    "a service": (
+        BASE.replace("Colour image", "std_srvs/srv/Trigger")
+        + "nodes:\n  eye: {implements: camera, serves: {image: {topic: /eye/trigger}}}\n  mind: {implements: tracker}\n".replace(
+            "{topic: /eye/trigger}", "/eye/trigger"
+        ),
+        [("/eye/trigger", "/eye/go")],
+        [
+            "eye.serves.image/topic sssa: takes the service `/eye/trigger` from sssa, whose `mind` calls it; it is `/eye/go` now"
+        ],
+    ),
+    "quality that is not enough": (NODES, [FEWER], [f"eye.publishes.image/qos sssa: {UNHEARD}"]),
+    "quality that both lower": (NODES, [("reliability: reliable", "reliability: best_effort")], []),
+    "quality that is still enough": (NODES, [("deadline: 50 ms", "deadline: 80 ms")], []),
+    "a deadline that is not": (
+        NODES.replace("subscribes: {image: {qos: {", "subscribes: {image: {qos: {deadline: 60 ms, "),
+        [("deadline: 50 ms", "deadline: 80 ms")],
+        [
+            (
+                "eye.publishes.image/qos sssa: offers one every 80 ms on `/eye/image`, where `mind` of sssa asks for a message every 60 ms: "
+                "it receives nothing any more"
+            )
+        ],
+    ),
+    "a reader who asks for more": (
+        NODES,
+        [("{qos: {reliability: reliable}}", "{qos: {durability: transient_local}}")],
+        [],
+    ),
+    "quality that was not enough before": (NODES.replace(*FEWER), [("deadline: 50 ms", "deadline: 80 ms")], []),
+    "quality for oneself": (NODES.replace("owner: sssa", "owner: certh"), [FEWER], []),
+    "quality in ROS 1": (NODES + "ros: {distro: noetic}\n", [FEWER], []),
+}
+
+
+@pytest.mark.parametrize(("project", "edits", "said"), NAMES.values(), ids=NAMES.keys())
+def test_names_and_quality(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
+    assert broken(compared, project, edits) == said
+
+
+MESSAGES = (
+    BASE.replace("Colour image", "x_msgs/msg/Image").replace("Tracks", "x_msgs/msg/Tracks")
+    + """\
+ros:
+  distro: jazzy
+  definitions:
+    x_msgs/msg/Tracks: "uint32[] ids"
+    x_msgs/msg/Pixel: |
+      uint8 red
+      uint8 blue
+    x_msgs/msg/Image: |
+      Pixel[] pixels
+      # a comment
+"""
+)
+NEW = "what was built before cannot talk to what is built after"
+DEFINITIONS = {
+    "a field less": (
+        MESSAGES,
+        [("      uint8 blue\n", "")],
+        [f"x_msgs/msg/Pixel/fields sssa: removes `blue` in `x_msgs/msg/Pixel`, which sssa uses; {NEW}"],
+    ),
+    "a field of another type": (
+        MESSAGES,
+        [("Pixel[] pixels", "Pixel[<=9] pixels")],
+        [f"x_msgs/msg/Image/fields sssa: changes the type of `pixels` in `x_msgs/msg/Image`, which sssa uses; {NEW}"],
+    ),
+    "a field more": (
+        MESSAGES,
+        [("uint8 blue", "uint8 blue\n      uint8 green")],
+        [
+            (
+                "x_msgs/msg/Pixel/fields sssa: adds `green` in `x_msgs/msg/Pixel`, which sssa uses; even a field more makes another message "
+                f"to ROS: {NEW}"
+            )
+        ],
+    ),
+    "fields in another order": (
+        MESSAGES,
+        [("      uint8 red\n      uint8 blue\n", "      uint8 blue\n      uint8 red\n")],
+        [f"x_msgs/msg/Pixel/fields sssa: puts fields in another order in `x_msgs/msg/Pixel`, which sssa uses; {NEW}"],
+    ),
+    "another comment": (MESSAGES, [("# a comment", "# another comment")], []),
+    "a message that nobody else reads": (MESSAGES, [("uint32[] ids", "uint32[] numbers")], []),
+}
+
+
+@pytest.mark.parametrize(("project", "edits", "said"), DEFINITIONS.values(), ids=DEFINITIONS.keys())
+def test_definitions(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
+    assert broken(compared, project, edits) == said
+
+
+def test_a_message_that_two_write_is_nobodys(compared: Compared) -> None:
+    both = MESSAGES.replace("tracks: x_msgs/msg/Tracks", "tracks: x_msgs/msg/Image")
+    found = broken(compared, both, [("      uint8 blue\n", "")])
+    assert [line.split(":")[0] for line in found] == ["x_msgs/msg/Pixel/fields certh", "x_msgs/msg/Pixel/fields sssa"]
