@@ -98,22 +98,24 @@ class Checked:
         return pack(self.merged, self.architecture, ignores, attached)
 
 
-def check(path: Path | None = None) -> Checked:
+def check(path: Path | None = None, known: Slices | None = None) -> Checked:
     """Read the project at a path (a folder, a file, or None for the one around the current folder) and judge it.
+
+    Whoever reads several versions of one project keeps its slices in `known`: what is the same is parsed once.
 
     Raises `project.ProjectNotFoundError` where there is none.
     """
     with _without_collection():
-        return judge(project.load(path))
+        return judge(project.load(path, known))
 
 
-def check_at(path: Path | None, revision: str) -> Checked:
+def check_at(path: Path | None, revision: str, known: Slices | None = None) -> Checked:
     """Judge the project at a path as a revision of its repository holds it, read from git's objects.
 
     Raises `git.GitError`, `project.NotAtRevisionError` where the project does not exist there, and
     `project.ProjectNotFoundError` where there is neither a project nor a repository.
     """
-    return check_tracked(project.tracked(path), revision)
+    return check_tracked(project.tracked(path), revision, known)
 
 
 def check_tracked(tracked: Tracked, revision: str, known: Slices | None = None) -> Checked:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.compare import Comparison, Version, compare
 from archgen.pipeline import Checked
+from archgen.project import Slices
 from archgen.syntax.tree import Table
 
 _AS_PATHS = ("./", "../", "/", "~")
@@ -34,42 +35,44 @@ def sides(first: str | None, second: str | None, path: Path | None = None) -> tu
     Without `second` it is the working tree, without `first` the commit at which the branch left its main line. `A..B` and
     `A...B` mean what they mean to git. Raises `git.GitError` and `project.ProjectNotFoundError`.
     """
+    known: Slices = {}
     if first is not None and second is None and ".." in first and not _is_path(first):
         left, dots, right = first.partition("..." if "..." in first else "..")
         if dots == "...":
-            return _side_at(_fork(left or "HEAD", right or "HEAD", path), path), side(right or "HEAD", path)
-        return side(left or "HEAD", path), side(right or "HEAD", path)
+            before = _side_at(_fork(left or "HEAD", right or "HEAD", path), path, known)
+            return before, side(right or "HEAD", path, known)
+        return side(left or "HEAD", path, known), side(right or "HEAD", path, known)
     if first is not None:
-        return side(first, path), side(second, path)
-    after = side(second, path)
-    return left_main_line(path, after.checked.architecture.review.main), after
+        return side(first, path, known), side(second, path, known)
+    after = side(second, path, known)
+    return left_main_line(path, after.checked.architecture.review.main, known), after
 
 
-def side(words: str | None, path: Path | None = None) -> Side:
+def side(words: str | None, path: Path | None = None, known: Slices | None = None) -> Side:
     """Give one side: nothing or `.` is the working tree; what could be both a revision and a path is the revision.
 
     Raises `git.GitError` and `project.ProjectNotFoundError`.
     """
     if words in {None, "", "."}:
-        return Side(WORKING_TREE, pipeline.check(path))
+        return Side(WORKING_TREE, pipeline.check(path, known))
     if not _is_path(words):
         try:
-            return Side(words, pipeline.check_at(path, words))
+            return Side(words, pipeline.check_at(path, words, known))
         except project.NotAtRevisionError:
             raise
         except (git.GitError, project.ProjectNotFoundError):
             if not os.path.lexists(words):
                 raise
-    return Side(words, pipeline.check(Path(words)))
+    return Side(words, pipeline.check(Path(words), known))
 
 
-def left_main_line(path: Path | None = None, main: str | None = None) -> Side:
+def left_main_line(path: Path | None = None, main: str | None = None, known: Slices | None = None) -> Side:
     """Give the project as it was where the branch left its main line: the one that is named, or what git knows of."""
-    return _side_at(git.base(project.tracked(path).objects.repository, main), path)
+    return _side_at(git.base(project.tracked(path).objects.repository, main), path, known)
 
 
-def _side_at(base: git.Base, path: Path | None) -> Side:
-    return Side(base.name, pipeline.check_at(path, base.commit))
+def _side_at(base: git.Base, path: Path | None, known: Slices | None) -> Side:
+    return Side(base.name, pipeline.check_at(path, base.commit, known))
 
 
 def _fork(left: str, right: str, path: Path | None) -> git.Base:
@@ -81,8 +84,9 @@ def _is_path(words: str) -> bool:
 
 
 def compared(before: Side, after: Side) -> Comparison:
-    """Compare two sides."""
-    return compare(version(before.checked), version(after.checked))
+    """Compare two sides. Behind what cannot be read there is more to find: then nobody knows what is cured."""
+    found = compare(version(before.checked), version(after.checked))
+    return replace(found, cured=()) if after.checked.unsound else found
 
 
 def version(checked: Checked) -> Version:

@@ -24,6 +24,7 @@ VERBS = {
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project, or take one over from a spreadsheet.",
     "new": "Add a group, a component or a node.",
+    "review": "Make all that the review of a change needs, in one folder.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }

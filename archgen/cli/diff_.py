@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import options
+from archgen.cli import options, run
 
 if TYPE_CHECKING:
     from archgen.compare import Comparison
+    from archgen.outputs import Ask
     from archgen.sides import Side
 
-Write = Callable[["Comparison", "Side", "Side"], str]
+Write = Callable[["Comparison", "Side", "Side"], str | bytes]
 
 
 def _sides(before: str | None, after: str | None, project: Path | None) -> tuple[Side, Side]:
@@ -81,8 +82,45 @@ def _json(found: Comparison, old: Side, new: Side) -> str:
     return diff_json.render(found, (old.checked.unsound, new.checked.unsound))
 
 
-FORMATS: Mapping[str, Write] = {"text": _text, "json": _json}
+def _markdown(found: Comparison, old: Side, new: Side) -> str:
+    from archgen import changes
+
+    return changes.markdown(found, old, new)
+
+
+def _html(found: Comparison, old: Side, new: Side) -> bytes:
+    from archgen import changes
+
+    return changes.html(found, old, new, _ask())
+
+
+def _svg(found: Comparison, _old: Side, _new: Side) -> bytes:
+    from archgen import changes
+
+    return changes.svg(found, _ask())
+
+
+def _ask() -> Ask:
+    from archgen import outputs
+
+    return outputs.Ask(warn=run.warn)
+
+
+FORMATS: Mapping[str, Write] = {"text": _text, "json": _json, "markdown": _markdown, "html": _html, "svg": _svg}
 """How a comparison is written, by the name of the format."""
+
+
+def _put(made: str | bytes, output: Path | None) -> None:
+    """Write to a file, whole or not at all, or to standard output."""
+    from archgen.emit import tree
+
+    if output is not None:
+        tree.write_file(output, made if isinstance(made, bytes) else click.unstyle(made).encode())
+        run.wrote(output)
+    elif isinstance(made, bytes):
+        sys.stdout.buffer.write(made)
+    else:
+        sys.stdout.write(made)
 
 
 @click.command("diff")
@@ -92,6 +130,7 @@ FORMATS: Mapping[str, Write] = {"text": _text, "json": _json}
 @click.option(
     "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
 )
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: standard output]")
 @click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
 @options.select
 @options.project_option
@@ -101,6 +140,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     form: str,
     *,
     breaking: bool,
+    output: Path | None,
     exit_code: bool,
     select: str | None,
     project: Path | None,
@@ -118,5 +158,6 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     found = _selected(sides.compared(old, new), old, new, select)
     if breaking:
         found = only(found)
-    sys.stdout.write(FORMATS[form](found, old, new))
+    with run.phrased():
+        _put(FORMATS[form](found, old, new), output)
     sys.exit(1 if (exit_code and not found.empty) or (breaking and found.failing) else 0)

@@ -180,12 +180,12 @@ def _ways(asked: Asked, source: str, target: str, most: int) -> None:
 
 def _sensitivity(asked: Asked, name: str) -> None:
     from archgen.findings import timing_asked
-    from archgen.timing.analyse import analyse
+    from archgen.timing.analyse import for_chains
     from archgen.timing.sensitivity import sensitivity
 
     _, chains = _computed(asked.architecture)
     result = _known(chains, name)
-    found = sensitivity(asked.architecture, asked.architecture.chains[name], analyse, chains)
+    found = sensitivity(asked.architecture, asked.architecture.chains[name], for_chains, chains)
     if asked.as_json:
         _json(timing_asked.sensitivity_json(result, found))
     else:
@@ -244,10 +244,11 @@ def _computed(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResu
 
 def _known(chains: dict[str, ChainResult], name: str) -> ChainResult:
     from archgen.suggest import did_you_mean
+    from archgen.timing.wording import listed
 
     if name not in chains:
-        guess = did_you_mean(name, chains)
-        _wrong(f"there is no chain `{name}`" + (f"; {guess}" if guess else ""))
+        there = f"there are: {listed(tuple(chains), 12)}" if chains else "the project has none: write it under `chains`"
+        _wrong(f"there is no chain `{name}`; {did_you_mean(name, chains) or there}")
     return chains[name]
 
 

@@ -9,7 +9,7 @@ from archgen.compare.breaking import breaking, idle, severity
 from archgen.compare.chains import chains
 from archgen.compare.change import Comparison
 from archgen.compare.differences import Differences
-from archgen.compare.elements import Element, Key, elements
+from archgen.compare.elements import Element, Key, both
 from archgen.compare.findings import findings
 from archgen.compare.losses.both import Both
 from archgen.compare.match import match
@@ -27,7 +27,7 @@ from archgen.model.review import Accepted
 def compare(before: Version, after: Version) -> Comparison:
     """Compare two versions of an architecture."""
     names = match(before.architecture, after.architecture)
-    listed = elements(before, names), elements(after, Names())
+    listed = both(before, after, names)
     old, new = wires(before.architecture, names), wires(after.architecture, Names())
     lost = before.architecture.lost, after.architecture.lost
     told = Told(old, new, *listed, (_serving(listed[0]), _serving(listed[1])), lost, _unnamed(after.architecture))

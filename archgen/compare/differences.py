@@ -115,7 +115,7 @@ class Differences:
         if home or ("carried" in there.values and there.parent in self._sharing):
             kind = "added" if new else "removed"
             change = Change("added" if new else "removed", "port", there.own)
-            change = replace(change, text=sentences.port(kind, there))
+            change = replace(change, text=sentences.port(kind, there, self.told))
             (self.hanging[home] if home else self.top).append(change)
         else:
             self._keys(old or nothing, new or nothing)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from archgen.compare.described import own_messages
 from archgen.compare.names import Names
-from archgen.compare.nodes import behind, nodes, timing_values
+from archgen.compare.nodes import alone, behind, nodes, timing_values
 from archgen.compare.values import known, prose, title, words
 from archgen.compare.version import Version
 from archgen.model.architecture import Architecture
@@ -21,6 +21,8 @@ from archgen.model.review import Review
 
 SOME = "some"
 """The component has ports: they are elements of their own."""
+MAPPED = "mapped"
+"""The key of a component that says whether somebody wrote a node for it."""
 Key = tuple[str, str]
 """A sort and an id."""
 
@@ -43,15 +45,22 @@ class Element:
     """Common ids of the components behind it; of a node's port the component's port."""
 
 
-def elements(version: Version, names: Names) -> dict[Key, Element]:
-    """List all elements of a version."""
+def both(before: Version, after: Version, names: Names) -> tuple[dict[Key, Element], dict[Key, Element]]:
+    """List all elements of both versions, by the names of the second."""
+    one = {names.to("component", name) for name in alone(before.architecture)}
+    split = one ^ alone(after.architecture)
+    split &= set(after.architecture.components) & set(names.ahead.get("component", {}).values())
+    return _elements(before, names, frozenset(split)), _elements(after, Names(), frozenset(split))
+
+
+def _elements(version: Version, names: Names, split: frozenset[str]) -> dict[Key, Element]:
     found = version.architecture
     listed = (
         *_project(version, names),
         *_around(found, names),
-        *_groups(found, names),
+        *_groups(found, names, split),
         *_types(found, names),
-        *(Element(*each) for each in nodes(found, names)),
+        *(Element(*each) for each in nodes(found, names, split)),
         *_deployment(found, names),
         *_asked(found, names),
     )
@@ -122,7 +131,7 @@ def _around(found: Architecture, names: Names) -> Iterator[Element]:
         yield Element("requirement", names.to("requirement", one.id), one.id, known(values))
 
 
-def _groups(found: Architecture, names: Names) -> Iterator[Element]:
+def _groups(found: Architecture, names: Names, split: frozenset[str]) -> Iterator[Element]:
     nodes_of = behind(found)
     for group in found.groups.values():
         name = names.to("group", group.id)
@@ -138,10 +147,12 @@ def _groups(found: Architecture, names: Names) -> Iterator[Element]:
         }
         yield Element("group", name, group.id, known(values), owner=owner)
         for component in group.components.values():
-            yield from _component(component, nodes_of.get(component.id, ()), names)
+            yield from _component(component, nodes_of.get(component.id, ()), names, split)
 
 
-def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> Iterator[Element]:
+def _component(
+    component: Component, nodes_of: Sequence[Node], names: Names, split: frozenset[str]
+) -> Iterator[Element]:
     name = names.to("component", component.id)
     owner = _owner(names, component.owner)
     key = ("component", name)
@@ -159,7 +170,8 @@ def _component(component: Component, nodes_of: Sequence[Node], names: Names) -> 
         "outputs": SOME if component.outputs else "none" if component.outputs_known else None,
         **_urls(component.urls),
         **_performance(component),
-        **timing_values(component, nodes_of, names),
+        **timing_values(component, nodes_of, names, split),
+        MAPPED: any(node.written for node in nodes_of) or None,
     }
     yield Element(
         "component",

@@ -30,7 +30,7 @@ def group(of: Described, name: str) -> Features:
     found = of.found.groups[name]
     return {
         **_named(name, found.title),
-        "components": Feature(5, frozenset(found.components)),
+        "components": Feature(8, frozenset(found.components)),
         "text": Feature(2, words(found.description)),
         "owner": Feature(0.5, of.refs("partner", [found.owner])),
     }
@@ -145,7 +145,7 @@ def host(of: Described, name: str) -> Features:
     held = [one.id for one in of.found.containers.values() if one.host == name]
     return {
         **_named(name, found.title),
-        "nodes": Feature(5, of.refs("node", of.nodes_of.get(f"host:{name}", ()))),
+        "nodes": Feature(8, of.refs("node", of.nodes_of.get(f"host:{name}", ()))),
         "containers": Feature(2, of.refs("container", held)),
         "cores": Feature(1, _own(found.cores)),
         "text": Feature(1, words(found.description)),

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from archgen.compare.names import Names
 from archgen.compare.version import Version
-from archgen.diagnostic import Diagnostic
+from archgen.diagnostic import Diagnostic, Severity
 from archgen.identity import identity, partners
 
 
@@ -20,8 +20,13 @@ class Told(NamedTuple):
 
 
 def findings(before: Version, after: Version, names: Names) -> Told:
-    """Tell findings apart. One that only gives another figure is none of these."""
+    """Tell findings apart. One that only gives another figure is none of these.
+
+    Where a part of the first version could not be read, nobody knows what was found there: then only errors are new.
+    """
     new, gone = _apart(before.findings, after.findings, names)
+    if before.architecture.lost:
+        new = tuple(each for each in new if each.severity is Severity.ERROR)
     _, cured = _apart(gone, after.silenced, names)
     kept = set(map(id, cured))
     return Told(new, cured, tuple(each for each in gone if id(each) not in kept))

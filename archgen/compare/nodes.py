@@ -23,18 +23,22 @@ _DEFAULT = Qos()
 _SECOND = 10**9
 
 
-def nodes(found: Architecture, names: Names) -> Iterator[Row]:
-    """List the nodes that somebody wrote, and what they say of their ports."""
-    alone = _alone(found)
+def nodes(found: Architecture, names: Names, split: frozenset[str]) -> Iterator[Row]:
+    """List the nodes that somebody wrote, and what they say of their ports.
+
+    `split` are components with one node in one version and several in the other: told by their nodes in both.
+    """
+    whole = alone(found)
+    sole = frozenset(component for component in whole if names.to("component", component) not in split)
     for node in found.nodes.values():
         if not node.written:
             continue
         name = names.to("node", node.id)
         owner = names.to("partner", node.owner) if node.owner else None
         components = tuple(names.to("component", component) for component in node.implements)
-        yield "node", name, node.id, known(_node(found, node, names, alone)), None, owner, True, components
-        for use in node.uses:
-            values = known(_use(use, node, stated=use.internal or not _whole(use, alone)))
+        yield "node", name, node.id, known(_node(found, node, names, sole)), None, owner, True, components
+        for use in (*node.uses, *_implied(found, node, whole - sole)):
+            values = known(_use(use, node, stated=use.internal or not _whole(use, sole)))
             if values:
                 key, own = _port_id(use, node, names)
                 yield (
@@ -49,13 +53,21 @@ def nodes(found: Architecture, names: Names) -> Iterator[Row]:
                 )
 
 
-def _alone(found: Architecture) -> frozenset[str]:
+def alone(found: Architecture) -> frozenset[str]:
     """Give the components that have one node: it exposes all their ports, whether or not it says so."""
     once, twice = set[str](), set[str]()
     for node in found.nodes.values():
         for component in node.implements:
             (twice if component in once else once).add(component)
     return frozenset(once - twice)
+
+
+def _implied(found: Architecture, node: Node, components: frozenset[str]) -> Iterator[PortUse]:
+    """Give the ports that a node carries without a word, of some of its components."""
+    written = {use.port for use in node.uses}
+    for end in found.endpoints if components.intersection(node.implements) else ():
+        if end.node == node.id and end.port not in written and end.port and end.port.rpartition(".")[0] in components:
+            yield PortUse(end.use, end.port.rpartition(".")[2], end.port)
 
 
 def _whole(use: PortUse, alone: frozenset[str]) -> bool:
@@ -139,9 +151,12 @@ def behind(found: Architecture) -> Mapping[str, list[Node]]:
     return made
 
 
-def timing_values(component: Component, nodes_of: Sequence[Node], names: Names) -> dict[str, object]:
+def timing_values(
+    component: Component, nodes_of: Sequence[Node], names: Names, split: frozenset[str]
+) -> dict[str, object]:
     """Give the timing of a component: with one node it is that of both, wherever it is written; with several, its claim."""
-    timing = nodes_of[0].timing.get(component.id) if len(nodes_of) == 1 else component.timing
+    alone = len(nodes_of) == 1 and names.to("component", component.id) not in split
+    timing = nodes_of[0].timing.get(component.id) if alone else component.timing
     return dict(_timing("timing", timing, names)) if timing else {}
 
 

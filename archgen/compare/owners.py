@@ -11,7 +11,7 @@ from archgen.compare.wiring import Wires
 
 
 def owners(changes: Sequence[Change], told: Told) -> tuple[str, ...]:
-    """Name the partners who should look at the changes: owners of what changed and of the other ends of its connections."""
+    """Name the partners who should look at the changes: owners of what changed and of its other ends."""
     found = set[str]()
     own = {(e.sort, e.own): e for e in told.before.values()}
     for change in _all(changes):
@@ -40,22 +40,52 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
         return
     if element.owner:
         yield element.owner
-    others: list[Key] = []
-    if change.sort == "connection":
-        others = [("output", name) for name in wires.sources.get(element.id, ())]
-    elif change.sort == "output" and change.key in {None, "type"}:
-        others = [("input", name) for name in wires.readers.get(element.id, ())]
-    elif change.sort in {"type", "requirement"}:
-        others = list(_users(element, listed))
-    elif change.sort == "message":
-        types = [
-            other for other in listed.values() if other.sort == "type" and other.values.get("message") == element.id
-        ]
-        others = [key for one in types for key in _users(one, listed)]
-    for key in others:
+    for key in _others(change, element, listed, wires):
         other = listed.get(key)
         if other and other.owner:
             yield other.owner
+
+
+def _others(change: Change, element: Element, listed: Mapping[Key, Element], wires: Wires) -> Iterator[Key]:
+    """Give what is at the other end of an element that changed."""
+    match change.sort:
+        case "connection":
+            yield from (("output", name) for name in wires.sources.get(element.id, ()))
+        case "output" if change.key in {None, "type"}:
+            yield from (("input", name) for name in wires.readers.get(element.id, ()))
+        case "port":
+            yield from (("input", name) for port in element.refs for name in wires.readers.get(port, ()))
+        case "chain":
+            yield from _way(element)
+        case "host" | "container" | "link":
+            yield from _there(element, listed)
+        case "type" | "requirement":
+            for key in _users(element, listed):
+                yield from (key, *(("input", reader) for reader in wires.readers.get(key[1], ())))
+        case "message":
+            types = (each for each in listed.values() if each.sort == "type")
+            for one in types:
+                yield from _users(one, listed) if one.values.get("message") == element.id else ()
+
+
+def _way(chain: Element) -> Iterator[Key]:
+    """Give the components and nodes that a chain leads through."""
+    through = chain.values.get("through")
+    for point in through if isinstance(through, tuple) else ():
+        yield from (("component", point), ("node", point), ("output", point))
+
+
+def _there(place: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
+    """Give the nodes on a host, in a container, or on the hosts that a link connects."""
+    hosts = place.values.get("connects") if place.sort == "link" else frozenset({place.id})
+    if not isinstance(hosts, frozenset):
+        return
+    key = "container" if place.sort == "container" else "host"
+    held = {name for (sort, name), e in listed.items() if sort == "container" and e.values.get("host") in hosts}
+    for found, other in listed.items():
+        inside = key == "host" and other.values.get("container") in held
+        if found[0] == "node" and (other.values.get(key) in hosts or inside):
+            yield found
 
 
 def _users(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:

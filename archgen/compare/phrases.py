@@ -12,7 +12,7 @@ _PROSE = frozenset({"functionality", "description", "comment", "text", "external
 _FLAT = {
     "owner": "belongs to",
     "host": "runs on",
-    "container": "runs in",
+    "container": "runs in the container",
     "message": "is",
     "deadline": "must end within",
     "role": "is a",
@@ -65,13 +65,23 @@ def changed_key(change: Change) -> str:
         return f"the {_blank(key)} of {said} {_rewritten(before, after)}"
     if change.sort in {"input", "output"} and key in {"type", "optional"}:
         return f"{said} {_of_port(change)}"
-    if key in _FLAT and after is not None and before is not None:
-        return f"{said} now {_FLAT[key]} {_instead(before, after, '')}"
+    if key in _FLAT and _tellable(key, before, after):
+        return f"{said} {_flat(key, before, after)}"
     if key == "topic" and (".serves." in change.element or ".calls." in change.element):
         key = "name"
     if isinstance(before, list) or isinstance(after, list):
         return f"{said}{_sets(key, before, after)}"
     return f"{said}: {_values(_name(key), before, after)}"
+
+
+def _tellable(key: str, before: object, after: object) -> bool:
+    return key == "container" or (before is not None and after is not None)
+
+
+def _flat(key: str, before: object, after: object) -> str:
+    if after is None:
+        return f"no longer {_FLAT[key]} {shown(before)}"
+    return f"now {_FLAT[key]} {_instead(before, after, '')}"
 
 
 def _of_port(change: Change) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from archgen.compare.change import Change
-from archgen.compare.elements import Element
+from archgen.compare.elements import Element, Key
 from archgen.compare.phrases import changed_key, listed, short
 from archgen.compare.told import Told
-from archgen.compare.values import Title
+from archgen.compare.values import Title, plain
 from archgen.compare.wiring import Rewired
 from archgen.transform import ros_names
 
@@ -17,6 +17,14 @@ _WORDS = {
     "message": "message definition",
     "port": "port",
 }
+_DOES: Mapping[str, Mapping[str, str]] = {
+    "node": {"implements": "implements", "host": "runs on", "container": "runs in the container"},
+    "type": {"message": "is"},
+    "requirement": {"use_cases": "belongs to"},
+    "link": {"connects": "connects"},
+    "chain": {"through": "leads through", "deadline": "must end within"},
+}
+"""What is told of a new element of a sort: its keys, each with a verb."""
 _MOST = 3
 """So many consequences are told in one sentence; all stand in the parts."""
 
@@ -26,6 +34,8 @@ def whole(change: Change, element: Element, told: Told) -> str:
     verb = "is added" if change.kind == "added" else "is removed"
     sort = _WORDS.get(change.sort, change.sort)
     said = f"{sort} `{short(change.element)}`{_called(element)} {verb}{_with(change)}"
+    if change.kind == "added":
+        said += _being(element)
     effects = list(_effects(change, element, told))
     return "; ".join((said, *_some(effects)))
 
@@ -33,6 +43,24 @@ def whole(change: Change, element: Element, told: Told) -> str:
 def _called(element: Element) -> str:
     title = element.values.get("title")
     return f" ({short(title.text)})" if isinstance(title, Title) and not title.made else ""
+
+
+def _being(element: Element) -> str:
+    """Say of a new element what tells most: a node's component and place, a type's message, how a chain leads."""
+    if element.sort == "policy":
+        return f"; nothing may lead from `{short(str(element.values['forbid.from']))}` to `{short(str(element.values['forbid.to']))}`"
+    does = [
+        f"{verb} {_ticked(named)}"
+        for key, verb in _DOES.get(element.sort, {}).items()
+        if (named := _several(element.values.get(key)))
+    ]
+    return f"; it {listed(does)}" if does else ""
+
+
+def _several(value: object) -> list[str]:
+    if isinstance(value, (frozenset, tuple)):
+        return sorted(map(str, value)) if isinstance(value, frozenset) else [*map(str, value)]
+    return [] if value is None else [str(plain(value))]
 
 
 def _some(effects: Sequence[str]) -> Sequence[str]:
@@ -61,16 +89,48 @@ def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
     inside = {(part.sort, part.element) for part in (change, *_below(change))}
     names = {name for sort, name in inside if sort == "connection"}
     here, there = (told.old, told.new) if change.kind == "removed" else (told.new, told.old)
+    if change.kind == "added" or change.sort == "input":
+        yield from _reading(names, inside, told, change.kind)
     for reader in sorted(names):
         name = _common(reader, told)
         for source in sorted(here.sources.get(name, frozenset()) - there.sources.get(name, frozenset())):
-            if ("output", _shown("output", source, told)) not in inside and not there.readers.get(source):
+            kept = ("output", source) in told.before and ("output", source) in told.after
+            if kept and not there.readers.get(source):
                 yield _end_of(source, "read", change.kind)
         if ("input", reader) not in inside and not there.sources.get(name):
             yield _end_of(name, "fed", change.kind)
         elif ("input", reader) not in inside:
             yield f"`{name}` {'loses one of its sources' if change.kind == 'removed' else 'gets another source'}"
+    if (
+        element.sort == "node"
+        and change.kind == "removed"
+        and isinstance(did := element.values.get("implements"), frozenset)
+    ):
+        still = {
+            name
+            for key, other in told.after.items()
+            if key[0] == "node"
+            for name in _several(other.values.get("implements"))
+        }
+        left = [name for name in sorted(did) if name not in still and ("component", name) in told.after]
+        yield from [f"no node implements {_ticked(left)} any more"] if left else []
     yield from _unserved(element, told)
+    if element.sort == "requirement" and change.kind == "removed":
+        served = sorted(told.serving[0].get(element.id, ()))
+        yield from [f"it was served by {_ticked(served)}"] if served else []
+
+
+def _reading(names: Iterable[str], inside: Collection[Key], told: Told, kind: str) -> Iterator[str]:
+    """Say what the inputs that came or went read, from outside of what came or went with them and of what is told anyway."""
+    wires, others = (told.new, told.old) if kind == "added" else (told.old, told.new)
+    ports = [_common(name, told) for name in names if ("input", name) in inside]
+    read = sorted({source for port in ports for source in wires.sources.get(port, frozenset())})
+    kept = {name for name in read if ("output", name) in told.before and ("output", name) in told.after}
+    said = {name for name in kept if not others.readers.get(name)}
+    shown = [_shown("output", name, told) for name in read if name not in said]
+    outside = [name for name in shown if ("output", name) not in inside]
+    if outside:
+        yield f"it {'reads' if kind == 'added' else 'read'} {_ticked(outside)}"
 
 
 def _common(own: str, told: Told) -> str:
@@ -97,8 +157,8 @@ def _unserved(element: Element, told: Told) -> Iterator[str]:
     before, after = told.serving
     for requirement in sorted(before):
         if requirement not in after and ("requirement", requirement) in told.after:
-            lost = before[requirement]
-            if element.id in lost or any(name.startswith(f"{element.id}.") for name in lost):
+            first = min(before[requirement])  # so that one change of several says it
+            if element.id == first or first.startswith(f"{element.id}."):
                 yield f"no component serves `{requirement}` any more"
 
 
@@ -114,7 +174,7 @@ def renamed(change: Change, told: Told) -> str:
         said = f"{sort} `{was}` is called `{change.element.rpartition('.')[2]}` now"
     else:
         said = f"{sort} `{short(was)}` is called `{short(change.element)}` now"
-    sure = "" if change.confidence >= 0.9 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
+    sure = "" if change.confidence >= 0.85 else f" (recognised with {round(change.confidence * 100)} % confidence)"  # noqa: PLR2004 - hardly a doubt
     return said + sure + _following(change, told)
 
 
@@ -181,13 +241,18 @@ def _reader_went(each: Rewired, reader: str, told: Told) -> str:
     )
 
 
-def port(kind: str, element: Element) -> str:
+def port(kind: str, element: Element, told: Told) -> str:
     """Say that a node carries a port, or no longer does."""
     node, _, name = element.own.partition(".")
     named = ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
     on = f" on {named}" if named else ""
     verb = "now has" if kind == "added" else "no longer has"
-    return f"node `{node}` {verb} `{name}`{on}"
+    others = (
+        other for other in told.after.values() if other.sort == "port" and other.refs and other.refs == element.refs
+    )
+    heirs = sorted({other.own.partition(".")[0] for other in others if other.parent != element.parent})
+    heir = f": `{heirs[0]}` has it now" if kind == "removed" and len(heirs) == 1 else ""
+    return f"node `{node}` {verb} `{name}`{on}{heir}"
 
 
 def changed(change: Change, told: Told) -> str:
@@ -210,7 +275,7 @@ def _concerns(change: Change, told: Told) -> str:
             return f"it carries {_ticked(types)}" if types else ""
         case "component", "requirements":
             before, after = told.serving
-            lost = [one for one in sorted(before) if one not in after and name in before[one]]
+            lost = [one for one in sorted(before) if one not in after and name == min(before[one])]
             unserved = [one for one in lost if ("requirement", one) in told.after]
             return f"no component serves {_ticked(unserved)} any more" if unserved else ""
     return ""

@@ -35,10 +35,19 @@ class Told:
 
     def unread(self, key: Key, before: object, after: object) -> bool:
         """Say whether a value that is missing in one version may stand in a part of it that could not be read."""
+        if isinstance(before, list) or isinstance(after, list):
+            return any(self.lost) and self._unlisted(before, after)
         lost = self.lost[0] if before is None else self.lost[1] if after is None else frozenset()
         there = after if before is None else before
         named = there.split(".") if isinstance(there, str) else []  # what a reference names may be what is not there
         return bool(lost) and (key[0] in {"project", "group"} or not lost.isdisjoint([*key[1].split("."), *named]))
+
+    def _unlisted(self, before: object, after: object) -> bool:
+        """Say whether all that a list gained and lost are references to what could not be read."""
+        old, new = (each if isinstance(each, list) else [] for each in (before, after))
+        sides = (new, old, self.lost[0]), (old, new, self.lost[1])
+        other = [(item, lost) for here, there, lost in sides for item in here if item not in there]
+        return bool(other) and all(not lost.isdisjoint(str(item).split(".")) for item, lost in other)
 
     def using(self, sort: str, key: str, value: str) -> list[str]:
         """Name the elements of the second version that have a value at a key."""

@@ -22,7 +22,10 @@ def text(columns: Sequence[str], rows: Rows) -> str:
 
 
 def csv(columns: Sequence[str], rows: Rows) -> str:
-    """Write RFC 4180. A cell that a spreadsheet would take for a formula gets an apostrophe in front."""
+    """Write RFC 4180. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
+
+    It may be printed in a terminal or in a workflow: what either would obey is made visible.
+    """
     out = io.StringIO()
     writer = csv_.writer(out)
     writer.writerow(columns)
@@ -31,8 +34,8 @@ def csv(columns: Sequence[str], rows: Rows) -> str:
 
 
 def _harmless(cell: str) -> str:
-    stripped = cell.lstrip()
-    return f"'{cell}" if stripped[:1] in {"=", "+", "-", "@"} or cell[:1] in {"\t", "\r", "\n"} else cell
+    shown = "\n".join(plain_line(visible(line)) for line in cell.split("\n"))
+    return f"'{shown}" if cell.lstrip()[:1] in {"=", "+", "-", "@"} or cell[:1] in {"\t", "\r", "\n"} else shown
 
 
 def json(columns: Sequence[str], rows: Rows) -> str:

@@ -146,13 +146,15 @@ def sensitivity_json(chain: ChainResult, found: Sensitivity) -> Plain:
 def measured(compared: Iterable[Comparison]) -> Iterator[str]:
     """Show designed beside measured, and name the outliers."""
     rows = list(compared)
-    yield from table([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)])
+    if rows:
+        yield from table([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)])
     outliers = [row for row in rows if row.verdict == "outlier"]
     yield ""
+    figures = f"{len(rows)} figure{'s' if len(rows) != 1 else ''} measured"
     if not outliers:
-        yield f"{len(rows)} figures measured, no outliers"
+        yield f"{figures}, no outliers" if rows else "nothing was measured that could be compared"
     else:
-        yield f"{len(rows)} figures measured, {len(outliers)} outlier{'s' if len(outliers) != 1 else ''}:"
+        yield f"{figures}, {len(outliers)} outlier{'s' if len(outliers) != 1 else ''}:"
         yield from (visible(f"  {row.id}: {row.key} {row.why}") for row in outliers)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from archgen.timing.analysis import Analysis, ChainResult, Term
 from archgen.timing.chains import Found
+from archgen.timing.sums import known
 from archgen.timing.system import Arc
 from archgen.timing.value import Value
 
@@ -138,10 +139,12 @@ def _own(key: str) -> str:
 
 
 def quantity(value: Value) -> Plain:
-    """Give a figure as it is."""
+    """Give a figure as it is; one that lacks something says on which side of it the true one lies."""
+    bound = {} if value.complete or value.value is None else {"side": "at most" if known(value) else "at least"}
     return {
         "value": None if value.value is None else float(value.value),
         "complete": value.complete,
+        **bound,
         "missing": list(value.missing),
         "assumptions": list(value.assumptions),
     }

@@ -133,6 +133,8 @@ def _term_rows(terms: Iterable[Term]) -> Iterator[Row]:
 def ways(source: str, target: str, count: int, worst: Iterable[Found], best: Iterable[Found]) -> Iterator[str]:
     """Give the ways between two elements."""
     yield f"{source} to {target}: {count} way{'s' if count != 1 else ''}"
+    if not count:
+        yield "  nothing that leaves the first reaches the second; ask the other way round?"
     for title, found in (("worst", worst), ("best case", best)):
         for at, way in enumerate(found, 1):
             yield f"  {title} {at}: {figure(way.bound)}   {' > '.join(way.through)}"
@@ -145,12 +147,14 @@ def gaps(result: ChainResult) -> str:
     if result.bound.complete:
         return ""
     said = []
+    links = {name for term in result.terms for name in term.link.missing}
     for what, values in (
         ("period or rate", [term.sampling for term in result.terms]),
         ("execution time", [term.response for term in result.terms]),
         ("latency", [term.link for term in result.terms]),
     ):
-        names = tuple(dict.fromkeys(name for value in values for name in value.missing if not value.complete))
+        lacking = dict.fromkeys(name for value in values for name in value.missing if not value.complete)
+        names = tuple(name for name in lacking if what != "period or rate" or name not in links)
         if names:
             said.append(f"{what} of {wording.listed(names)} unknown")
     named = {name for term in result.terms for v in (term.sampling, term.response, term.link) for name in v.missing}

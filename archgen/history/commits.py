@@ -28,11 +28,15 @@ def commits(tracked: Tracked, by: By) -> tuple[Commit, ...]:
     """
     repository = tracked.objects.repository
     folder, first = tracked.places[0]
-    single = first != "archgen.yaml"
-    place = "/".join(filter(None, (folder, first if single else "")))
+    file = "/".join(filter(None, (folder, first)))
+    place = folder if first == "archgen.yaml" else file
     lines = git.first_parents(repository, "HEAD")
-    trees = git.ids(repository, (f"{commit}:{place}" for commit, _ in lines))
-    every = (Commit(commit, day, tree) for (commit, day), tree in zip(lines, trees, strict=True) if tree)
+    trees, files = (git.ids(repository, (f"{commit}:{one}" for commit, _ in lines)) for one in (place, file))
+    every = (
+        Commit(commit, day, tree)
+        for (commit, day), tree, there in zip(lines, trees, files, strict=True)
+        if tree and there  # the folder may be older than the project in it
+    )
     changed = tuple(_changed(every))
     return changed if by == "revision" else tuple({one.day[:7]: one for one in changed}.values())
 

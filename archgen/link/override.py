@@ -102,7 +102,8 @@ def _value(key: str, text: str) -> object:
         made = readers[key](text)
         wanted = "any or all" if key == "trigger" else ", ".join(_BEHAVIOURS)
     if made is None:
-        msg = f"`{key}` takes {wanted}, not `{text}`"
+        long = "; that has too many digits" if sum(map(str.isdigit, text)) > _COUNT_LENGTH else ""
+        msg = f"`{key}` takes {wanted}, not `{text}`{long}"
         raise OverrideError(msg)
     return made
 
@@ -133,7 +134,9 @@ def _of_component(architecture: Architecture, element: str) -> tuple[tuple[str, 
         names = [*architecture.nodes, *architecture.components]
         guess = did_you_mean(element, [part for name in names for part in (name, name.rpartition(".")[2])])
         said = f"`{element}` may mean {', '.join(components[:6])}" if components else f"nothing is called `{element}`"
-        raise OverrideError(said + (f"; {guess}" if guess and not components else ""))
+        raise OverrideError(
+            said if components else f"{said}; {guess or '`archgen list` gives the names of all elements'}"
+        )
     nodes: list[Node] = list(architecture.implementers(components[0]))
     if len(nodes) != 1:
         names = [node.id for node in nodes]

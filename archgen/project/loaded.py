@@ -58,10 +58,10 @@ class Loaded:
         return self.files.root
 
 
-def load(path: Path | None = None) -> Loaded:
+def load(path: Path | None = None, known: Slices | None = None) -> Loaded:
     """Read the project in a folder, in a file, or (with nothing given) around the current folder."""
     root, first = find(path)
-    return load_from(Folder(root), first)
+    return load_from(Folder(root), first, known)
 
 
 def load_from(files: Files, first: str, known: Slices | None = None) -> Loaded:

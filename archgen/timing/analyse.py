@@ -31,6 +31,12 @@ def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
     return _judged
 
 
+def for_chains(architecture: Architecture) -> Analysis:
+    """Find what chains rest on, and no more: for who asks the same of many versions of one project."""
+    system, notes = build(architecture)
+    return analyse_system(system, notes, judging=True)
+
+
 _judged: Analysis | None = None
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
-from archgen.timing.sums import bounded, known, nameless, times
+from archgen.timing.sums import bounded, known, nameless, smallest, times, unknown
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import UNKNOWN, ZERO, Value
 
@@ -42,16 +42,7 @@ class Arrivals:
     def sent_gap(self, arc: Arc) -> Value:
         """Give the largest gap between two messages, where they are sent."""
         pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
-        gap = nameless(pace.gap if pace else UNKNOWN, arc.source)
-        if arc.output in self.analysis.system.activities[arc.source].conditional and known(gap):
-            return _largest((gap, self._done_gap(arc.source)))  # no promise is kept more often than there is a chance
-        return gap
-
-    def _done_gap(self, name: str) -> Value:
-        """Give the largest gap between two ends of an activity: that of its activations, and R - B."""
-        response = self.analysis.responses[name]
-        best = Value(-(response.best.value or Fraction(0)))
-        return bounded((self.gap(name), nameless(response.worst, name), best))
+        return nameless(pace.gap if pace else UNKNOWN, arc.source)
 
     def waits_for_all(self, activity: Activity) -> bool:
         """Tell whether several triggers must have come before an activity fires."""
@@ -107,19 +98,26 @@ class Arrivals:
         return _smallest([*gaps, Value(None, complete=False, missing=(activity.id,))] if outside else gaps)
 
     def _arriving_on(self, arc: Arc) -> Value:
-        if arc.best is None or arc.worst is None:
-            return Value(None, complete=False, missing=(arc.link or arc.topic,))
-        return bounded((self.sent_gap(arc), self.time(arc.worst - arc.best)))
+        spread = unknown(*self.unlinked(arc)) if arc.worst is None else self.time(arc.worst - (arc.best or 0))
+        return bounded((self.sent_gap(arc), spread))
+
+    def unlinked(self, arc: Arc) -> tuple[str, ...]:
+        """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
+        if arc.link is not None:
+            return (arc.link,)
+        activities = self.analysis.system.activities
+        homeless = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
+        return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
     def _smallest_gap(self, activity: Activity) -> Value:
         """Give the smallest gap between two triggers: known of a single stream only, else 0."""
         arcs = [arc for arc in self.analysis.system.into.get(activity.id, ()) if self.fires(arc)]
-        if len(arcs) != 1 or arcs[0].best is None or arcs[0].worst is None:
+        if len(arcs) != 1 or arcs[0].worst is None:
             return ZERO
         pace = self.analysis.outputs.get((arcs[0].source, arcs[0].output))
         if pace is None or pace.distance.value is None or not known(pace.distance, "at least"):
             return ZERO
-        spread = (arcs[0].worst - arcs[0].best) * self.analysis.system.tick
+        spread = (arcs[0].worst - (arcs[0].best or 0)) * self.analysis.system.tick
         return Value(max(Fraction(0), pace.distance.value - spread))
 
 
@@ -135,10 +133,7 @@ def _largest(values: Iterable[Value]) -> Value:
 
 def _smallest(values: Iterable[Value]) -> Value:
     parts = tuple(values)
-    shut = [part for part in parts if known(part)]
-    if shut:
-        return min(shut, key=lambda part: part.value or Fraction(0))
-    return bounded(parts) if parts else UNKNOWN
+    return smallest(parts) if parts else UNKNOWN
 
 
 def _less(value: Value, off: Value) -> Value:

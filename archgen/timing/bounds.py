@@ -11,7 +11,7 @@ from typing import Literal
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
 from archgen.timing.placement import Resource
 from archgen.timing.propagate import State
-from archgen.timing.sums import kept, total, unknown
+from archgen.timing.sums import boundless, kept, total, unknown
 from archgen.timing.system import Activity, System
 from archgen.timing.threads import Found
 from archgen.timing.ticks import SECOND
@@ -61,8 +61,9 @@ def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource 
     assumptions = tuple(dict.fromkeys(said))
     if found.value is not None:
         return Value(found.value * tick, assumptions=assumptions)
-    if not found.cause.missing:
-        return Value(None, assumptions=assumptions)
+    nothing = Value(None, not found.cause.missing, found.cause.missing, assumptions)
+    if not found.cause.missing or boundless(nothing):
+        return nothing
     least = None if activity.wcet is None else activity.wcet * tick
     return Value(least, complete=False, missing=found.cause.missing, assumptions=assumptions, side="at least")
 

@@ -58,7 +58,7 @@ def missed(analysis: Analysis, architecture: Architecture) -> Iterator[Late]:
     """Give the chains that may miss their deadlines; their other figures are left out."""
     network = Network.of(analysis)
     for asked in architecture.chains.values():
-        if asked.deadline is None:
+        if asked.deadline is None or asked.unresolved:
             continue
         regions = route.chain_route(network, route.points(analysis.system, architecture, asked.through))
         found = _ways(network, regions, "bound") if regions else None

@@ -9,13 +9,10 @@ from fractions import Fraction
 from archgen.timing.analysis import Reason
 from archgen.timing.pacing import Beat, Paces, trigger_place
 from archgen.timing.propagate import arrival, is_kept, renewed
-from archgen.timing.sums import UNBOUNDED, largest, smallest, times, total, unknown
+from archgen.timing.sums import UNBOUNDED, known, largest, smallest, times, total, unknown
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
-
-_BRINGS = "{0} brings {1} from {2}"
-_BRINGS_ON = "{0} brings {1} from {2} on {3}"
 
 
 def fired(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
@@ -54,12 +51,11 @@ def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) ->
     """Give what arrives at an input: any of its sources fires it."""
     if len(arcs) == 1 and key not in found.state.system.external.get(activity.id, ()):
         rate, gap = _arriving(found, arcs[0])
-        return (rate, smallest((gap,))), [Reason(_BRINGS, arcs[0].at, (key, rate, arcs[0].source))]
+        return (rate, smallest((gap,))), [_brings(key, arcs[0], (rate, gap))]
     beats = [_arriving(found, arc) for arc in arcs]
     twice = len(arcs) > 1 and len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
-        Reason(_BRINGS_ON if twice else _BRINGS, arc.at, (key, rate, arc.source, arc.topic))
-        for arc, (rate, _) in zip(arcs, beats, strict=True)
+        _brings(key, arc, beat, f" on {arc.topic}" if twice else "") for arc, beat in zip(arcs, beats, strict=True)
     ]
     if not arcs or key in found.state.system.external.get(activity.id, ()):
         beats.append((unknown(key), unknown(key)))
@@ -67,9 +63,20 @@ def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) ->
     return (total(rate for rate, _ in beats), smallest(gap for _, gap in beats)), told_
 
 
+def _brings(key: str, arc: Arc, beat: Beat, where: str = "") -> Reason:
+    rate, gap = beat
+    if gap.value is None or not known(gap):
+        return Reason("{0} brings {1} from {2}{3}", arc.at, (key, rate, arc.source, where))
+    return Reason("{0} brings {1} from {2}{3}, at most {4} apart", arc.at, (key, rate, arc.source, where, gap.value))
+
+
 def _any(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> tuple[Beat, list[Reason]]:
     several = len(inputs) > 1
-    reasons = [Reason("fired by any of its triggers", trigger_place(activity))] if several else []
+    reasons = (
+        [Reason("fired by any of its triggers: rates add up, the smallest gap counts", trigger_place(activity))]
+        if several
+        else []
+    )
     beats: list[Beat] = []
     for key, arcs in inputs.items():
         beat, more = _input(found, activity, key, arcs)
@@ -79,7 +86,12 @@ def _any(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
 
 
 def _all(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> tuple[Beat, list[Reason]]:
-    reasons = [Reason("fires when all of its triggers have something new", trigger_place(activity))]
+    reasons = [
+        Reason(
+            "fires when all of its triggers have something new: with the smallest rate, and the largest gap",
+            trigger_place(activity),
+        )
+    ]
     beats: dict[str, Beat] = {}
     for key, arcs in inputs.items():
         if is_kept(found.state.system, arcs):

@@ -52,7 +52,7 @@ def nothing(word: str, known: Iterable[str]) -> str:
     """Say that a word names nothing, with a guess at what it meant."""
     names = {part: name for name in known for part in (name.rpartition(".")[2], name)}
     guess = did_you_mean(word, names) if closest(word, names) else None
-    return f"nothing is called `{word}`" + (f"; {guess}" if guess else "")
+    return f"nothing is called `{word}`; {guess or '`archgen list` gives the names of all elements'}"
 
 
 def _either(found: list[str], most: int = 6) -> str:

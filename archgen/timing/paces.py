@@ -11,7 +11,7 @@ from archgen.timing.beats import beat_of, periodic, periodic_reason
 from archgen.timing.pacing import Beat, Paces
 from archgen.timing.propagate import State
 from archgen.timing.streams import Streams, single
-from archgen.timing.sums import UNBOUNDED, because, total, unknown
+from archgen.timing.sums import UNBOUNDED, because, boundless, total, unknown
 from archgen.timing.system import Activity
 from archgen.timing.value import UNKNOWN, ZERO, Cause, Value
 
@@ -74,7 +74,7 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
         serves = (name, key) in found.state.system.served
         now = (asked or unknown(name), unknown(name)) if serves else beat
         if key in activity.conditional:
-            found.outputs[name, key] = _conditional(found, activity, key, pace, now[0])
+            found.outputs[name, key] = _conditional(found, activity, key, pace, (now[0], spread))
         elif serves:
             found.outputs[name, key] = _later(pace, now, spread, shape)
         else:
@@ -102,13 +102,22 @@ def _later(pace: Pace, beat: Beat, spread: Value, shape: tuple[Value, Value]) ->
     return Pace(pace.behaviour, rate, gap, *shape, pace.inferred)
 
 
-def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, rate: Value) -> Pace:
+def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, sent: Beat) -> Pace:
+    rate, spread = sent
     promised = activity.max_gaps.get(key)
-    gap = UNBOUNDED if promised is None else Value(promised * found.state.system.tick, assumptions=("promised",))
+    gap = UNBOUNDED if promised is None else _promise(found.time(promised), pace.gap, spread)
     note = "conditional: between none and this"
     upper = replace(rate, side="at most", assumptions=(*rate.assumptions, note)) if rate.value is not None else rate
     place = activity.places.get("outputs", activity.at)
     return replace(pace, rate=upper, gap=gap, distance=ZERO, reasons=(Reason(f"{key} is conditional", place),))
+
+
+def _promise(promised: Value, gap: Value, spread: Value) -> Value:
+    """Give the gap that an output promises; but it is never sent more often than its activity works."""
+    done = spread if boundless(spread) else total((gap, spread))
+    if boundless(spread) or (done.value is not None and done.value > (promised.value or 0)):
+        return done
+    return replace(promised, assumptions=("promised",))
 
 
 def _spread(found: Paces, activity: Activity) -> Value:

@@ -17,7 +17,7 @@ from archgen.timing.streams import Stream, Streams, all_of, apart, called, every
 from archgen.timing.system import Activity, Arc, System
 from archgen.timing.threads import DIVERGED, Found, Thread
 from archgen.timing.triggers import Triggers, states_itself
-from archgen.timing.value import Cause, united
+from archgen.timing.value import Cause, alike, united
 from archgen.timing.windows import Budget
 
 _SWEEPS = 300
@@ -142,11 +142,11 @@ class _Propagation:
                 state.responses,
                 Effort(self.budget, self._stale(step), self.before.setdefault(step, [])),
             )
-            changed = any(state.responses.get(name) != response for name, response in found.items())
+            changed = any(_differs(state.responses.get(name), response) for name, response in found.items())
             state.responses.update(found)
             return changed
         events = activation(state, step)
-        if state.events.get(step) == events and step in state.responses:
+        if step in state.responses and _is_known(state.events.get(step), events):
             return False
         state.events[step] = events
         if step not in self.runs_on:
@@ -160,6 +160,16 @@ class _Propagation:
         before = self.seen.get(step)
         self.seen[step] = now
         return None if before is None else frozenset(name for name in now if now[name] is not before[name])
+
+
+def _differs(old: Found | None, new: Found) -> bool:
+    if old is None or old.value != new.value or old.tier != new.tier:
+        return True
+    return old.cause is not new.cause and not alike(old.cause, new.cause)
+
+
+def _is_known(old: Streams | Cause | None, new: Streams | Cause) -> bool:
+    return alike(old, new) if isinstance(old, Cause) and isinstance(new, Cause) else old == new
 
 
 def activation(state: State, name: str) -> Streams | Cause:

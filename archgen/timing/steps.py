@@ -106,7 +106,7 @@ class Steps:
         """Give a link's largest (or smallest) latency, as it is written; its own queueing is not in it."""
         ticks = arc.worst if worst else arc.best
         if ticks is None:
-            return Value(None, complete=False, missing=self._unlinked(arc))
+            return Value(None, complete=False, missing=self.arrivals.unlinked(arc))
         if arc.link is None and not ticks:
             return ZERO
         key = (arc.link if worst else None, ticks)
@@ -128,14 +128,6 @@ class Steps:
         else:
             said = f"queueing on link {arc.link} (up to {waits}) is within its latency"
         return replace(value, assumptions=(said,))
-
-    def _unlinked(self, arc: Arc) -> tuple[str, ...]:
-        """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
-        if arc.link is not None:
-            return (arc.link,)
-        activities = self.analysis.system.activities
-        homeless = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
-        return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
     def _reading(self, arc: Arc) -> Value:
         reader = self.analysis.system.activities[arc.target]

@@ -38,22 +38,28 @@ def total(values: Iterable[Value]) -> Value:
     else:
         return Value(added(exact))
     reasons = _reasons(found)
-    if any(one.value is None and one.complete for one in found):
-        return replace(reasons, value=None, complete=True, side="exact")
+    if any(one.value is None and (one.complete or boundless(one)) for one in found):
+        return replace(reasons, value=None, side="exact")
     known = [one.value for one in found if one.value is not None]
     return replace(reasons, value=added(known) if known or not found else None)
 
 
 def smallest(values: Iterable[Value]) -> Value:
-    """Give the smallest of bounds, any of which holds: one complete bound is enough."""
+    """Give the smallest of bounds, any of which holds: one complete bound is enough.
+
+    What is only known from below may be smaller than it seems once all is known, so that it counts where all others are.
+    """
     found = tuple(values)
-    bounds = [one for one in found if one.complete and one.value is not None]
+    bounds = [one for one in found if known(one)]
     if bounds:
         return min(bounds, key=_size)
-    partial = [one for one in found if one.value is not None]
-    if partial:
-        return min(partial, key=_size)
-    return next((one for one in found if not one.complete), UNBOUNDED)
+    unsure = tuple(one for one in found if not boundless(one))
+    if not unsure:
+        return next(iter(found), UNBOUNDED)
+    reasons = _reasons(unsure)
+    if any(one.value is None for one in unsure):
+        return replace(reasons, value=None, side="exact")
+    return replace(reasons, value=min(map(_size, unsure)))
 
 
 def largest(values: Iterable[Value]) -> Value:

@@ -65,3 +65,10 @@ def united(causes: Iterable[Cause]) -> Cause:
     if len(missing) > MOST_NAMED:
         missing, notes = missing[:MOST_NAMED], tuple(dict.fromkeys((*notes, "more figures are missing")))
     return Cause(missing, notes)
+
+
+def alike(one: Cause, other: Cause) -> bool:
+    """Say whether two causes name the same. Round a loop the order of names turns for ever, and so does which dozen is named."""
+    if set(one.notes) != set(other.notes):
+        return False
+    return set(one.missing) == set(other.missing) or len(one.missing) == len(other.missing) == MOST_NAMED

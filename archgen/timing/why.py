@@ -128,7 +128,7 @@ def _said(value: Value, kind: str = "duration") -> str:
         return f"{wording.reason(value)}{missing}"
     write = _WRITERS[kind]
     if known(value):
-        return ("<= " if value.side == "at most" and not value.complete else "") + write(value.value)
+        return ("<= " if value.side == "at most" else "") + write(value.value)
     return f">= {write(value.value)}"
 
 

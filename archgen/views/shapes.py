@@ -35,6 +35,8 @@ class Text:
 
 
 Inlines = tuple[Text, ...]
+Changed = Literal["added", "removed", "changed", "renamed"]
+"""What happened to an element of a picture that shows two versions: told by the sign in its text and by its line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +124,7 @@ class Box:
     badge: Literal["error", "warning", "note"] | None = None
     fill: Pace | None = None
     """Fills the box by the period scale; frame and text tell apart what has no period."""
+    change: Changed | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +148,7 @@ class Arrow:
     faded: bool = False
     flows: tuple[str, ...] = ()
     ref: str | None = None
+    change: Changed | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,13 +170,14 @@ class Graph:
     """A picture. `id` is its file name without ending (slashes make folders: `groups/environment_state`).
 
     `layout` names the recipe: `flow` (one dot run), `group` (one cluster with neighbours at both sides), `two-step`
-    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows).
+    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one dot run with
+    frames round the boxes, for few of them; texts are set on the arrows afterwards).
     `asked` is the number of flows that the picture must account for: the arrows' counts add up to it.
     """
 
     id: str
     title: str
-    layout: Literal["flow", "group", "two-step", "overview"]
+    layout: Literal["flow", "group", "two-step", "overview", "framed"]
     boxes: tuple[Box, ...]
     arrows: tuple[Arrow, ...]
     clusters: tuple[Cluster, ...] = ()

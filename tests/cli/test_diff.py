@@ -59,7 +59,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
         "\n"
         "Latency of chains\n"
-        "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms (met)\n"
+        "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
         "1 change (1 changed); concerns certh\n"
     )
@@ -106,7 +106,7 @@ def test_consequences_and_cured_findings(run: Run, robot: Path) -> None:
         in out
     )
     assert "  warning[unread-output]: nobody reads `image` of `sensing.camera` (archgen.yaml:8:26)\n" in out
-    assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms (met)\n" in out
+    assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms: met\n" in out
     assert out.rstrip().endswith("; concerns certh, sssa")
 
 
@@ -186,3 +186,38 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
         assert "\x1b" not in out
         assert "\u202e" not in out
         assert not any(line.lstrip().startswith("::") for line in out.splitlines())
+
+
+@pytest.mark.parametrize(
+    ("form", "start"),
+    [
+        ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
+        ("json", '{\n  "version": 1,'),
+        ("markdown", "### 1 change of the architecture: concerns `certh`\n\n`where this branch left main ("),
+        ("html", "<!DOCTYPE html>\n"),
+        ("svg", '<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"'),
+    ],
+)
+def test_every_format_goes_to_the_terminal_or_into_a_file(run: Run, robot: Path, form: str, start: str) -> None:
+    ran = run("diff", "--format", form)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.startswith(start)
+    assert run("diff", "--format", form, "-o", "made/changes").out == "wrote made/changes\n"
+    assert (robot / "made" / "changes").read_text(encoding="utf-8") == ran.out
+    assert [path.name for path in (robot / "made").iterdir()] == ["changes"]
+
+
+def test_no_picture_is_said_and_nothing_is_written(run: Run, robot: Path) -> None:
+    ran = run("diff", "HEAD", "--format", "svg", "-o", "picture.svg")
+    assert ran.status == 2
+    assert "nothing changed that a picture could show" in ran.err
+    assert not (robot / "picture.svg").exists()
+
+
+def test_the_comment_names_the_command_that_shows_everything(run: Run, robot: Path) -> None:
+    many = "".join(f"      part{at}: {{title: {'w' * 90}, inputs: {{image: camera.image}}}}\n" for at in range(700))
+    text = SLOWER.replace("      screen: {", f"{many}      screen: {{")
+    (robot / "archgen.yaml").write_text(text, encoding="utf-8")
+    ran = run("diff", "main", "--format", "markdown")
+    assert len(ran.out) <= 65_336
+    assert " more: `archgen diff main`" in ran.out

@@ -114,7 +114,10 @@ def test_a_whole_group_is_one_change(told: Told) -> None:
         "    added input new.a.i",
         "    added connection new.a.i",
     ]
-    assert lines[0] == "added group new: group `new` is added with 1 component and 1 input"
+    assert (
+        lines[0]
+        == "added group new: group `new` is added with 1 component and 1 input; it reads `sensing.camera.image`"
+    )
 
 
 def test_a_requirement_that_lost_its_last_component(told: Told) -> None:

@@ -162,3 +162,17 @@ def test_json_is_as_the_schema_says_and_csv_is_safe_to_open(robot: Path, tmp_pat
 def test_options_that_need_the_history(robot: Path) -> None:
     for words in (("--by", "month"), ("--format", "csv")):
         assert b"belong to --history" in archgen("stats", *words, cwd=robot, status=2).stderr
+
+
+def test_a_folder_older_than_the_project_in_it(tmp_path: Path) -> None:
+    folder = repositories.repository(tmp_path / "work", {"notes.txt": "before there was a project"})
+    repositories.commit(folder, {"archgen.yaml": START})
+    assert [point.whole.components for point in history(folder).points] == [1]
+
+
+def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> None:
+    title = r'"P\n::error::x \e[31m"'
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": START.replace("Partner P", title)})
+    out = history_text.csv(history(folder))
+    assert "P\n\\::error::x ␛[31m" in out
+    assert "\x1b" not in out

@@ -189,7 +189,7 @@ def test_all_of_waits_for_ever_for_an_input_that_nothing_feeds(derived: Derived)
 def test_the_reasons_name_the_places(derived: Derived) -> None:
     pace = of_two(derived, "trigger: [one], every: 2").paces["c"]
     assert [f"{reason.text} ({reason.at.line})" for reason in pace.reasons] == [
-        "g.c.one brings 50 Hz from a (7)",
+        "g.c.one brings 50 Hz from a, at most 20 ms apart (7)",
         "one in 2 fires it (11)",
     ]
 

@@ -129,8 +129,8 @@ class Causes:
         return sorted(found)
 
     def any(self) -> list[int]:
-        """Give all changes that can make a figure worse."""
-        every = enumerate(self.both.changes)
+        """Give all changes that can make a figure worse. The way of another chain makes none."""
+        every = ((place, change) for place, change in enumerate(self.both.changes) if change.sort != "chain")
         return [place for place, change in every if any(self.worse(one) for one in self.both.all_of(change))]
 
     def worse(self, change: Change) -> bool:

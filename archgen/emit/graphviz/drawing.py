@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from archgen.emit.graphviz import chart, engine, flow, twostep
+from archgen.emit.graphviz import chart, engine, flow, framed, twostep
 from archgen.emit.graphviz.decorations import decorated
 from archgen.emit.graphviz.draft import Draft, draft
 from archgen.emit.graphviz.legend import below
@@ -16,7 +16,13 @@ from archgen.emit.picture import Picture
 from archgen.views.bars import Chart, Drawing
 from archgen.views.shapes import Graph
 
-_LAYOUTS = {"flow": flow.flow, "group": flow.group, "two-step": twostep.two_step, "overview": twostep.two_step}
+_LAYOUTS = {
+    "flow": flow.flow,
+    "group": flow.group,
+    "two-step": twostep.two_step,
+    "overview": twostep.two_step,
+    "framed": framed.framed,
+}
 _FORMATS = {"svg_outlines": "svg:cairo", "pdf": "pdf"}
 _LOOK = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
 

@@ -45,6 +45,12 @@ _PACES: dict[Pace, str] = {
     "unknown": "? unknown",
 }
 _BOXES |= {f"pace:{pace}": (Box("", "", fill=pace), words) for pace, words in _PACES.items()}
+_BOXES |= {
+    "change:added": (Box("", "", change="added"), "+ added"),
+    "change:removed": (Box("", "", change="removed"), "\u2212 removed"),
+    "change:changed": (Box("", "", change="changed"), "~ changed"),
+    "change:renamed": (Box("", "", change="renamed"), "→ renamed or moved"),
+}
 _ARROWS: dict[str, tuple[Arrow, str]] = {
     "data": (Arrow("", "", ""), "data"),
     "optional": (Arrow("", "", "", optional=True), "optional input"),
@@ -53,6 +59,10 @@ _ARROWS: dict[str, tuple[Arrow, str]] = {
     "action": (Arrow("", "", "", style="action"), "action, from client to server"),
     "internal": (Arrow("", "", "", style="internal"), "inside one component"),
     "link": (Arrow("", "", "", style="link"), "network link"),
+    "line:added": (Arrow("", "", "", change="added"), "+ connection added"),
+    "line:removed": (Arrow("", "", "", change="removed"), "\u2212 connection removed"),
+    "line:changed": (Arrow("", "", "", change="changed"), "~ something else flows"),
+    "line:same": (Arrow("", "", "", faded=True), "as before"),
 }
 _WIDTHS = ((1, "1 flow"), (2, "2 or 3 flows"), (4, "4 flows and more"))
 _WORDS = {"count": "A number on an arrow: how many flows it stands for.", "star": "* all that it offers is taken."}
@@ -87,7 +97,9 @@ def _entries(key: str) -> Iterator[tuple[Scene, str]]:
 
 
 def _box(item: Box) -> Scene:
-    double = 6 if item.style in {"fold", "action"} or item.fill == "once" else 0  # the second frame stands outside
+    double = (
+        6 if item.style in {"fold", "action"} or item.fill == "once" or item.change == "changed" else 0
+    )  # the second frame stands outside
     width, height = _SAMPLE[0] - double, _SAMPLE[1] - double
     attributes = {
         **marks.box(item, lambda _: None),

@@ -9,6 +9,9 @@
 | external, physical, partner | dashed box |
 | host, container, link | plain box, rounded box with list, small plain text |
 
+Where two versions are drawn, what is added has a thick frame, what is removed a dashed one, what changed a double one,
+and what is called otherwise a dotted one: a sign in the title says the same.
+
 Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
 that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once, and sharp
 corners where it runs on events of which the rate is not known.
@@ -34,6 +37,7 @@ _SHAPES = {
 }
 _ROUNDED = {"component", "source", "sink", "physical", "container"}
 _DASHED = {"external", "physical", "partner"}
+_CHANGE_PENS = {"added": "2.6", "removed": "1.4", "changed": "1", "renamed": "2"}
 _WIDTHS = {"topic": 30, "service": 30, "action": 30, "group": 22, "fold": 22, "host": 26, "container": 30, "node": 20}
 
 
@@ -50,7 +54,7 @@ def box(item: Box, link: Link) -> Attributes:
         "color": f'"{frame}"',
         "fillcolor": f'"{fill}"',
         "penwidth": _pen(item),
-        "peripheries": "2" if item.style in {"action", "fold"} or item.fill == "once" else "1",
+        "peripheries": "2" if _double(item) else "1",
         "margin": _margin(item),
         "width": "0.3",
         "height": "0.22",
@@ -58,8 +62,16 @@ def box(item: Box, link: Link) -> Attributes:
     }
 
 
+def _double(item: Box) -> bool:
+    if item.change is not None:
+        return item.change == "changed"
+    return item.style in {"action", "fold"} or item.fill == "once"
+
+
 def colours(item: Box) -> tuple[str, str]:
     """Choose the frame's and the fill's colour."""
+    if item.change is not None:
+        return palette.CHANGES[item.change], palette.tint(palette.CHANGES[item.change])
     if item.fill is not None:
         fill = palette.PERIODS[item.fill]
         rim = palette.FRAME if item.fill == "once" else palette.rim_on(fill)  # its outer frame stands on the paper
@@ -84,6 +96,8 @@ def _margin(item: Box) -> str:
 
 
 def _pen(item: Box) -> str:
+    if item.change is not None:
+        return _CHANGE_PENS[item.change]
     if item.emphasis == "subject":
         return "2"
     if item.fill in {"unknown", "on_demand", "event"}:
@@ -92,6 +106,8 @@ def _pen(item: Box) -> str:
 
 
 def _dashes(item: Box) -> list[str]:
+    if item.change is not None:
+        return {"removed": ["dashed"], "renamed": ["dotted"]}.get(item.change, [])
     if item.fill is not None:
         return {"unknown": ["dashed"], "on_demand": ["dotted"]}.get(item.fill, [])
     if item.style in _DASHED or item.status == "planned":
@@ -102,6 +118,7 @@ def _dashes(item: Box) -> list[str]:
 def _common(item: Box, link: Link) -> Attributes:
     classes = ["box", item.style, item.emphasis]
     classes += [item.status] if item.status else []
+    classes += [f"change-{item.change}"] if item.change else []
     classes += [f"hue{item.colour}"] if item.colour is not None else []
     classes += [f"pace-{item.fill.replace('_', '-')}"] if item.fill else []
     return {

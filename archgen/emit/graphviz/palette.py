@@ -70,6 +70,8 @@ PERIODS = {
 }
 """Fills by period, one lightness after the other; the same in the dark, but for the unknown."""
 OK = "#1c6b3c"
+CHANGES = {"added": OK, "removed": ERROR, "changed": WARNING, "renamed": NOTE}
+"""What happened between two versions."""
 
 _DARK_PAPER = "#14181c"
 _DARK = {
@@ -124,6 +126,7 @@ def dark_pairs() -> tuple[tuple[str, str], ...]:
     """Pair each light colour with its dark counterpart."""
     hues = dict(zip(HUES, _DARK_HUES, strict=True))
     tints = {tint(light): tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
+    tints |= {tint(light): tint(_DARK[light], 0.16, _DARK_PAPER) for light in CHANGES.values()}
     return tuple({**tints, **hues, **_DARK}.items())
 
 

@@ -9,6 +9,8 @@
 | internal | dotted |
 | link | thick, without head |
 
+Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line.
+
 An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are 1, 2 and 3.2 points.
 """
 
@@ -32,9 +34,15 @@ def width(count: int) -> str:
 
 def arrow(item: Arrow, link: Link, *, merged: bool = False) -> Attributes:
     """Give the DOT attributes of an arrow, without its text."""
-    colour = palette.FADED if item.faded else palette.EDGE if item.colour is None else palette.hue(item.colour)
+    colour = _colour(item)
+    classes = [
+        "arrow",
+        item.style,
+        *(["faded"] if item.faded else []),
+        *([f"change-{item.change}"] if item.change else []),
+    ]
     found = {
-        "class": quoted(" ".join(["arrow", item.style, *(["faded"] if item.faded else [])])),
+        "class": quoted(" ".join(classes)),
         "color": f'"{colour}"',
         "arrowsize": "0.6",
         "penwidth": width(item.count) if merged else "0.8",
@@ -43,7 +51,22 @@ def arrow(item: Arrow, link: Link, *, merged: bool = False) -> Attributes:
     }
     if merged:
         found["arrowsize"] = {"1": "0.7", "2": "0.6", "3.2": "0.5"}[width(item.count)]
-    return found
+    return {**found, **_changed(item, colour)} if item.change else found
+
+
+def _colour(item: Arrow) -> str:
+    if item.change is not None:
+        return palette.CHANGES[item.change]
+    return palette.FADED if item.faded else palette.EDGE if item.colour is None else palette.hue(item.colour)
+
+
+def _changed(item: Arrow, colour: str) -> Attributes:
+    """Tell by the line what happened; the head still tells what runs along it."""
+    if item.change == "added":
+        return {"style": '"solid"', "color": f'"{colour}"', "penwidth": "2.2", "arrowsize": "0.5"}
+    if item.change == "removed":
+        return {"style": '"dashed"', "color": f'"{colour}"', "penwidth": "1.3"}
+    return {"style": '"solid"', "color": f'"{colour}:{palette.PAPER}:{colour}"', "penwidth": "1.1"}
 
 
 def _form(item: Arrow, colour: str) -> Attributes:
@@ -73,6 +96,7 @@ def label(item: Arrow, link: Link, *, merged: bool = False, at: int = 20) -> Att
     if not text:
         return None
     ink = palette.MUTED if item.faded else palette.hue(item.colour) if item.colour is not None else palette.TEXT
+    ink = palette.CHANGES[item.change] if item.change else ink
     rows = "<BR/>".join(html(row) for line in text.split("\n") for row in wrapped(line, at, 3))
     return {
         "shape": '"box"',

@@ -146,9 +146,13 @@ class Writer:
         svg = pictures.inline(picture.svg, self.here.href, alt)
         warning = f'<p class="notice warning">{escape(picture.warning)}</p>\n' if picture.warning else ""
         return (
-            f'<figure class="picture"{self._id(figure.anchor)}>\n<div class="canvas">{svg}</div>\n{warning}'
+            f'<figure class="picture"{self._id(figure.anchor)}>\n<div class="canvas"{self._natural(picture)}>{svg}</div>\n{warning}'
             f"<figcaption><span>{caption}</span>{self._whole(figure.graph, caption)}</figcaption>\n</figure>"
         )
+
+    def _natural(self, picture: Picture) -> str:
+        """Where the picture cannot be opened by itself it must stay readable: it scrolls before it gets too small."""
+        return f' style="--natural: {picture.width * 4 / 3:.0f}px"' if self.alone else ""
 
     def _whole(self, graph: str, caption: str) -> str:
         """Lead to the picture's own file."""

@@ -61,7 +61,7 @@ def _of(architecture: Architecture, connection: Connection) -> Iterable[Flow]:
     outputs = [architecture.outputs[each] for each in connection.outputs if each in architecture.outputs]
     for producer in dict.fromkeys(output.component for output in outputs):
         mine = [output for output in outputs if output.component == producer]
-        style = _style(architecture, mine[0].id)
+        style = style_of(architecture, mine[0].id)
         calls = style in {"service", "action"}
         names = ", ".join(output.name for output in mine)
         types = tuple(dict.fromkeys(output.type for output in mine if output.type))
@@ -78,7 +78,8 @@ def _of(architecture: Architecture, connection: Connection) -> Iterable[Flow]:
         )
 
 
-def _style(architecture: Architecture, output: str) -> Style:
+def style_of(architecture: Architecture, output: str) -> Style:
+    """Say how what an output gives is drawn."""
     found = architecture.outputs[output]
     if found.physical:
         return "physical"

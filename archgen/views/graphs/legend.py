@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import get_args
 
-from archgen.views.shapes import Arrow, Box, Graph, Pace
+from archgen.views.shapes import Arrow, Box, Changed, Graph, Pace
 
 _BOXES = ("source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_OF_FLOW = {"service": "service-box", "action": "action-box"}
@@ -24,10 +24,22 @@ def _keys(graph: Graph) -> list[str]:
     strokes = {kind for arrow in graph.arrows for kind in _strokes(arrow)}
     keys = [key for key in ("subject", "neighbour", *_BOXES, *_BOX_OF_FLOW.values(), *_STATUSES) if key in kinds]
     keys += _paces(graph)
+    keys += _changes(graph)
     keys += [key for key in _ARROWS if key in strokes]
     keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
     wide = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
     return [*keys, "width", "count"] if wide else keys
+
+
+def _changes(graph: Graph) -> list[str]:
+    """Give what happened to boxes and arrows, and that the others are as before, where two versions are drawn."""
+    boxes = {box.change for box in graph.boxes}
+    lines = {arrow.change or "same" for arrow in graph.arrows}
+    if boxes == {None} and lines <= {"same"}:
+        return []
+    return [f"change:{kind}" for kind in get_args(Changed) if kind in boxes] + [
+        f"line:{kind}" for kind in (*get_args(Changed), "same") if kind in lines
+    ]
 
 
 def _paces(graph: Graph) -> list[str]:

@@ -1,0 +1,73 @@
+"""A graph as a Mermaid flowchart: what changed between two versions is told by signs, lines and colours."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from archgen.emit.text import filters
+from archgen.views.shapes import Arrow, Box, Changed, Graph
+
+_LONGEST = 60
+_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])"}
+_LIST = re.compile(r"^(?=[-+*#>]|\d+[.)])")
+_CLASSES: dict[Changed, str] = {
+    "added": "stroke:#2e8b57,stroke-width:4px",
+    "removed": "stroke:#d1473f,stroke-width:2px,stroke-dasharray:6 4",
+    "changed": "stroke:#b7791f,stroke-width:2px",
+    "renamed": "stroke:#2f81c7,stroke-width:3px,stroke-dasharray:2 3",
+}
+"""Lines that stand out from a light and from a dark page."""
+_LINKS: dict[Changed | None, str] = {
+    "added": "stroke:#2e8b57,stroke-width:3px",
+    "removed": _CLASSES["removed"],
+    "changed": _CLASSES["changed"],
+    None: "stroke:#8a8a8a,stroke-width:1px",
+}
+_ARROWS = {"service": "-.->", "action": "==>", "physical": "-.->"}
+
+
+def flowchart(graph: Graph) -> Iterator[str]:
+    """Give the lines of a flowchart. Boxes are `n0`, `n1`: nothing of the model is a name or a word of Mermaid."""
+    names = {box.id: f"n{at}" for at, box in enumerate(graph.boxes)}
+    yield f"flowchart {'LR' if graph.direction == 'left-right' else 'TB'}"
+    framed = {cluster.id for cluster in graph.clusters}
+    for at, cluster in enumerate(graph.clusters):
+        yield f'  subgraph g{at}["{_text(cluster.title)}"]'
+        yield from (f"    {_box(box, names)}" for box in graph.boxes if box.cluster == cluster.id)
+        yield "  end"
+    yield from (f"  {_box(box, names)}" for box in graph.boxes if box.cluster not in framed)
+    yield from (f"  {_arrow(arrow, names)}" for arrow in graph.arrows)
+    yield from _styles(graph)
+
+
+def _box(box: Box, names: dict[str, str]) -> str:
+    shape = "[[]]" if box.change == "changed" and box.style not in _SHAPES else _SHAPES.get(box.style, "()")
+    half = len(shape) // 2
+    text = "<br>".join(_text(line) for line in (box.title, *box.lines))
+    kind = box.change or ("neighbour" if box.emphasis == "neighbour" else "")
+    return f'{names[box.id]}{shape[:half]}"{text}"{shape[half:]}' + (f":::{kind}" if kind else "")
+
+
+def _arrow(arrow: Arrow, names: dict[str, str]) -> str:
+    line = _ARROWS.get(arrow.style, "-->")
+    label = "<br>".join(_text(line) for line in arrow.label.split("\n")) if arrow.label else ""
+    return f"{names[arrow.tail]} {line}" + (f'|"{label}"|' if label else "") + f" {names[arrow.head]}"
+
+
+def _styles(graph: Graph) -> Iterator[str]:
+    kinds = {box.change for box in graph.boxes}
+    yield from (f"  classDef {kind} {style}" for kind, style in _CLASSES.items() if kind in kinds)
+    if any(box.emphasis == "neighbour" and not box.change for box in graph.boxes):
+        yield "  classDef neighbour stroke:#8a8a8a,stroke-width:1px"
+    for kind, style in _LINKS.items() if any(arrow.change for arrow in graph.arrows) else ():
+        lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind]
+        if lines:
+            yield f"  linkStyle {','.join(lines)} {style}"
+
+
+def _text(text: str) -> str:
+    """Write one line of a label. Mermaid takes some beginnings for a list: a space of no width keeps it from that."""
+    line = " ".join(text.split())
+    line = line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
+    return ("#8203;" if _LIST.match(line) else "") + filters.mermaid(line)

@@ -1,0 +1,29 @@
+"""Pictures of what changed: two versions laid over each other, what is gone taken from the first one.
+
+A sign before each title tells what was added, removed, changed or renamed; lines and colours say the same. What did not
+change stands around it in grey. Above a budget groups are folded, and the picture says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.compare import Comparison
+from archgen.views.graphs.changes.budget import LARGE, SMALL, Budget
+from archgen.views.graphs.changes.functional import functional
+from archgen.views.graphs.changes.implementation import implementation
+from archgen.views.shapes import Graph
+
+__all__ = ["LARGE", "SMALL", "Budget", "pictures"]
+
+
+def pictures(found: Comparison, budget: Budget = LARGE) -> tuple[Graph, ...]:
+    """Draw what changed among components, then among nodes; no picture where nothing changed that it could show."""
+    return tuple(_pictures(found, budget))
+
+
+def _pictures(found: Comparison, budget: Budget) -> Iterator[Graph]:
+    for draw in (functional, implementation):
+        graph = draw(found, budget)
+        if graph:
+            yield graph

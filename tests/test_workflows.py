@@ -1,0 +1,164 @@
+"""The workflow files: zizmor has nothing to say, and the commands in them do what they promise."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from tests import repositories
+from tests.running import ROOT
+
+FILES = ("action.yml", "comment/action.yml", ".github/workflows/ci.yml", ".github/workflows/action.yml")
+ROBOT = """\
+archgen: 1
+partners: {p: {title: P}, q: {title: Q}}
+groups:
+  sensing: {owner: p, components: {camera: {functionality: Sees., outputs: {image: sensor_msgs/msg/Image}}}}
+  acting: {owner: q, components: {arm: {functionality: Grasps., inputs: {image: camera.image}}}}
+nodes: {camera: {implements: camera}, arm: {implements: arm}}
+"""
+
+
+def read(name: str) -> dict[str, Any]:
+    data: dict[str, Any] = yaml.safe_load((ROOT / name).read_text(encoding="utf-8"))
+    return data
+
+
+def test_zizmor_finds_nothing() -> None:
+    program = Path(sys.executable).with_name("zizmor")
+    done = subprocess.run(  # noqa: S603 - a judge of ours
+        [program, "--offline", "--no-progress", "--no-config", "--strict-collection", *FILES],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "No findings to report" in done.stdout + done.stderr
+
+
+def test_every_foreign_action_is_pinned_by_its_hash() -> None:
+    used = [word for name in FILES for word in re.findall(r"uses: (\S+)", (ROOT / name).read_text(encoding="utf-8"))]
+    assert used
+    assert [
+        word for word in used if not word.startswith((".", "$/")) and not re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", word)
+    ] == []
+
+
+def test_no_value_of_an_event_is_put_into_a_shell_command() -> None:
+    for name in ("action.yml", "comment/action.yml"):
+        for step in read(name)["runs"]["steps"]:
+            assert "${{" not in step.get("run", "")
+
+
+def run(step: dict[str, Any], folder: Path, runner: Path, **environment: str) -> dict[str, str]:
+    """Run a step of an action as a runner does; give the outputs that it sets."""
+    out = runner / "github_output"
+    out.write_text("")
+    done = subprocess.run(  # noqa: S603 - what stands in our own file
+        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]],  # noqa: S607 - as a runner starts it
+        cwd=folder,
+        env={
+            **os.environ,
+            "RUNNER_TEMP": str(runner),
+            "GITHUB_OUTPUT": str(out),
+            "GITHUB_ACTIONS": "true",
+            **environment,
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (runner / "said").write_text(done.stdout)
+    return dict(line.split("=", 1) for line in out.read_text().splitlines())
+
+
+@pytest.fixture
+def runner(tmp_path: Path) -> Path:
+    """Make the folder of a runner in which archgen is installed."""
+    programs = tmp_path / "runner/archgen/bin"
+    programs.mkdir(parents=True)
+    script = f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m archgen "$@"\n'
+    (programs / "archgen").write_text(script)
+    (programs / "archgen").chmod(0o755)
+    return tmp_path / "runner"
+
+
+def defaults(step: dict[str, Any], **given: str) -> dict[str, str]:
+    """Give a step's environment with the inputs' defaults, as GitHub fills it in."""
+    inputs = {name: str(value.get("default", "")) for name, value in read("action.yml")["inputs"].items()} | given
+    return {key: inputs[re.fullmatch(r"\$\{\{ inputs\.(\w+) \}\}", value)[1]] for key, value in step["env"].items()}  # type: ignore[index]
+
+
+def test_the_action_reviews_a_pull_request(tmp_path: Path, runner: Path) -> None:
+    folder = repositories.repository(tmp_path / "work", {"robot/archgen.yaml": ROBOT})
+    repositories.git(folder, "checkout", "-q", "-b", "stranger")
+    repositories.commit(
+        folder, {"robot/archgen.yaml": ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")}
+    )
+    step = next(one for one in read("action.yml")["runs"]["steps"] if one.get("id") == "review")
+    summary = runner / "summary.md"
+    given = defaults(step, project="robot", base="main", build="false")
+    told = run(step, folder, runner, **given, GITHUB_STEP_SUMMARY=str(summary), GITHUB_WORKSPACE=str(folder))
+    assert told == {"status": "0"}
+    made = folder / given["ARCHGEN_OUTPUT"]
+    assert {file.name for file in made.iterdir()} == {
+        *("findings.sarif", "findings.xml", "comment.md", "diff.json", "diff.html"),
+    }
+    assert "CompressedImage" in (made / "comment.md").read_text(encoding="utf-8")
+    assert summary.read_text(encoding="utf-8") == (made / "comment.md").read_text(encoding="utf-8")
+    assert "file=robot/archgen.yaml" in (runner / "said").read_text()
+
+
+def test_the_action_fails_with_errors_after_it_has_made_everything(tmp_path: Path, runner: Path) -> None:
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": ROBOT.replace("camera.image", "camera.imgae")})
+    step = next(one for one in read("action.yml")["runs"]["steps"] if one.get("id") == "review")
+    given = defaults(step, build="false") | {"ARCHGEN_BASE": ""}
+    told = run(step, folder, runner, **given, GITHUB_WORKSPACE=str(folder))
+    assert told == {"status": "1"}
+    assert (folder / given["ARCHGEN_OUTPUT"] / "findings.sarif").exists()
+    assert "::error" in (runner / "said").read_text()
+
+
+def test_the_hook_of_pre_commit_runs_a_verb() -> None:
+    (hook,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    program, verb = hook["entry"].split()
+    assert (program, hook["language"], hook["pass_filenames"]) == ("archgen", "python", False)
+    assert verb == "check"
+    assert re.search(hook["files"], "groups/sensing.yaml")
+    assert not re.search(hook["files"], "firmware/main.c")
+
+
+def test_gitlab_runs_the_same_commands(tmp_path: Path, runner: Path) -> None:
+    template = read("ci/gitlab.yml")
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": ROBOT})
+    script = "\n".join(template["archgen"]["script"])
+    environment = {key: str(value) for key, value in template["variables"].items()}
+    path = f"{runner}/archgen/bin:{os.environ['PATH']}"
+    base = repositories.git(folder, "rev-parse", "HEAD")
+    done = subprocess.run(  # noqa: S603 - what stands in our own file
+        ["bash", "-eo", "pipefail", "-c", script],  # noqa: S607 - as GitLab starts it
+        cwd=folder,
+        env={
+            **os.environ,
+            **environment,
+            "PATH": path,
+            "ARCHGEN_BASE": base,
+            "ARCHGEN_BUILD": "false",
+            "GITHUB_ACTIONS": "",
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    wanted = template["archgen"]["artifacts"]["reports"]["junit"]
+    assert (folder / wanted).exists()

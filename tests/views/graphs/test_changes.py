@@ -1,0 +1,200 @@
+"""Pictures of what changed between two versions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.compare import Comparison
+from archgen.compare.selected import selected
+from archgen.emit import graphviz
+from archgen.emit.text.mermaid import flowchart
+from archgen.model.selector import Selecting
+from archgen.sides import Side, compared
+from archgen.views.graphs.changes import LARGE, SMALL, pictures
+from archgen.views.shapes import Arrow, Box, Graph
+
+ROBOT = """\
+archgen: 1
+project: {id: robot}
+partners: {certh: CERTH, sssa: SSSA}
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {outputs: {image: Image}}
+      lidar: {outputs: {scan: Scan}}
+  display:
+    owner: sssa
+    components:
+      finder: {inputs: {image: camera.image}, outputs: {people: People}}
+      map: {inputs: {scan: lidar.scan}, outputs: {grid: Grid}}
+      screen: {inputs: {people: finder.people, grid: map.grid}}
+types: {Image: sensor_msgs/msg/Image, Scan: sensor_msgs/msg/LaserScan, People: geometry_msgs/msg/PoseArray, Grid: nav_msgs/msg/OccupancyGrid}
+nodes:
+  camera: {implements: camera, publishes: {image: {topic: /image, qos: {reliability: reliable}}}}
+  lidar: {implements: lidar}
+  finder: {implements: finder, subscribes: {image: {}}}
+  map: {implements: map}
+  screen: {implements: screen}
+"""
+Compared = Callable[..., Comparison]
+
+
+@pytest.fixture
+def found(tmp_path: Path) -> Compared:
+    """Compare ROBOT with what changes make of it."""
+
+    def run(*changes: tuple[str, str]) -> Comparison:
+        after = ROBOT
+        for old, new in changes:
+            assert old in after
+            after = after.replace(old, new)
+        sides = []
+        for name, text in (("before", ROBOT), ("after", after)):
+            (tmp_path / name).mkdir(exist_ok=True)
+            (tmp_path / name / "robot.yaml").write_text(text, encoding="utf-8")
+            sides.append(Side(name, pipeline.check(tmp_path / name / "robot.yaml")))
+        return compared(*sides)
+
+    return run
+
+
+def boxes(graph: Graph) -> list[str]:
+    """Name each box with its frame, what happened to it, and whether it is grey."""
+    return [_box(box) for box in graph.boxes]
+
+
+def _box(box: Box) -> str:
+    return f"{box.cluster}: {box.title}" + (
+        f" ({box.change})" if box.change else " (grey)" if box.emphasis == "neighbour" else ""
+    )
+
+
+def lines(graph: Graph) -> list[str]:
+    """Name each arrow with its text."""
+    return [_arrow(arrow) for arrow in graph.arrows]
+
+
+def _arrow(arrow: Arrow) -> str:
+    return f"{arrow.tail} > {arrow.head}" + (f" {arrow.label} ({arrow.change})" if arrow.change else "")
+
+
+def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None:
+    change = found(
+        ("      lidar: {outputs: {scan: Scan}}\n", "      radar: {outputs: {tracks: People}}\n"),
+        ("lidar.scan", "radar.tracks"),
+        ("  lidar: {implements: lidar}", "  radar: {implements: radar, timing: {rate: 10 Hz}}"),
+        ("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"),
+    )
+    components, nodes = pictures(change)
+    assert boxes(components) == [
+        "sensing: Camera (grey)",
+        "sensing: + Radar (added)",
+        "sensing: \u2212 Lidar (removed)",
+        "display: Finder (grey)",
+        "display: Map (grey)",
+    ]
+    assert lines(components) == [
+        "sensing.camera > display.finder ~ Image (changed)",
+        "sensing.radar > display.map + People (added)",
+        "sensing.lidar > display.map \u2212 Scan (removed)",
+    ]
+    assert components.notes == ("1 unchanged neighbour not drawn.",)
+    radar = components.boxes[1]
+    assert radar.tooltip.startswith("component `sensing.radar` is added with 1 output\nRadar (sensing.radar)")
+    assert "line:changed" in components.legend
+    assert "change:removed" in components.legend
+    assert "None: + radar (added)" in boxes(nodes)
+    assert "None: \u2212 lidar (removed)" in boxes(nodes)
+
+
+def test_a_rename_is_no_removal(found: Compared) -> None:
+    (components,) = pictures(
+        found(
+            ("finder: {inputs", "seeker: {inputs"),
+            ("finder.people", "seeker.people"),
+            ("finder: {implements: finder", "finder: {implements: seeker"),
+        )
+    )
+    assert boxes(components) == ["sensing: Camera (grey)", "display: → Seeker (renamed)", "display: Screen (grey)"]
+    assert lines(components) == ["sensing.camera > display.seeker", "display.seeker > display.screen"]
+
+
+def test_quality_of_service_is_drawn_among_nodes(found: Compared) -> None:
+    (nodes,) = pictures(found(("reliability: reliable", "reliability: best_effort")))
+    assert boxes(nodes) == ["None: ~ camera (changed)", "None: finder (grey)", "None: /image"]
+    assert lines(nodes) == ["node camera > topic /image ~ publishes (changed)", "topic /image > node finder"]
+    assert "QoS reliability `reliable` → `best_effort`" in nodes.arrows[0].flows[0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("project: {id: robot}", "project: {id: robot, title: Car}"),
+        ("screen: {inputs", "screen: {description: Shows., inputs"),
+    ],
+)
+def test_texts_are_not_drawn(found: Compared, change: tuple[str, str]) -> None:
+    assert pictures(found(change)) == ()
+
+
+def test_a_selection_draws_nothing_else(found: Compared) -> None:
+    change = found(
+        ("inputs: {image: camera.image}", "inputs: {scan: lidar.scan}"),
+        ("{people: finder.people, grid: map.grid}", "{grid: map.grid}"),
+        ("subscribes: {image: {}}", "package: p"),
+    )
+    sides = [Selecting(side.architecture).select("screen")[0] for side in (change.before, change.after)]
+    whole, part = pictures(change)[0], pictures(selected(change, *sides))[0]
+    assert "sensing.camera > display.finder \u2212 Image (removed)" in lines(whole)
+    assert lines(part) == ["display.map > display.screen", "display.finder > display.screen \u2212 People (removed)"]
+
+
+def test_above_its_budget_groups_are_folded_and_the_picture_says_so(found: Compared) -> None:
+    many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}}}\n" for at in range(60))
+    change = found(("      finder:", f"{many}      finder:"))
+    for budget in (SMALL, LARGE):
+        (components,) = pictures(change, budget)
+        assert boxes(components) == ["sensing: Camera (grey)", "None: Display (added)"]
+        assert components.boxes[1].lines == ("+ 60 components",)
+        assert lines(components) == ["sensing.camera > group display + 60 connections (added)"]
+        assert components.notes[-1] == "1 group folded to one box each, because the picture would be too large."
+        assert sum(arrow.count for arrow in components.arrows) == components.asked == 60
+
+
+def test_lines_tell_what_happened_without_colour(found: Compared) -> None:
+    change = found(
+        ("      lidar: {outputs: {scan: Scan}}\n", "      radar: {outputs: {tracks: People}}\n"),
+        ("lidar.scan", "radar.tracks"),
+        ("  lidar: {implements: lidar}\n", ""),
+        ("finder: {implements: finder,", "finder: {implements: finder, timing: {rate: 5 Hz},"),
+    )
+    (graph, *_) = pictures(change)
+    svg = graphviz.draw((graph,), ("svg",), link=lambda _: None)[graph.id].svg
+    assert svg is not None
+    parts = svg.decode().replace("&#45;", "-").split("<g id=")
+    added, removed, changed = (
+        next(part for part in parts if f"change-{kind}" in part and "node" in part)
+        for kind in ("added", "removed", "changed")
+    )
+    assert 'stroke-width="2.6"' in added
+    assert "stroke-dasharray" in removed
+    assert changed.count("<path") == 2
+    assert [sign for sign in ("+ Radar", "\u2212 Lidar", "~ Finder") if f">{sign}<" in svg.decode()] == [
+        "+ Radar",
+        "\u2212 Lidar",
+        "~ Finder",
+    ]
+    assert "component `sensing.radar` is added" in added
+
+
+def test_mermaid_knows_boxes_by_number_only(found: Compared) -> None:
+    (graph, *_) = pictures(
+        found(("      lidar: {", "      extra: {title: '1. end \"]', outputs: {x: Image}}\n      lidar: {")), SMALL
+    )
+    text = list(flowchart(graph))
+    assert text[:3] == ["flowchart LR", '  subgraph g0["Sensing"]', '    n0("#8203;+ 1. end #34;#93;"):::added']
