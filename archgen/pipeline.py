@@ -124,6 +124,12 @@ def check_tracked(tracked: Tracked, revision: str, known: Slices | None = None) 
         return judge(project.load_at(tracked, revision, known))
 
 
+def judged(loaded: Loaded) -> Checked:
+    """Judge a project that was read."""
+    with _without_collection():
+        return judge(loaded)
+
+
 @contextmanager
 def _without_collection() -> Iterator[None]:
     """Keep the garbage collector out: trees and models hold no circles, and it walks all of them again and again."""

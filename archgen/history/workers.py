@@ -8,11 +8,13 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from archgen import pipeline, project
 from archgen.history.commits import Commit
+from archgen.history.content import Contents
 from archgen.history.points import plain, point, read
 from archgen.model.history import Point
 from archgen.project.slices import Slices
@@ -61,10 +63,15 @@ def _counted(path: Path | None, commits: Sequence[Commit], told: Callable[[Point
 
 
 def _points(path: Path | None, commits: Sequence[Commit]) -> Iterator[Point]:
-    tracked, known = project.tracked(path), Slices()
+    tracked, known, contents = project.tracked(path), Slices(), Contents()
+    counted: dict[Hashable, Point] = {}
     for one in commits:
-        checked = pipeline.check_tracked(tracked, one.id, known)
-        yield point(checked, one.id, one.day)
+        loaded = project.load_commit(tracked, one.id, known)
+        content = contents.of(loaded)
+        found = counted.get(content)
+        if found is None:
+            found = counted[content] = point(pipeline.judged(loaded), one.id, one.day)
+        yield replace(found, commit=one.id, day=one.day)
 
 
 def _elsewhere(path: Path | None, commits: Sequence[Commit], into: list[Point], told: Callable[[Point], None]) -> None:

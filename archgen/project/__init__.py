@@ -7,7 +7,7 @@ from archgen.project.find import MARKER, ProjectNotFoundError
 from archgen.project.loaded import Loaded, load
 from archgen.project.rules import RULES
 from archgen.project.slices import Slices
-from archgen.project.tracked import NotAtRevisionError, Tracked, load_at, tracked
+from archgen.project.tracked import NotAtRevisionError, Tracked, load_at, load_commit, tracked
 
 __all__ = [
     "MARKER",
@@ -19,5 +19,6 @@ __all__ = [
     "Tracked",
     "load",
     "load_at",
+    "load_commit",
     "tracked",
 ]

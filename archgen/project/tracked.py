@@ -63,11 +63,18 @@ def load_at(project: Tracked, revision: str, known: Slices | None = None) -> Loa
 
     Raises `NotAtRevisionError` where it does not exist there, and what `git.resolve` raises.
     """
-    commit = project.commit(revision)
+    return load_commit(project, project.commit(revision), known, revision)
+
+
+def load_commit(project: Tracked, commit: str, known: Slices | None = None, revision: str = "") -> Loaded:
+    """Read a project as a commit holds it, by its full hash; `revision` is what a person called it.
+
+    Raises `NotAtRevisionError` where it does not exist there.
+    """
     for folder, first in project.places:
         files = committed(project.objects, commit, folder)
         if first and files is not None and files.exists(first):
             return load_from(files, first, known)
     folder, first = project.places[0]
-    msg = f"the project `{posixpath.join(folder, first)}` does not exist in `{revision}`"
+    msg = f"the project `{posixpath.join(folder, first)}` does not exist in `{revision or commit}`"
     raise NotAtRevisionError(msg)

@@ -67,3 +67,6 @@ def _fill(run: Run, now: int, wire: int, slot: int, sample: int) -> None:
         if not steps.gated[at] or passes(run, now, at):
             go_on = hold if steps.jitter[at] else fire
             go_on(run, now, at, SEVERAL, tuple([wires.arrived[e] for e in step.captured]))
+        else:
+            for one in step.captured:
+                wires.newest[one] = wires.arrived[one]

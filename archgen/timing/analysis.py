@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
+from fractions import Fraction
 from typing import Literal
 
 from archgen.frozen import dataclass
@@ -11,6 +12,7 @@ from archgen.model.timing import Behaviour
 from archgen.source import NOWHERE, Span
 from archgen.timing.system import Arc, System
 from archgen.timing.value import UNKNOWN, Value
+from archgen.timing.wording import duration, told
 
 Tier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
 """How a response time was found (A2): declared; assuming a core of its own; any work-conserving scheduler of the host;
@@ -19,10 +21,26 @@ fixed priorities; a single-threaded executor; several cores."""
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """One step of the reasoning behind a figure: a sentence, and where in the files it rests on."""
+    """One step of the reasoning behind a figure: a sentence, and where in the files it rests on.
 
-    text: str
+    It is put into words only for those who ask: `words` is the sentence, with `{0}`, `{1}` for its `parts`.
+    """
+
+    words: str
     at: Span = field(default=NOWHERE, compare=False, repr=False)
+    parts: tuple[str | int | Fraction | Value, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """Give the sentence."""
+        return self.words.format(*map(_said, self.parts)) if self.parts else self.words
+
+
+def _said(part: str | int | Fraction | Value) -> str:
+    """Put a part of a sentence into words: a Value is a rate, a Fraction a duration in ns."""
+    if isinstance(part, Value):
+        return told(part, "Hz")
+    return duration(part) if isinstance(part, Fraction) else str(part)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
@@ -110,8 +111,11 @@ class _Routes:
     """Finds the link between two hosts: of several the one with the least worst latency."""
 
     def __init__(self, architecture: Architecture, unit: Ticks) -> None:
-        self._links = tuple(architecture.links.values())
         self._unit = unit
+        self._joining: dict[str, dict[str, Link]] = defaultdict(dict)
+        for link in architecture.links.values():
+            for host in link.connects:
+                self._joining[host][link.id] = link
 
     def __call__(self, here: str | None, there: str | None) -> Route:
         """Give the way between hosts. Where neither end has a host, both are taken to be on one; where one has, nobody knows."""
@@ -119,7 +123,8 @@ class _Routes:
             return _HERE
         if here is None or there is None:
             return _NO_WAY
-        joining = [link for link in self._links if here in link.connects and there in link.connects]
+        reached = self._joining[there]
+        joining = [link for name, link in self._joining[here].items() if name in reached]
         if not joining:
             return _NO_WAY
         link = min(joining, key=_slowness)

@@ -13,7 +13,6 @@ from archgen.timing.sums import NEVER, UNBOUNDED, times, total, unknown
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Value
-from archgen.timing.wording import duration, told
 
 
 def beat_of(found: Paces, activity: Activity) -> tuple[Beat, Value | None, list[Reason]]:
@@ -67,9 +66,11 @@ def periodic_reason(found: Paces, activity: Activity) -> Reason:
     if activity.period is None:
         return Reason("periodic, but neither a period nor a rate is written", activity.at)
     tick = found.state.system.tick
-    later = f", up to {duration(activity.jitter * tick)} later" if activity.jitter else ""
     place = activity.places.get("period", activity.places.get("rate", activity.at))
-    return Reason(f"every {duration(activity.period * tick)}{later}, as written", place)
+    if activity.jitter:
+        parts = activity.period * tick, activity.jitter * tick
+        return Reason("every {0}, up to {1} later, as written", place, parts)
+    return Reason("every {0}, as written", place, (activity.period * tick,))
 
 
 def _call(found: Paces, arc: Arc) -> Value:
@@ -83,4 +84,4 @@ def _called(found: Paces, arc: Arc) -> Reason:
     calls = caller.calls.get(arc.output, Fraction(1))
     each = "once" if calls == 1 else f"{float(calls):g} times"
     place = caller.places.get("calls", arc.at) if arc.output in caller.calls else arc.at
-    return Reason(f"called by {arc.source}, {each} for each activation: {told(_call(found, arc), 'Hz')}", place)
+    return Reason("called by {0}, {1} for each activation: {2}", place, (arc.source, each, _call(found, arc)))

@@ -11,7 +11,7 @@ from typing import Literal
 from archgen.timing.analysis import HostLoad, Pace, Reason, Response
 from archgen.timing.placement import Resource
 from archgen.timing.propagate import State
-from archgen.timing.sums import boundless, times, total, unknown
+from archgen.timing.sums import boundless, kept, total, unknown
 from archgen.timing.system import Activity, System
 from archgen.timing.threads import Found
 from archgen.timing.ticks import SECOND
@@ -26,10 +26,10 @@ Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
 _WORDS = {
     "declared": "declared as the worst case",
     "dedicated": "its own queue, on a core of its own",
-    "host": "the longest time for which all work on {where} can keep it busy, in whatever order",
-    "priorities": "everything of its priority or a higher one on {where}, over all activations of the busy period",
-    "executor": "all work of its executor on {where}, in whatever order",
-    "cores": "its own work, and a share of all other work on the {cores} cores of {where}",
+    "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
+    "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
+    "executor": "all work of its executor on {0}, in whatever order",
+    "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
 
@@ -43,9 +43,11 @@ def all_responses(state: State, resources: Iterable[Resource]) -> dict[str, Resp
 def _response(state: State, name: str, found: Found, resource: Resource | None) -> Response:
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
-    words = _WORDS[found.tier].format(where=_where(resource), cores=resource.cores if resource else 1)
+    shared = (_where(resource), resource.cores) if resource else ("", 1)
     place = activity.places.get("response" if found.tier == "declared" else "wcet", activity.at)
-    return Response(best, _worst(activity, found, tick, resource), found.tier, (Reason(words, place),))
+    return Response(
+        best, _worst(activity, found, tick, resource), found.tier, (Reason(_WORDS[found.tier], place, shared),)
+    )
 
 
 def _where(resource: Resource | None) -> str:
@@ -91,7 +93,10 @@ def share(system: System, name: str, pace: Pace) -> Value:
         return Value(Fraction(0))
     if activity.wcet is None:
         return unknown(name)
-    return times(pace.rate, activity.wcet * system.tick / SECOND)
+    if pace.rate.value is None:
+        return pace.rate
+    (often, per), (tick, parts) = pace.rate.value.as_integer_ratio(), system.tick.as_integer_ratio()
+    return kept(pace.rate, Fraction(often * activity.wcet * tick, per * parts * SECOND))
 
 
 def _host(
@@ -156,7 +161,8 @@ def _in_time(pace: Pace, response: Response) -> bool:
         return True
     if response.worst.value is None or not response.worst.complete or not pace.rate.value:
         return False
-    return response.worst.value <= SECOND / pace.rate.value
+    (worst, parts), (often, per) = response.worst.value.as_integer_ratio(), pace.rate.value.as_integer_ratio()
+    return worst * often <= SECOND * parts * per
 
 
 @lru_cache(_MANY)

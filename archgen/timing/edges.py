@@ -9,6 +9,7 @@ from fractions import Fraction
 from archgen.frozen import dataclass
 from archgen.timing.analysis import EdgePace, Pace, Response
 from archgen.timing.propagate import State, arriving
+from archgen.timing.sending import left
 from archgen.timing.streams import eta
 from archgen.timing.sums import because, total
 from archgen.timing.system import Arc, System
@@ -28,8 +29,13 @@ class Known:
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
     """Found once for each reader."""
-    fits: dict[tuple[Fraction, Fraction, int], tuple[Fraction, Fraction]] = field(default_factory=dict)
-    """Loss and reads of each sample, found once for each pair of rates and number of messages that are read at once."""
+    fits: dict[tuple[tuple[int, int], tuple[int, int], int], tuple[Fraction, Fraction, Value]] = field(
+        default_factory=dict
+    )
+    """Loss, reads of each sample, and the beat of exact rates: once for each pair of rates and number of messages read at once."""
+    counts: dict[int, Value] = field(default_factory=dict)
+    dropped: dict[str, Value] = field(default_factory=dict)
+    """By each reader."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -57,26 +63,33 @@ def fires(system: System, arc: Arc) -> bool:
 def _edge(known: Known, arc: Arc) -> EdgePace:
     if known.state.system.activities[arc.source].behaviour == "once":
         return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
-    if fires(known.state.system, arc):
-        return EdgePace(arc, _dropped(known, arc), _ONE, ZERO, _queue(known, arc))
+    is_fired = fires(known.state.system, arc)
+    queue = _queue(known, arc, is_fired=is_fired)
+    if is_fired:
+        if arc.target not in known.dropped:
+            known.dropped[arc.target] = _dropped(known, arc.target)
+        return EdgePace(arc, known.dropped[arc.target], _ONE, ZERO, queue)
     sent, read = known.outputs[arc.source, arc.output].rate, known.paces[arc.target].rate
     if sent.value is None or read.value is None or not (sent.complete and read.complete):
         why = _either(sent, read)
-        return EdgePace(arc, why, why, why, _queue(known, arc))
+        return EdgePace(arc, why, why, why, queue)
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
-        return EdgePace(arc, ZERO, _ONE, ZERO, _queue(known, arc))
-    rates = sent.value, read.value, _at_once(known, arc)
-    fit = known.fits.get(rates)
+        return EdgePace(arc, ZERO, _ONE, ZERO, queue)
+    loss, again, beat = _fit(known, sent.value, read.value, _at_once(known, arc))
+    if sent.side != "exact" or read.side != "exact":
+        beat = ZERO
+    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), beat, queue)
+
+
+def _fit(known: Known, sent: Fraction, read: Fraction, at_once: int) -> tuple[Fraction, Fraction, Value]:
+    """Give the share of samples that is lost, how often each is read, and the beat."""
+    key = sent.as_integer_ratio(), read.as_integer_ratio(), at_once
+    fit = known.fits.get(key)
     if fit is None:
-        fit = known.fits[rates] = _fit(*rates)
-    loss, again = fit
-    return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), _beat(sent, read), _queue(known, arc))
-
-
-def _fit(sent: Fraction, read: Fraction, at_once: int) -> tuple[Fraction, Fraction]:
-    """Give the share of samples that is lost, and how often each is read."""
-    each = read / sent if sent else Fraction(1)
-    return max(1 - at_once * each, Fraction(0)), max(each, Fraction(1))
+        each = read / sent if sent else Fraction(1)
+        loss, again = max(1 - at_once * each, Fraction(0)), max(each, Fraction(1))
+        fit = known.fits[key] = loss, again, _beat(sent, read)
+    return fit
 
 
 def _at_once(known: Known, arc: Arc) -> int:
@@ -85,10 +98,10 @@ def _at_once(known: Known, arc: Arc) -> int:
     return arc.depth if polls and arc.depth_written and arc.depth else 1
 
 
-def _dropped(known: Known, arc: Arc) -> Value:
+def _dropped(known: Known, reader: str) -> Value:
     """Give the share of triggers that `every` and `throttle` leave out."""
     system = known.state.system
-    target = system.activities[arc.target]
+    target = system.activities[reader]
     if not target.throttle:
         return ZERO if target.every == 1 else Value(1 - Fraction(1, target.every))
     firing = [a for a in system.into.get(target.id, ()) if a.role == "data" and fires(system, a)]
@@ -106,33 +119,39 @@ def _either(sent: Value, read: Value) -> Value:
 
 def _like(value: Fraction, sent: Value, read: Value) -> Value:
     """Mark a figure that rests on a bound."""
-    assumptions = tuple(dict.fromkeys((*sent.assumptions, *read.assumptions)))
-    return Value(value, assumptions=assumptions)
+    said = (*sent.assumptions, *read.assumptions)
+    return Value(value, assumptions=tuple(dict.fromkeys(said)) if said else ())
 
 
-def _beat(sent: Value, read: Value) -> Value:
+def _beat(sent: Fraction, read: Fraction) -> Value:
     """Give the time (ns) from one beat to the next, 0 where the rates fit: 1 / |fast - n slow|, n slow being nearest to fast."""
-    if not sent.value or not read.value or sent.side != "exact" or read.side != "exact":
+    if not sent or not read:
         return ZERO
-    fast, slow = max(sent.value, read.value), min(sent.value, read.value)
+    fast, slow = max(sent, read), min(sent, read)
     apart = abs(fast - round(fast / slow) * slow)
     return Value(SECOND / apart) if apart else ZERO
 
 
-def _queue(known: Known, arc: Arc) -> Value:
+def _queue(known: Known, arc: Arc, *, is_fired: bool) -> Value:
     """Give how many messages can wait: what comes until the reader has been through once more, eta+(its gap + R)."""
-    state = known.state
-    events = arriving(state, arc, state.events[arc.source])
+    events = left(known.state, arc)
+    if events and arc.worst is None:
+        events = arriving(known.state, arc, known.state.events[arc.source])
     if isinstance(events, Cause):
         return because(events)
-    key = arc.target, fires(state.system, arc)
-    if key not in known.windows:
-        known.windows[key] = _window(known, *key)
-    window = known.windows[key]
-    return window if isinstance(window, Value) else Value(Fraction(eta(events, window)))
+    window = known.windows.get((arc.target, is_fired))
+    if window is None:
+        window = known.windows[arc.target, is_fired] = _window(known, arc.target, is_fired=is_fired)
+    if isinstance(window, Value):
+        return window
+    most = eta(events, window, (arc.worst or 0) - (arc.best or 0))
+    found = known.counts.get(most)
+    if found is None:
+        found = known.counts[most] = Value(Fraction(most))
+    return found
 
 
-def _window(known: Known, reader: str, is_fired: bool) -> int | Value:  # noqa: FBT001
+def _window(known: Known, reader: str, *, is_fired: bool) -> int | Value:
     """Give how long (in ticks) messages can gather before a reader."""
     response = known.responses[reader].worst
     waiting = response if is_fired else total((known.paces[reader].gap, response))

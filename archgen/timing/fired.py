@@ -13,7 +13,6 @@ from archgen.timing.sums import UNBOUNDED, known, largest, smallest, times, tota
 from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value
-from archgen.timing.wording import duration, told
 
 
 def fired(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
@@ -29,10 +28,11 @@ def fired(found: Paces, activity: Activity) -> tuple[Beat, list[Reason]]:
         reasons.append(Reason(f"one in {activity.every} fires it", activity.places.get("every", activity.at)))
     if activity.throttle:
         beat = _throttled(found, activity, beat)
-        gap = duration(activity.throttle * found.state.system.tick)
-        reasons.append(Reason(f"throttled: at least {gap} apart", activity.places.get("throttle", activity.at)))
+        gap = activity.throttle * found.state.system.tick
+        place = activity.places.get("throttle", activity.at)
+        reasons.append(Reason("throttled: at least {0} apart", place, (gap,)))
     if activity.jitter:
-        beat = beat[0], total((beat[1], Value(activity.jitter * found.state.system.tick)))
+        beat = beat[0], total((beat[1], found.time(activity.jitter)))
     return beat, reasons
 
 
@@ -43,20 +43,19 @@ def _arriving(found: Paces, arc: Arc) -> Beat:
         return unknown(arc.source), unknown(arc.source)
     if arc.worst is None:
         return pace.rate, total((pace.gap, unknown(arc.link or arc.source)))
-    later = (arc.worst - (arc.best or 0)) * found.state.system.tick
-    return pace.rate, total((pace.gap, Value(later))) if later else pace.gap
+    later = arc.worst - (arc.best or 0)
+    return pace.rate, total((pace.gap, found.time(later))) if later else pace.gap
 
 
 def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> tuple[Beat, list[Reason]]:
     """Give what arrives at an input: any of its sources fires it."""
+    if len(arcs) == 1 and key not in found.state.system.external.get(activity.id, ()):
+        rate, gap = _arriving(found, arcs[0])
+        return (rate, smallest((gap,))), [_brings(key, arcs[0], (rate, gap))]
     beats = [_arriving(found, arc) for arc in arcs]
-    twice = len({arc.source for arc in arcs}) < len(arcs)
+    twice = len(arcs) > 1 and len({arc.source for arc in arcs}) < len(arcs)
     told_ = [
-        Reason(
-            f"{key} brings {told(rate, 'Hz')} from {arc.source}{f' on {arc.topic}' if twice else ''}{_apart(gap)}",
-            arc.at,
-        )
-        for arc, (rate, gap) in zip(arcs, beats, strict=True)
+        _brings(key, arc, beat, f" on {arc.topic}" if twice else "") for arc, beat in zip(arcs, beats, strict=True)
     ]
     if not arcs or key in found.state.system.external.get(activity.id, ()):
         beats.append((unknown(key), unknown(key)))
@@ -64,8 +63,11 @@ def _input(found: Paces, activity: Activity, key: str, arcs: tuple[Arc, ...]) ->
     return (total(rate for rate, _ in beats), smallest(gap for _, gap in beats)), told_
 
 
-def _apart(gap: Value) -> str:
-    return f", at most {duration(gap.value)} apart" if gap.value is not None and known(gap) else ""
+def _brings(key: str, arc: Arc, beat: Beat, where: str = "") -> Reason:
+    rate, gap = beat
+    if gap.value is None or not known(gap):
+        return Reason("{0} brings {1} from {2}{3}", arc.at, (key, rate, arc.source, where))
+    return Reason("{0} brings {1} from {2}{3}, at most {4} apart", arc.at, (key, rate, arc.source, where, gap.value))
 
 
 def _any(found: Paces, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> tuple[Beat, list[Reason]]:
@@ -125,6 +127,9 @@ def _slowest(
 
 def _strict(found: Paces, activity: Activity, inputs: Iterable[tuple[str, tuple[Arc, ...]]]) -> bool:
     for key, arcs in inputs:
+        sent = found.state.events[arcs[0].source] if len(arcs) == 1 else ()
+        if sent and not isinstance(sent, Cause) and sent[0].jitter:
+            return False  # it never gets less on its way
         events = arrival(found.state, activity, key, arcs)
         if isinstance(events, Cause) or len(events) != 1 or events[0].jitter or events[0].distance:
             return False

@@ -65,7 +65,8 @@ def _shape(found: Paces, events: Streams | Cause) -> tuple[Value, Value]:
 def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) -> None:
     """Find how often each output is published: at each activation, R - B later, unless it is conditional."""
     pace, name = found.of[activity.id], activity.id
-    spread = _spread(found.responses[name]) if activity.outputs else ZERO
+    spread = _spread(found, activity) if activity.outputs else ZERO
+    shape = _shifted(found, activity, pace, spread) if activity.outputs else (ZERO, ZERO)
     usual: Pace | None = None
     if asked is not None and activity.behaviour == "event":
         beat = total((beat[0], asked)), beat[1]  # whoever asks activates it as well
@@ -75,20 +76,30 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
         if key in activity.conditional:
             found.outputs[name, key] = _conditional(found, activity, key, pace, (now[0], spread))
         elif serves:
-            found.outputs[name, key] = _later(pace, now, spread)
+            found.outputs[name, key] = _later(pace, now, spread, shape)
         else:
-            usual = usual or _later(pace, beat, spread)
+            usual = usual or _later(pace, beat, spread, shape)
             found.outputs[name, key] = usual
 
 
-def _later(pace: Pace, beat: Beat, spread: Value) -> Pace:
+def _shifted(found: Paces, activity: Activity, pace: Pace, spread: Value) -> tuple[Value, Value]:
+    """Give jitter and smallest gap of what comes up to `spread` later: in ticks, where all is known."""
+    events, worst = found.state.events[activity.id], found.state.responses[activity.id].value
+    if isinstance(events, Cause) or not events or worst is None:
+        return total((pace.jitter, spread)), _closer(pace, spread)
+    more = max(worst - (activity.bcet or 0), 0)
+    one = single(events)
+    distance = one.spacing if len(events) == 1 else 0
+    return found.time(one.jitter + more), found.time(max(distance - more, 0))
+
+
+def _later(pace: Pace, beat: Beat, spread: Value, shape: tuple[Value, Value]) -> Pace:
     """Give the pace of what comes up to `spread` later than it might."""
     rate, gap = beat
     if spread.value == 0:
         return Pace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
     gap = gap if gap.value is None else total((gap, spread))
-    jitter = total((pace.jitter, spread))
-    return Pace(pace.behaviour, rate, gap, jitter, _closer(pace, spread), pace.inferred)
+    return Pace(pace.behaviour, rate, gap, *shape, pace.inferred)
 
 
 def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, sent: Beat) -> Pace:
@@ -109,13 +120,12 @@ def _promise(promised: Value, gap: Value, spread: Value) -> Value:
     return replace(promised, assumptions=("promised",))
 
 
-def _spread(response: Response) -> Value:
+def _spread(found: Paces, activity: Activity) -> Value:
     """Give how much later than the earliest an output can be, R - B. A best case that nobody wrote is taken as 0."""
-    best = response.best.value or Fraction(0)
-    worst = response.worst
-    if worst.value is None or not worst.complete:
-        return replace(worst, value=None)
-    return Value(max(worst.value - best, Fraction(0)))
+    ticks = found.state.responses[activity.id].value
+    if ticks is None:
+        return replace(found.responses[activity.id].worst, value=None)
+    return found.time(max(ticks - (activity.bcet or 0), 0))
 
 
 def _closer(pace: Pace, spread: Value) -> Value:

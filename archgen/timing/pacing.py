@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from archgen.source import Span
 from archgen.timing.analysis import Pace, Response
@@ -28,11 +29,15 @@ class Paces:
     """Of each period and jitter."""
     times: dict[int, Value] = field(default_factory=dict)
 
+    carried: dict[tuple[str, str, str, int | None], Value] = field(default_factory=dict)
+    """Bytes a second of an output (activity and key) on a topic, with messages of a size."""
+
     def time(self, ticks: int) -> Value:
         """Give a duration in ns."""
         found = self.times.get(ticks)
         if found is None:
-            found = self.times[ticks] = Value(ticks * self.state.system.tick)
+            above, below = self.state.system.tick.as_integer_ratio()
+            found = self.times[ticks] = Value(Fraction(ticks * above, below))
         return found
 
 

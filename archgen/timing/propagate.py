@@ -15,7 +15,7 @@ from archgen.timing.response import Effort, alone, responses
 from archgen.timing.rings import components
 from archgen.timing.streams import Stream, Streams, all_of, apart, called, every, late, throttled, together, written
 from archgen.timing.system import Activity, Arc, System
-from archgen.timing.threads import DIVERGED, Found
+from archgen.timing.threads import DIVERGED, Found, Thread
 from archgen.timing.triggers import Triggers, states_itself
 from archgen.timing.value import Cause, alike, united
 from archgen.timing.windows import Budget
@@ -35,6 +35,8 @@ class State:
     events: dict[str, Streams | Cause] = field(default_factory=dict)
     responses: dict[str, Found] = field(default_factory=dict)
     diverged: set[str] = field(default_factory=set)
+    left: dict[str, Streams | Cause] = field(default_factory=dict)
+    """What leaves each activity, as far as anybody asked once all was found."""
 
 
 def propagate(system: System, triggers: Triggers, budget: Budget | None = None) -> State:
@@ -61,6 +63,7 @@ class _Propagation:
                 for name in unit:
                     self.interferes.setdefault(name, []).append(key)
         self.seen: dict[str, dict[str, Streams | Cause]] = {}
+        self.before: dict[str, list[Thread]] = {}
         self.after = self._after()
 
     def run(self) -> State:
@@ -137,7 +140,7 @@ class _Propagation:
                 self.resources[step],
                 state.events,
                 state.responses,
-                Effort(self.budget, self._stale(step)),
+                Effort(self.budget, self._stale(step), self.before.setdefault(step, [])),
             )
             changed = any(_differs(state.responses.get(name), response) for name, response in found.items())
             state.responses.update(found)
@@ -257,14 +260,31 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
     if response.value is None:
-        return Cause(response.cause.missing, tuple(_LATER.get(note, note) for note in response.cause.notes))
+        return _unanswered(response.cause)
     if arc.worst is None:
         return Cause((arc.link,)) if arc.link else Cause((arc.source, arc.target), ("no link joins their hosts",))
+    return late(_done(source, response.value, events, from_start=from_start), arc.worst - (arc.best or 0))
+
+
+def leaving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool = False) -> Streams | Cause:
+    """Give what is left of an event model behind its source's response, before any link."""
+    if isinstance(events, Cause) or not events:
+        return events
+    source, response = state.system.activities[arc.source], state.responses[arc.source]
+    if response.value is None:
+        return _unanswered(response.cause)
+    return _done(source, response.value, events, from_start=from_start)
+
+
+def _done(source: Activity, response: int, events: Streams, *, from_start: bool) -> Streams:
     best = 0 if from_start else source.bcet or 0
-    done = late(events, max(response.value - best, 0))
-    if source.response is None:  # what is only declared may rest on several cores at once
-        done = apart(done, best)
-    return late(done, arc.worst - (arc.best or 0))
+    done = late(events, max(response - best, 0))
+    # What is only declared may rest on several cores at once.
+    return apart(done, best) if source.response is None else done
+
+
+def _unanswered(cause: Cause) -> Cause:
+    return Cause(cause.missing, tuple(_LATER.get(note, note) for note in cause.notes))
 
 
 def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:

@@ -15,7 +15,7 @@ from archgen.timing.sending import sent
 from archgen.timing.system import Arc, System, grouped
 from archgen.timing.ticks import SECOND
 from archgen.timing.triggers import Triggers, triggers
-from archgen.timing.value import Cause, united
+from archgen.timing.value import Cause, summed, united
 from archgen.timing.windows import Budget, DivergedError, Load, Work, busy
 
 _TURNS = 24
@@ -32,7 +32,8 @@ def settled(system: System) -> tuple[System, Triggers, State]:
         tried = _with(system, waits) if waits else system
         firing = triggers(tried)
         state = propagate(tried, firing, budget)
-        found = {link: None if before is None else _wait(state, link) for link, before in waits.items()}
+        crossing = grouped((arc.link or "", arc) for arc in tried.arcs if arc.link in waits)
+        found = {link: None if was is None else _wait(state, link, crossing[link]) for link, was in waits.items()}
         if found == waits:
             break
         waits = found if turn % _TURNS else {link: was if was == waits[link] else None for link, was in found.items()}
@@ -60,8 +61,8 @@ def _with(system: System, waits: Mapping[str, int | None]) -> System:
     )
 
 
-def _wait(state: State, link: str) -> int | None:
-    found = longest(state, link, (arc for arc in state.system.arcs if arc.link == link))
+def _wait(state: State, link: str, arcs: Iterable[Arc]) -> int | None:
+    found = longest(state, link, arcs)
     return None if isinstance(found, Cause) or found * state.system.tick > _LONGEST else found
 
 
@@ -70,6 +71,7 @@ def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
     bandwidth = state.system.bandwidths[link]
     if not bandwidth:
         return Cause((link,))
+    above, below = (SECOND / (bandwidth * state.system.tick)).as_integer_ratio()
     works: list[Work] = []
     causes: list[Cause] = []
     for arc in arcs:
@@ -79,8 +81,9 @@ def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
         elif arc.size is None and events:
             causes.append(Cause((arc.topic,)))
         elif arc.size:
-            works.append(Work(-(-arc.size * SECOND // (bandwidth * state.system.tick)), events))
-    if sum(stream.rate * work.cost for work in works for stream in work.streams) >= 1:
+            works.append(Work(-(-arc.size * above // below), events))
+    sent_, room = summed((stream.ratio[0] * work.cost, stream.ratio[1]) for work in works for stream in work.streams)
+    if sent_ >= room:
         return SATURATED
     if causes:
         return united(causes)

@@ -44,10 +44,14 @@ from archgen.timing.windows import (
 
 
 class Effort(NamedTuple):
-    """How much may still be computed, and for whom: `stale` are those whose event models have changed, None at first."""
+    """How much may still be computed, and for whom: `stale` are those whose event models have changed, None at first.
+
+    `before` holds the threads of several cores as they were when their responses were found last.
+    """
 
     budget: Budget
     stale: frozenset[str] | None = None
+    before: list[Thread] | None = None
 
 
 def alone(system: System, name: str, events: Events, budget: Budget) -> Found:
@@ -81,11 +85,15 @@ def responses(
 ) -> dict[str, Found]:
     """Find the responses of what a resource runs; `known` are those found so far (they matter on several cores).
 
-    What has a higher priority than all that is stale is left out.
+    What has a higher priority than all that is stale is left out, and so is all where nothing changed that counts.
     """
-    budget, stale = effort
+    budget, stale, before = effort
     made = [thread_of(system, unit, events, known) for unit in (*resource.units, *resource.foreign)]
     made = crowded(system, made, events)
+    if before is not None and resource.cores > 1:
+        if before == made:
+            return {}
+        before[:] = made
     threads, foreign = made[: len(resource.units)], made[len(resource.units) :]
     one_core = resource.cores == 1 or resource.joined
     if stale is not None and one_core:
@@ -269,6 +277,16 @@ def _undisturbed(thread: Thread, budget: Budget) -> Found:
     return Found(busy(Load(thread.works).demand(), budget), "executor")
 
 
+def _is_unbounded(thread: Thread, beside: Sequence[Thread], narrow: int, whole: tuple[Fraction, int]) -> bool:
+    """Say whether a thread and its part of all other work fill a core."""
+    total, cores = whole
+    if not beside:  # in whole numbers: this is asked of each thread
+        (share, part), (all_, parts) = thread.share.as_integer_ratio(), total.as_integer_ratio()
+        return share * (cores - 1) * parts + all_ * part >= cores * part * parts
+    around = added(t.share for t in beside)
+    return thread.share + around / narrow + (total - thread.share - around) / cores >= 1
+
+
 def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, budget: Budget) -> Found:
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
     everything, total, carried = whole
@@ -277,11 +295,14 @@ def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, b
     beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
     if len(everything) <= resource.cores and len(beside) < (threads or resource.cores):
         return _undisturbed(thread, budget)
-    around = added(t.share for t in beside)
-    if thread.share + around / narrow + (total - thread.share - around) / resource.cores >= 1:
+    if _is_unbounded(thread, beside, narrow, (total, resource.cores)):
         return Found(None, "cores", UNBOUNDED)
-    own, near = _carried((thread,)), _carried(beside)
-    others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
+    own = _carried((thread,))
+    if beside:
+        near = _carried(beside)
+        others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
+    else:
+        others = shared(((without(carried, own), resource.cores),))
     if len(thread.works) == 1:
         return Found(worst(thread.works[0], others, budget), "cores")
     alone_here = len(beside) + 1 == len(everything)

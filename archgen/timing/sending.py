@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
-from archgen.timing.propagate import State, arriving
+from archgen.timing.propagate import State, leaving
 from archgen.timing.streams import Streams, called, late
 from archgen.timing.system import Activity, Arc
 from archgen.timing.value import Cause
@@ -18,10 +17,17 @@ def sent(state: State, arc: Arc) -> Streams | Cause:
     events = state.events[arc.source]
     if isinstance(events, Cause):
         return events
-    here = replace(arc, link=None, best=0, worst=0)
     if arc.role == "data":
-        return arriving(state, here, events)
-    return arriving(state, here, called(events, calls(state.system.activities[arc.source], arc)), from_start=True)
+        return left(state, arc)
+    return leaving(state, arc, called(events, calls(state.system.activities[arc.source], arc)), from_start=True)
+
+
+def left(state: State, arc: Arc) -> Streams | Cause:
+    """Give the event model of the samples that leave an arc's source; found once for all its arcs, when all else is."""
+    found = state.left.get(arc.source)
+    if found is None:
+        found = state.left[arc.source] = leaving(state, arc, state.events[arc.source])
+    return found
 
 
 def calls(caller: Activity, request: Arc) -> Fraction:

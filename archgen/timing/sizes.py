@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 from math import ceil
 from typing import Literal
 
@@ -96,7 +97,7 @@ def known(architecture: Architecture) -> Asked:
 def of(architecture: Architecture) -> Callable[[str | None, str | None], int | None]:
     """Give the function that answers with the bytes alone: exact, or an upper bound, or None."""
     answer = known(architecture)
-    return lambda message, type_: answer(message, type_).bytes
+    return cache(lambda message, type_: answer(message, type_).bytes)
 
 
 def carried(architecture: Architecture) -> Callable[[Endpoint, Role], int | None]:

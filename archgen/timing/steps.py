@@ -90,6 +90,8 @@ class Steps:
         if self.arrivals.waits_for_all(reader):
             options = [value for value in (gap, self.arrivals.others(reader, arc)) if known(value)]
             waited = min(options, key=lambda value: value.value or Fraction(0)) if options else gap
+            if any(other.role == "request" for other in self.analysis.system.into.get(reader.id, ())):
+                waited = bounded((gap, self.arrivals.others(reader, arc)))  # a call finds what last came together
         else:
             waited = ZERO if self.arrivals.sole(arc) else gap
         return waited if late is ZERO else bounded((waited, late))

@@ -31,8 +31,18 @@ class Stream(NamedTuple):
     @property
     def rate(self) -> Fraction:
         """Give the events a tick, at most."""
-        steady = Fraction(self.size * self.number, self.period)
-        return min(steady, Fraction(self.size, self.distance)) if self.distance else steady
+        return Fraction(*self.ratio)
+
+    @property
+    def ratio(self) -> tuple[int, int]:
+        """Give the same as numerator and denominator, which may have common factors."""
+        if self.number * self.distance > self.period:
+            return self.size, self.distance
+        return self.size * self.number, self.period
+
+    def time_of(self, k: int) -> int:
+        """Give when the k-th event (from 0) comes at the earliest, if the first comes at 0."""
+        return max(k * self.period // self.number - self.jitter, k * self.distance, 0)
 
     @property
     def spacing(self) -> int:
@@ -44,13 +54,13 @@ class Stream(NamedTuple):
 Streams = tuple[Stream, ...]
 
 
-def eta(streams: Iterable[Stream], window: int) -> int:
-    """Give the most events in any half-open window longer than nothing."""
+def eta(streams: Iterable[Stream], window: int, later: int = 0) -> int:
+    """Give the most events in any half-open window longer than nothing, where each may come `later` than it would."""
     total = 0
     for period, jitter, distance, number, size in streams:
-        most = -(-(window + jitter) * number // period)
-        if distance:
-            most = min(most, -(-window // distance))
+        most = -(-(window + jitter + later) * number // period)
+        if distance > later:
+            most = min(most, -(-window // (distance - later)))
         total += size * most
     return total
 
@@ -74,7 +84,12 @@ def late(streams: Streams, more: int) -> Streams:
     """Let each event come up to `more` later than it would."""
     if not more:
         return streams
-    return tuple(s._replace(jitter=s.jitter + more, distance=max(s.distance - more, 0)) for s in streams)
+    return tuple(
+        [
+            Stream(period, jitter + more, distance - more if distance > more else 0, number, size)
+            for period, jitter, distance, number, size in streams
+        ]
+    )
 
 
 def apart(streams: Streams, least: int) -> Streams:

@@ -30,8 +30,13 @@ def total(values: Iterable[Value]) -> Value:
     found = tuple(values)
     if len(found) == 1:
         return found[0]
-    if all(one.side == "exact" and one.value is not None and not one.assumptions for one in found):
-        return Value(added([one.value for one in found if one.value]))
+    exact: list[Fraction] = []
+    for one in found:
+        if one.value is None or one.assumptions or one.side != "exact":
+            break
+        exact.append(one.value)
+    else:
+        return Value(added(exact))
     reasons = _reasons(found)
     if any(one.value is None and (one.complete or boundless(one)) for one in found):
         return replace(reasons, value=None, side="exact")
@@ -70,7 +75,12 @@ def times(value: Value, factor: Fraction | int) -> Value:
     """Multiply, keeping what it rests on."""
     if value.value is None or factor == 1:
         return value
-    return Value(value.value * factor, value.complete, value.missing, value.assumptions, value.side)
+    return kept(value, value.value * factor)
+
+
+def kept(value: Value, figure: Fraction) -> Value:
+    """Give another figure that rests on the same."""
+    return Value(figure, value.complete, value.missing, value.assumptions, value.side)
 
 
 def bounded(values: Iterable[Value], side: Literal["at least", "at most"] = "at most") -> Value:

@@ -13,8 +13,8 @@ from archgen.timing.analysis import Tier
 from archgen.timing.placement import Unit
 from archgen.timing.streams import Streams
 from archgen.timing.system import System
-from archgen.timing.value import Cause, added, united
-from archgen.timing.windows import Work
+from archgen.timing.value import Cause, added, summed, united
+from archgen.timing.windows import Work, noted
 
 
 class Found(NamedTuple):
@@ -32,7 +32,8 @@ OVERLOAD, UNBOUNDED, DIVERGED = Cause(notes=("overload",)), Cause(notes=("unboun
 @lru_cache(1 << 14)
 def utilisation(cost: int, streams: Streams) -> Fraction:
     """Give the share of a core that an activity takes."""
-    return added(stream.rate for stream in streams) * cost
+    above, below = summed([stream.ratio for stream in streams])
+    return Fraction(above * cost, below)
 
 
 def work_of(system: System, name: str, events: Events, known: Mapping[str, Found]) -> Work | Cause:
@@ -46,7 +47,7 @@ def work_of(system: System, name: str, events: Events, known: Mapping[str, Found
     if isinstance(streams, Cause):
         return streams
     found = known.get(name)
-    return Work(cost, streams, (found.value or 0) if found else 0)
+    return noted(cost, streams, (found.value or 0) if found else 0)
 
 
 @dataclass(frozen=True, slots=True)

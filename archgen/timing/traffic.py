@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from heapq import merge
+from functools import lru_cache
+from heapq import heapify, heapreplace
 
 from archgen.timing.analysis import LinkLoad, Pace, TopicLoad
 from archgen.timing.pacing import Paces
 from archgen.timing.propagate import State
 from archgen.timing.queueing import longest
 from archgen.timing.sending import sent
-from archgen.timing.streams import Streams, arrivals, eta
-from archgen.timing.sums import UNBOUNDED, because, times, total, unknown
+from archgen.timing.streams import Streams, eta
+from archgen.timing.sums import UNBOUNDED, because, kept, times, total, unknown
 from archgen.timing.system import Arc, System
 from archgen.timing.ticks import SECOND
-from archgen.timing.value import ZERO, Cause, Value
+from archgen.timing.value import ZERO, Cause, Value, summed
 
 _MOST = 50_000
 """Arrivals in one busy period of a link that are looked at; beyond, nothing is said of its queue."""
@@ -36,18 +37,29 @@ def _topic(
     system: System, name: str, writers: Iterable[tuple[str, str]], readers: Iterable[Arc], outputs: Outputs
 ) -> TopicLoad:
     size = system.sizes.get(name)
+    written = [outputs[writer].rate for writer in writers]
+    read = [outputs[arc.source, arc.output].rate for arc in readers]
+    published = _bytes(name, size, written)
     return TopicLoad(
         unknown(name) if size is None else Value(Fraction(size)),
-        _bytes(name, size, (outputs[writer].rate for writer in writers)),
-        _bytes(name, size, (outputs[arc.source, arc.output].rate for arc in readers)),
+        published,
+        published if written == read else _bytes(name, size, read),
     )
 
 
-def _bytes(name: str, size: int | None, rates: Iterable[Value]) -> Value:
-    rate = total(rates)
+def _bytes(name: str, size: int | None, rates: Sequence[Value]) -> Value:
+    rate = rates[0] if len(rates) == 1 else total(rates)
     if rate.value == 0 and rate.complete:
         return ZERO
-    return unknown(name) if size is None else times(rate, size)
+    if size is None or rate.value is None:
+        return unknown(name) if size is None else rate
+    return kept(rate, _product(*rate.value.as_integer_ratio(), size))
+
+
+@lru_cache(1 << 12)
+def _product(often: int, per: int, size: int) -> Fraction:
+    """Multiply: many topics have the same rate, and messages of the same size."""
+    return Fraction(often * size, per)
 
 
 def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
@@ -62,7 +74,7 @@ def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
 def _link(state: State, link: str, arcs: Sequence[Arc], found: Paces) -> LinkLoad:
     by_topic: dict[str, list[Value]] = defaultdict(list)
     for arc in arcs:
-        by_topic[arc.topic].append(_bytes(arc.topic, arc.size, (_rate(found, arc),)))
+        by_topic[arc.topic].append(_carried(found, arc))
     parts = {topic: total(several) for topic, several in by_topic.items()}
     traffic = total(parts.values())
     bandwidth = state.system.bandwidths[link]
@@ -70,6 +82,16 @@ def _link(state: State, link: str, arcs: Sequence[Arc], found: Paces) -> LinkLoa
     waits = longest(state, link, arcs)
     queueing = because(waits) if isinstance(waits, Cause) else Value(waits * state.system.tick)
     return LinkLoad(traffic, share, _burst(state, arcs, bandwidth), queueing, tuple(parts.items()))
+
+
+def _carried(found: Paces, arc: Arc) -> Value:
+    if arc.role != "data":
+        return _bytes(arc.topic, arc.size, (_rate(found, arc),))
+    key = arc.source, arc.output, arc.topic, arc.size
+    known = found.carried.get(key)
+    if known is None:
+        known = found.carried[key] = _bytes(arc.topic, arc.size, (_rate(found, arc),))
+    return known
 
 
 def _rate(found: Paces, arc: Arc) -> Value:
@@ -100,19 +122,25 @@ def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Val
 
 def _backlog(known: Sequence[tuple[int, Streams]], speed: Fraction) -> Value:
     """Follow a busy period in which all comes as early as it can; `speed` is in bytes a tick."""
-    if sum((stream.rate * size for size, events in known for stream in events), Fraction(0)) >= speed:
+    several = [(stream, size * stream.size) for size, events in known if size for stream in events]
+    sent, whole = summed((size * stream.ratio[0], stream.ratio[1] * stream.size) for stream, size in several)
+    fast, per = speed.as_integer_ratio()
+    if sent * per >= fast * whole:
         return UNBOUNDED
-    coming = merge(*(_sized(size, events) for size, events in known if size and events))
-    sent, most = 0, Fraction(0)
-    for number, (at, size) in enumerate(coming):
-        if at and sent <= speed * at:
+    # All first ones come together, at 0; bytes are counted in parts of 1/`per`.
+    waiting = most = per * sum(size for _, size in several)
+    number = sum(stream.size for stream, _ in several)
+    coming = [(stream.time_of(1), place, 1) for place, (stream, _) in enumerate(several)]
+    heapify(coming)
+    while coming:
+        at, place, k = coming[0]
+        if at and waiting <= fast * at:
             break
+        stream, size = several[place]
+        number += stream.size
         if number > _MOST:
             return Value(None, assumptions=("diverged",))
-        sent += size
-        most = max(most, sent - speed * at)
-    return Value(most)
-
-
-def _sized(size: int, events: Streams) -> Iterator[tuple[int, int]]:
-    return ((at, size) for at in arrivals(events))
+        waiting += size * per
+        most = max(most, waiting - fast * at)
+        heapreplace(coming, (stream.time_of(k + 1), place, k + 1))
+    return Value(Fraction(most, per))

@@ -132,7 +132,7 @@ class _Finding:
         for arc in self._arcs():
             readers[arc.source].append(arc.target)
         found = set[str]()
-        waiting = list(self.system.activities)
+        waiting = list(self.system.activities)[::-1]  # sources stand first, as a rule
         while waiting:
             name = waiting.pop()
             if name not in found and self._fires(name, found):

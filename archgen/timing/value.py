@@ -33,9 +33,21 @@ MOST_NAMED = 12
 
 def added(parts: Iterable[Fraction]) -> Fraction:
     """Add up over one denominator: to bring each partial sum to lowest terms takes most of the time of all analyses."""
-    pairs = [part.as_integer_ratio() for part in parts]
-    whole = lcm(*[denominator for _, denominator in pairs])
-    return Fraction(sum([numerator * (whole // denominator) for numerator, denominator in pairs]), whole)
+    found = list(parts)
+    if 0 < len(found) <= 2:  # noqa: PLR2004 - nothing is laid together twice
+        return found[0] if len(found) == 1 else found[0] + found[1]
+    return Fraction(*summed([part.as_integer_ratio() for part in found]))
+
+
+def summed(parts: Iterable[tuple[int, int]]) -> tuple[int, int]:
+    """Add up what is given as numerator and denominator; the sum is not in lowest terms."""
+    found: dict[int, int] = {}
+    for above, below in parts:
+        found[below] = found.get(below, 0) + above
+    if len(found) == 1:
+        return next((above, below) for below, above in found.items())
+    whole = lcm(*found)
+    return sum([above * (whole // below) for below, above in found.items()]), whole
 
 
 class Cause(NamedTuple):

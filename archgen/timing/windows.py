@@ -58,6 +58,17 @@ class Work(NamedTuple):
     response: int = 0
 
 
+def noted(cost: int, streams: Streams, response: int) -> Work:
+    """Note work with its response where that says anything: a job that is done before the next comes is carried in alone."""
+    if len(streams) == 1 and response <= _between(streams[0]):
+        return Work(cost, streams)
+    return Work(cost, streams, response)
+
+
+def _between(stream: Stream) -> int:
+    return min(stream.period // stream.number, stream.distance or stream.period)
+
+
 class Demand(NamedTuple):
     """The most work that comes in a window of a length; how many terms that takes; at least `rate` t + `ahead` of it comes."""
 
@@ -102,8 +113,7 @@ class Load:
         for work in works:
             if work.cost and work.streams:
                 first = work.streams[0]
-                between = min(first.period // first.number, first.distance or first.period)
-                if len(work.streams) == 1 and work.response <= between:
+                if len(work.streams) == 1 and work.response <= _between(first):
                     self.add((work,))
                     self._once += work.cost * first.size
                 else:
@@ -147,7 +157,8 @@ def _least(stream: Stream, cost: int) -> tuple[int, int]:
 def without(whole: Demand, part: Demand) -> Demand:
     """Leave a part of some work out."""
     rest = (whole.size + part.size, whole.rate - part.rate, whole.ahead - part.ahead)
-    return Demand(lambda window: whole.within(window) - part.within(window), *rest)
+    of_whole, of_part = whole.within, part.within
+    return Demand(lambda window: of_whole(window) - of_part(window), *rest)
 
 
 def together(one: Demand, other: Demand) -> Demand:
@@ -184,6 +195,9 @@ def worst(own: Work, others: Demand, budget: Budget, whole: int = 0) -> int:
 def shared(parts: Iterable[tuple[Demand, int]]) -> Demand:
     """Divide each part of the others' work by the number of cores (or threads) that it must hold to get in the way."""
     fixed = tuple(parts)
+    if len(fixed) == 1:
+        (within, size, rate, ahead), only = fixed[0][0], fixed[0][1]
+        return Demand(lambda window: -(-within(window) // only), size, rate // only, ahead // only)
     return Demand(
         lambda window: sum(-(-demand.within(window) // cores) for demand, cores in fixed),
         sum(demand.size for demand, _ in fixed),

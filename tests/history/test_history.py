@@ -8,11 +8,12 @@ from pathlib import Path
 import jsonschema_rs
 import pytest
 
-from archgen import git
+from archgen import git, pipeline
 from archgen.findings import history_text
 from archgen.history import history, workers
 from archgen.history.commits import commits
-from archgen.project import tracked
+from archgen.pipeline import Checked
+from archgen.project import Loaded, tracked
 from tests import repositories
 from tests.running import ROOT, archgen
 
@@ -176,3 +177,29 @@ def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> N
     out = history_text.csv(history(folder))
     assert "P\n\\::error::x ␛[31m" in out
     assert "\x1b" not in out
+
+
+def test_what_says_the_same_is_judged_once(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    judged = []
+
+    def judge(loaded: Loaded) -> Checked:
+        judged.append(loaded.files.commit)
+        return pipeline.judge(loaded)
+
+    monkeypatch.setattr(pipeline, "judged", judge)
+    points = history(robot).points
+    assert len(judged) == 2  # the third only adds a comment
+    assert points[1].whole == points[2].whole
+    repositories.commit(robot.parent, {"robot/archgen.yaml": START + SECOND.replace("{implements: arm}", "{}")})
+    assert history(robot).points[-1].whole.mapped == 1
+
+
+def test_a_comment_that_silences_a_finding_counts(tmp_path: Path) -> None:
+    line = "      camera: {outputs: {image: {type: sensor_msgs/msg/Image}}}\n"
+    folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": START})
+    repositories.commit(
+        folder, {"archgen.yaml": START.replace(line, f"{line[:-1]}  # archgen: ignore[unread-output] later\n")}
+    )
+    repositories.commit(folder, {"archgen.yaml": START + "# archgen: ignore[unread-output] later\n"})
+    first, second, third = (point.whole.findings.warning for point in history(folder).points)
+    assert second < first <= third
