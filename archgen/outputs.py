@@ -149,7 +149,7 @@ def history_of(checked: Checked, ask: Ask) -> History:
     if not ask.history or ask.selection is not None or checked.loaded.files.commit:
         return History()
     try:
-        return history(checked.loaded.files.root / checked.loaded.first, "month", cache=kept.folder())
+        return history(checked.loaded.files.root / checked.loaded.first, "month", cache=kept.folder(), least=2)
     except (git.GitError, ProjectNotFoundError):
         return History()
 

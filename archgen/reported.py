@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.compare.match import match
 from archgen.diagnostic import Diagnostic, Severity, settle
 from archgen.emit import tree
 from archgen.findings import baseline
@@ -79,6 +78,8 @@ def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tu
 
     Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
     """
+    from archgen.compare.match import match
+
     renames = match(before.architecture, checked.architecture)
     now = [_keys(finding, checked, None) for finding in checked.findings]
     then = [_keys(finding, before, renames) for finding in before.findings]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -36,6 +35,8 @@ class Done(NamedTuple):
 
 def call(folder: Path, *arguments: str, stdin: bytes = b"") -> Done:
     """Run one command of git in a folder."""
+    import subprocess
+
     try:
         done = subprocess.run(  # noqa: S603 - a fixed program; what users type stands behind --end-of-options or --
             [*SAFE, *arguments],

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import weakref
-from typing import IO, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
 from archgen.git.call import SAFE, call, environment
 from archgen.git.repository import Repository
+
+if TYPE_CHECKING:
+    import subprocess
 
 LINK = "120000"
 SUBMODULE = "160000"
@@ -95,6 +97,8 @@ class _Batch:
         return process.stdout, process.stdin
 
     def _start(self) -> subprocess.Popen[bytes]:
+        import subprocess
+
         process = self._process = subprocess.Popen(  # noqa: S603 - a fixed program, questions are hashes
             [*SAFE, "cat-file", self._mode],
             cwd=self._repository.top,

@@ -16,15 +16,22 @@ Progress = Callable[[int, int], None]
 
 
 def history(
-    path: Path | None, by: By = "revision", *, cache: Path | None = None, progress: Progress | None = None
+    path: Path | None,
+    by: By = "revision",
+    *,
+    cache: Path | None = None,
+    progress: Progress | None = None,
+    least: int = 1,
 ) -> History:
     """Give size, progress and findings of a project over time, oldest first: at each commit of HEAD's line of first parents
     that changed its files, or at the last one of each month.
 
-    `cache` is the folder in which counts are kept. Raises `git.GitError` and `project.ProjectNotFoundError`.
+    `cache` is the folder in which counts are kept. Where there are not even `least` points, none is counted. Raises `git.GitError` and `project.ProjectNotFoundError`.
     """
     found = tracked(path)
     line = commits(found, by)
+    if len(line) < least:
+        return History((), by, whole=not found.objects.repository.shallow)
     file = kept.file(cache, "/".join(found.places[0]))
     held = {tree: point for tree, data in kept.load(file).items() if (point := _read(data))}
     missing = {one.tree: one for one in line if one.tree not in held}
