@@ -297,6 +297,8 @@ def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, b
         return _undisturbed(thread, budget)
     if _is_unbounded(thread, beside, narrow, (total, resource.cores)):
         return Found(None, "cores", UNBOUNDED)
+    if any(other.boundless for other in everything if other is not thread):
+        return Found(None, "cores", UNBOUNDED)  # what waits of it may be any amount, and comes in the way at last
     own = _carried((thread,))
     if beside:
         near = _carried(beside)

@@ -61,6 +61,8 @@ class Thread:
     high: int | None
     share: Fraction
     container: str | None
+    boundless: bool = False
+    """Whether no response can be given, though nothing is missing: then nobody knows how much of its work may wait."""
 
 
 def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Found]) -> Thread:
@@ -79,7 +81,12 @@ def thread_of(system: System, unit: Unit, events: Events, known: Mapping[str, Fo
         max(written, default=None),
         added(utilisation(work.cost, work.streams) for work in works),
         system.activities[unit[0]].container,
+        any(name in known and _is_boundless(known[name]) for name in unit),
     )
+
+
+def _is_boundless(found: Found) -> bool:
+    return found.value is None and not found.cause.missing
 
 
 def crowded(system: System, threads: Sequence[Thread], events: Events) -> list[Thread]:
