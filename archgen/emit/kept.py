@@ -10,11 +10,11 @@ import contextlib
 import hashlib
 import json
 import os
-import tempfile
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from archgen.emit import shelf
 from archgen.emit.picture import Picture
 from archgen.emit.program import writers
 from archgen.views.shapes import Outline
@@ -96,13 +96,8 @@ def _load(file: Path, chapter_files: ChapterFiles) -> Written | None:
 
 
 def _store(file: Path, made: Written, asked: Mapping[str, str | None]) -> None:
-    """Keep a report, written aside and moved; the oldest beyond a few are removed."""
+    """Keep a report; the oldest beyond a few are removed."""
     document, warnings = made
     head = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked})
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as part:
-        part.write(head.encode() + b"\n" + document)
-    os.replace(part.name, file)  # noqa: PTH105 - as atomic as the system can
-    kept = sorted(file.parent.glob("*.report"), key=lambda each: each.stat().st_mtime, reverse=True)
-    for old in kept[_MOST:]:
-        old.unlink(missing_ok=True)
+    shelf.put(file, head.encode() + b"\n" + document)
+    shelf.thin(file.parent, ".report", _MOST)

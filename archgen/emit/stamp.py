@@ -9,12 +9,10 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import os
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from archgen.emit import tree
+from archgen.emit import shelf, tree
 from archgen.emit.program import program
 
 _MOST = 64
@@ -50,13 +48,8 @@ def keep(folder: Path | None, name: str, target: Path, made: Iterable[str], aske
     with contextlib.suppress(OSError):  # a full or read-only disk costs only the time that this would have saved
         held = {part: _written(target / part, sure=True) for part in made}
         stamp = {"made": held, "asked": {path: _digest(data) for path, data in asked.items()}}
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as part:
-            part.write(json.dumps(stamp).encode())
-        os.replace(part.name, folder / f"{name}.stamp")  # noqa: PTH105 - as atomic as the system can
-        kept = sorted(folder.glob("*.stamp"), key=lambda each: each.stat().st_mtime, reverse=True)
-        for old in kept[_MOST:]:
-            old.unlink(missing_ok=True)
+        shelf.put(folder / f"{name}.stamp", json.dumps(stamp).encode())
+        shelf.thin(folder, ".stamp", _MOST)
 
 
 def _written(path: Path, *, sure: bool = False) -> str | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from archgen import git
-from archgen.project import Tracked
+from archgen.project import MARKER, Tracked
 
 By = Literal["revision", "month"]
 
@@ -29,7 +29,7 @@ def commits(tracked: Tracked, by: By) -> tuple[Commit, ...]:
     repository = tracked.objects.repository
     folder, first = tracked.places[0]
     file = "/".join(filter(None, (folder, first)))
-    place = folder if first == "archgen.yaml" else file
+    place = folder if first == MARKER else file
     lines = git.first_parents(repository, "HEAD")
     trees, files = (git.ids(repository, (f"{commit}:{one}" for commit, _ in lines)) for one in (place, file))
     every = (

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from archgen.timing.analysis import Tier
 from archgen.timing.placement import Resource
+from archgen.timing.several import several
 from archgen.timing.system import System
 from archgen.timing.threads import (
     DIVERGED,
@@ -36,7 +37,6 @@ from archgen.timing.windows import (
     DivergedError,
     Load,
     busy,
-    shared,
     together,
     without,
     worst,
@@ -103,7 +103,7 @@ def responses(
         wanted = [thread for thread in threads if thread.low is None or thread.low <= touched]
     else:
         wanted = threads
-    solve = _one_core if one_core else _several
+    solve = _one_core if one_core else several
     found: dict[str, Found] = {}
     solved = solve(system, resource, (threads, foreign), wanted, budget)
     for thread, response in map(_of_several, solved) if resource.joined else solved:
@@ -233,79 +233,3 @@ def _comes_to_rest(level: Iterable[Thread]) -> bool:
         return False
     whole = lcm(*(stream.period for stream in streams))
     return sum(whole // stream.period for stream in streams) <= _MOST_JOBS
-
-
-def _several(
-    system: System, resource: Resource, threads: _Threads, wanted: Sequence[Thread], budget: Budget
-) -> Iterable[tuple[Thread, Found]]:
-    everything = (*threads[0], *threads[1])
-    total = added(thread.share for thread in everything)
-    cause = united(causes) if (causes := [thread.cause for thread in everything if thread.cause]) else None
-    carried = _carried(everything)
-    whole = _Whole(everything, total, carried)
-    for thread in wanted:
-        if total >= resource.cores or thread.share >= 1:
-            yield thread, Found(None, "cores", OVERLOAD)
-        elif cause is not None:
-            yield thread, Found(None, "cores", cause)
-        else:
-            try:
-                yield thread, _global(system, resource, thread, whole, budget)
-            except DivergedError:
-                yield thread, Found(None, "cores", DIVERGED)
-
-
-class _Whole(NamedTuple):
-    """All threads of some cores, their share, and the work that they carry into a window."""
-
-    threads: Sequence[Thread]
-    share: Fraction
-    carried: Demand
-
-
-def _carried(threads: Iterable[Thread]) -> Demand:
-    load = Load()
-    for thread in threads:
-        load.add_carried(thread.works)
-    return load.demand()
-
-
-def _undisturbed(thread: Thread, budget: Budget) -> Found:
-    """Bound the response where there are no more threads than cores: nobody waits for anybody else."""
-    if len(thread.works) == 1:
-        return Found(worst(thread.works[0], NO_DEMAND, budget), "cores")
-    return Found(busy(Load(thread.works).demand(), budget), "executor")
-
-
-def _is_unbounded(thread: Thread, beside: Sequence[Thread], narrow: int, whole: tuple[Fraction, int]) -> bool:
-    """Say whether a thread and its part of all other work fill a core."""
-    total, cores = whole
-    if not beside:  # in whole numbers: this is asked of each thread
-        (share, part), (all_, parts) = thread.share.as_integer_ratio(), total.as_integer_ratio()
-        return share * (cores - 1) * parts + all_ * part >= cores * part * parts
-    around = added(t.share for t in beside)
-    return thread.share + around / narrow + (total - thread.share - around) / cores >= 1
-
-
-def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, budget: Budget) -> Found:
-    """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
-    everything, total, carried = whole
-    threads = system.threads.get(thread.container) if thread.container else None
-    narrow = min(threads, resource.cores) if threads else resource.cores
-    beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
-    if len(everything) <= resource.cores and len(beside) < (threads or resource.cores):
-        return _undisturbed(thread, budget)
-    if _is_unbounded(thread, beside, narrow, (total, resource.cores)):
-        return Found(None, "cores", UNBOUNDED)
-    if any(other.boundless for other in everything if other is not thread):
-        return Found(None, "cores", UNBOUNDED)  # what waits of it may be any amount, and comes in the way at last
-    own = _carried((thread,))
-    if beside:
-        near = _carried(beside)
-        others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
-    else:
-        others = shared(((without(carried, own), resource.cores),))
-    if len(thread.works) == 1:
-        return Found(worst(thread.works[0], others, budget), "cores")
-    alone_here = len(beside) + 1 == len(everything)
-    return Found(busy(together(Load(thread.works).demand(), others), budget), "executor" if alone_here else "cores")

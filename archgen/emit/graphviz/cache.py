@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from archgen.emit import shelf
 from archgen.emit.picture import Picture
 from archgen.emit.program import writers
 from archgen.views.bars import Drawing
@@ -57,7 +56,7 @@ def _part(read, seek, start: int, place: Sequence[int]) -> bytes:  # type: ignor
 
 
 def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> None:
-    """Keep a picture; written aside and moved, so that nobody reads half of it."""
+    """Keep a picture."""
     parts, offset, blobs = {}, 0, []
     for form in (*formats, "dot"):
         data = getattr(picture, form)
@@ -74,13 +73,9 @@ def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> 
         "warning": picture.warning,
         "parts": parts,
     }
-    with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:
-        file.write(json.dumps(head).encode() + b"\n" + b"".join(blobs))
-    os.replace(file.name, folder / f"{name}.picture")  # noqa: PTH105 - as atomic as the system can
+    shelf.put(folder / f"{name}.picture", json.dumps(head).encode() + b"\n" + b"".join(blobs))
 
 
 def prune(folder: Path, count: int) -> None:
     """Remove the oldest pictures beyond a multiple of those in use."""
-    files = sorted(folder.glob("*.picture"), key=lambda file: file.stat().st_mtime, reverse=True)
-    for file in files[_SURPLUS * count + 100 :]:
-        file.unlink(missing_ok=True)
+    shelf.thin(folder, ".picture", _SURPLUS * count + 100)
