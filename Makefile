@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
 
-.PHONY: demo test check lint format bench golden pages clean judges
+.PHONY: demo test check lint format bench mutants golden pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -14,6 +14,7 @@ help:
 	@echo "make check   ruff, mypy, lint-imports and all tests"
 	@echo "make bench   measure speed and scale"
 	@echo "make golden  renew the expected outputs of example_ramcip"
+	@echo "make mutants change one condition at a time, and see which changes no test notices"
 	@echo "make pages   renew what is generated from the code: rule pages, interface data"
 
 demo: .make/run
@@ -40,6 +41,9 @@ bench: .make/test
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/timing.py
 	$(BIN)/python benchmarks/simulation.py
+
+mutants: .make/test
+	$(BIN)/python tools/run_mutants.py --seed $(or $(SEED),1) --count $(or $(COUNT),200)
 
 golden: .make/test
 	$(BIN)/python -m pytest tests/test_golden.py --update-golden
