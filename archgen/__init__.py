@@ -15,7 +15,7 @@ __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> object:
-    """Import the API only when it is asked for, so that `archgen --help` stays immediate."""
+    """Import the API on first use only, so that `archgen --help` starts fast."""
     if name in {"Project", "load"}:
         from archgen import api
 

@@ -1,4 +1,4 @@
-"""The way in from the command line: run a verb, and never show a traceback."""
+"""The entry point of the command line: run a command, and never show a traceback."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ import sys
 
 
 def main() -> None:
-    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure of the tool."""
-    # A run is short, and what lives long in it holds no circles: looking for them again and again costs a fifth of it.
+    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 interrupted."""
+    # A run is short, and its long-lived objects (trees, models) form no cycles: searching them for garbage again and
+    # again costs a fifth of the run.
     gc.disable()
     import click
 
     for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # closed by whoever called: what is written goes nowhere
+        if getattr(sys, name) is None:  # the caller closed it: discard what is written
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
     from archgen.cli import main as verbs
 
@@ -26,7 +27,7 @@ def main() -> None:
         try:
             sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
         finally:
-            sys.stdout.flush()  # here, where a reader who is gone or a full disk is still told
+            sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled below
     except click.ClickException as error:
         error.show()
         sys.exit(2)
@@ -34,7 +35,7 @@ def main() -> None:
         sys.stderr.write("archgen: stopped\n")
         sys.exit(130)
     except BrokenPipeError:
-        # Whoever read our output has had enough (`archgen list | head`): that is no failure.
+        # The reader of our output has closed it (`archgen list | head`): that is not a failure.
         _leave_quietly()
         sys.exit(0)
     except OSError as error:  # a full disk behind the output, for instance
@@ -52,7 +53,7 @@ def main() -> None:
 
 
 def _leave_quietly() -> None:
-    """Let what is still to be written go nowhere, so that Python's own last flush says nothing."""
+    """Discard what is still buffered, so that Python's own flush at exit prints no error."""
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

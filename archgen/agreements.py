@@ -1,4 +1,4 @@
-"""From a checked project to an interface agreement: who with whom, since when, in which format, and where it goes."""
+"""From a checked project to an interface agreement: between whom, since when, in which format, and where to."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from archgen.views.timed import timing
 
 Format = Literal["docx", "markdown", "html"]
 FORMATS: tuple[Format, ...] = get_args(Format)
+"""The formats, as the command line names them."""
 ENDINGS: Mapping[str, Format] = {
     ".docx": "docx",
     ".md": "markdown",
@@ -31,15 +32,21 @@ ENDINGS: Mapping[str, Format] = {
     ".html": "html",
     ".htm": "html",
 }
+"""The format by the ending of a file's name."""
 _LISTED = 8
+"""At most this many partners are named in a message."""
 
 
 class PartnersError(ValueError):
-    """Two partners cannot have an agreement; the text says why, and what can be done."""
+    """Two partners cannot have an agreement; the text says why and what can be done."""
 
 
 def made(checked: Checked, first: str, second: str, since: Side | None = None, printed: str | None = None) -> Made:
-    """Make the agreement of two partners; `printed` replaces git's last commit. Raises PartnersError where there can be none."""
+    """Make the agreement of two partners.
+
+    Changes since `earlier_version` are marked; `printed_revision` is printed instead of git's last commit. Raise
+    PartnersError where there can be no agreement.
+    """
     _partners(checked, first, second)
     found = agreement(
         _view(checked),
@@ -49,22 +56,26 @@ def made(checked: Checked, first: str, second: str, since: Side | None = None, p
         since=(_named(since), _view(since.checked)) if since else None,
         notices=tuple(_notices(checked, since)),
     )
+    # Without interfaces there may still be removed ones to agree on.
     if not found.interfaces and not (found.changes and found.changes.removed):
         raise PartnersError(_nothing(checked, first, second))
     return found
 
 
 def _named(since: Side) -> str:
-    """Name an earlier state as it was asked for, with its commit where that says more."""
+    """Name an earlier version as the user typed it, with its commit where that says more."""
+    # A hash that begins with what the user typed says nothing new.
     known = not since.commit or since.commit.startswith(since.name)
     return since.name if known else f"{since.name} ({since.commit[:7]})"
 
 
 def _view(checked: Checked) -> Index:
+    """Build the look-ups of the whole project, with timing."""
     return replace(outputs.view(checked, Ask()), timed=timing(checked.architecture))
 
 
 def _partners(checked: Checked, first: str, second: str) -> None:
+    """Raise PartnersError unless both ids are declared and different."""
     known = checked.architecture.partners
     if not known:
         msg = "the project has no partners: declare them below `partners`, and name them as `owner` of groups or components"
@@ -81,9 +92,10 @@ def _partners(checked: Checked, first: str, second: str) -> None:
 
 
 def _nothing(checked: Checked, first: str, second: str) -> str:
-    """Say that nothing flows between two partners, and with whom something does."""
+    """Explain that two partners share no interface, and with whom they do."""
     found = checked.architecture
     owners = [each.owners for each in found.components.values()] + [each.owners for each in found.nodes.values()]
+    # A partner without elements is the more basic reason, so it is named before neighbours are searched.
     for name in (first, second):
         if not any(name in each for each in owners):
             return f"nothing flows between `{first}` and `{second}`: `{name}` owns no component and no node"
@@ -95,6 +107,7 @@ def _nothing(checked: Checked, first: str, second: str) -> str:
 
 
 def _notices(checked: Checked, since: Side | None) -> Iterator[Paragraph]:
+    """Yield a notice for each version that has errors."""
     for name, found in (("", checked), *(((f" at {_named(since)}", since.checked),) if since else ())):
         if found.broken:
             said = f"The architecture{name} has errors ({severities(found.findings)}). What is sound is shown all the same."
@@ -102,11 +115,12 @@ def _notices(checked: Checked, since: Side | None) -> Iterator[Paragraph]:
 
 
 def markdown(found: Made) -> str:
-    """Write an agreement as GitHub-flavoured Markdown, its picture as Mermaid."""
+    """Write an agreement as GitHub-flavoured Markdown, with its picture as Mermaid."""
     from archgen.emit import backends, text
 
     files = (backends.File("outline.md.j2", "agreement.md"),)
     backend = replace(backends.shipped("wiki"), files=files, views=("outline", "graphs", "places"))
+    # Markdown has no page for an element; the template may link only to sections of this document.
     places = [section.anchor for section in _sections(found.outline.sections)]
     written, problems = text.write(backend, {"outline": found.outline, "graphs": (found.graph,), "places": places})
     if written is None:
@@ -115,13 +129,14 @@ def markdown(found: Made) -> str:
 
 
 def _sections(sections: tuple[Section, ...]) -> Iterator[Section]:
+    """Yield all sections, each before those below it."""
     for section in sections:
         yield section
         yield from _sections(section.sections)
 
 
 def html(found: Made, ask: Ask) -> bytes:
-    """Write an agreement as one page that stands by itself."""
+    """Write an agreement as one self-contained HTML page."""
     from archgen.emit.site import alone
 
     return alone.write(found.outline, _drawn(found.graph, ("svg",), ask))
@@ -132,6 +147,7 @@ def docx(found: Made, ask: Ask) -> bytes:
     from archgen.emit import docx as emitter
 
     pictures = _drawn(found.graph, ("png", "svg_outlines"), ask)
+    # An agreement has no chapters, hence no pictures of chapters.
     document, warnings = emitter.write(found.outline, pictures, chapter_files=lambda _path: None)
     for warning in warnings:
         ask.warn(warning)

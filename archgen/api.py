@@ -34,55 +34,55 @@ Name = str | PathLike[str]
 
 
 class SelectorError(ValueError):
-    """A selector cannot be used; the text says why."""
+    """A selector is invalid; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """A project, read and judged. Everything is frozen: load it again to see changed files."""
+    """A checked project. Everything is frozen: load it again to see changed files."""
 
     checked: Checked
 
     @property
     def root(self) -> Path:
-        """Give the project's folder."""
+        """The project's folder."""
         return self.checked.root
 
     @property
     def architecture(self) -> Architecture:
-        """Give the architecture, as far as it is sound: both levels, linked."""
+        """The linked architecture, without what could not be read."""
         return self.checked.architecture
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """Give all findings, sorted by place, with their severities settled."""
+        """All findings with their effective severities, sorted by span."""
         return self.checked.findings
 
     @property
     def ok(self) -> bool:
-        """Say whether there are no errors."""
+        """Whether there are no errors; warnings and notes do not count."""
         return not self.checked.broken
 
     @property
     def size(self) -> size_analysis.Size:
-        """Give the figures of `archgen stats`, means as exact fractions."""
+        """The counts of `archgen stats`, with means as exact fractions."""
         return size_analysis.size(self.architecture)
 
     @property
     def progress(self) -> tuple[size_analysis.Progress, ...]:
-        """Give how far the whole, each group and each partner are."""
+        """How complete the project, each group and each partner are, as counts of components."""
         return size_analysis.progress(self.architecture)
 
     def timing(self) -> Analysis:
-        """Give how often everything works, responses, loads and traffic. Durations are in ns; all figures are exact."""
+        """Analyse rates, response times, loads and traffic. Durations are in ns, rates in Hz; all values are exact."""
         return analyse(self.architecture)
 
     def chains(self) -> dict[str, ChainResult]:
-        """Give the latency of each chain, its terms and the verdict on its deadline."""
+        """Return the latency of each chain (ns), its terms and the verdict on its deadline, by the chain's id."""
         return timing_chains.chains(self.timing(), self.architecture)
 
     def select(self, words: str) -> Selection:
-        """Evaluate a selector. Raises `SelectorError` where it cannot be used."""
+        """Evaluate a selector. Raises `SelectorError` if it is invalid."""
         selection, problems = outputs.select(self.checked, words)
         errors = [problem.message for problem in problems if problem.severity == "error"]
         if errors:
@@ -90,7 +90,7 @@ class Project:
         return selection
 
     def record(self, select: str | None = None) -> Record:
-        """Give the resolved model, or a part of it, as plain data (`schemas/resolved.schema.json`)."""
+        """Return the resolved model, or the selected part of it, as plain data (`schemas/resolved.schema.json`)."""
         return record.record(outputs.view(self.checked, self._ask(select)))
 
     def write_report(
@@ -102,7 +102,7 @@ class Project:
         level: Level = "implementation",
         revision: str | None = None,
     ) -> None:
-        """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can mend."""
+        """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can fix."""
         made = Path(fspath(template)) if template is not None else None
         outputs.report(self.checked, self._ask(select, level, revision), Path(fspath(file)), made)
 
@@ -120,16 +120,16 @@ class Project:
         only: tuple[str, ...] = (),
         select: str | None = None,
     ) -> int:
-        """Write pictures (svg, png, pdf, dot), and give their number."""
+        """Write diagrams (svg, png, pdf, dot) and return their number."""
         return outputs.diagrams(self.checked, self._ask(select), Path(fspath(folder)), formats, only)
 
     def write_agreement(
         self, file: Name, first: str, second: str, *, since: str | None = None, revision: str | None = None
     ) -> None:
-        """Write what flows between two partners; the file's ending (.docx, .md, .html) says the format.
+        """Write what flows between two partners. The file's suffix (.docx, .md, .html) determines the format.
 
-        `since` marks what changed since a git revision (or a folder or packed file). Raises `agreements.PartnersError`
-        where there can be no agreement, ValueError for another ending, `git.GitError` for a revision that is not there.
+        `since` marks what changed since a git revision (or a folder or packed file). Raises `PartnersError` if the two
+        have no interfaces, ValueError for another suffix, `git.GitError` for a revision that does not exist.
         """
         target = Path(fspath(file))
         form = agreements.ENDINGS.get(target.suffix.lower())
@@ -140,11 +140,11 @@ class Project:
         agreements.write(agreements.made(self.checked, first, second, earlier, revision), form, target)
 
     def ownership(self) -> Ownership:
-        """Give what each partner owns: elements and files."""
+        """Return the elements and files that each partner owns."""
         return ownership.ownership(self.checked)
 
     def codeowners(self) -> str:
-        """Write CODEOWNERS: who reviews which file."""
+        """Return the text of the file CODEOWNERS: the reviewers of each file."""
         return ownership.codeowners(self.checked).text
 
     def write_packed(self, file: Name) -> None:
@@ -152,7 +152,7 @@ class Project:
         outputs.pack(self.checked, Path(fspath(file)))
 
     def _path(self) -> Path:
-        """Give what the project was read from: its folder, or its only file."""
+        """Return what the project was read from: its folder, or its only file."""
         files = self.checked.files
         return self.root / files[0] if len(files) == 1 else self.root
 
@@ -161,8 +161,8 @@ class Project:
 
 
 def load(path: Name | None = None) -> Project:
-    """Read the project at a path (a folder, a single file; None for the one around the current folder) and judge it.
+    """Read and check the project at a path (a folder or a single file; None: the one around the current folder).
 
-    Raises `archgen.project.ProjectNotFoundError` where there is none. Mistakes in its files are findings, not exceptions.
+    Raises `archgen.project.ProjectNotFoundError` if there is none. Mistakes in its files are findings, not exceptions.
     """
     return Project(pipeline.check(Path(fspath(path)) if path is not None else None))

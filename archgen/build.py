@@ -1,6 +1,6 @@
 """Everything at once: report, site, diagrams, packed file and further backends, below one folder.
 
-What takes long runs side by side, and what nothing changed of is not made again.
+What takes long runs side by side, and a build of which nothing changed is not made again.
 """
 
 from __future__ import annotations
@@ -24,12 +24,16 @@ from archgen.views.shapes import Graph
 def build(
     checked: Checked, ask: Ask, target: Path, template: Path | None = None, extra: Sequence[str] = ()
 ) -> Iterator[Path]:
-    """Write report, site, diagrams and packed file below a folder, and what further backends make; give the paths.
+    """Write report, site, diagrams and packed file below a folder, then further backends; yield the paths.
 
-    Where all of it lies there as the same inputs gave it before, nothing is made again.
+    Nothing is written where all of it is there already, from the same inputs. The caller must exhaust the generator:
+    work is done between the yields, and the stamp is stored after the last one.
     """
+    # Before any work, so that a misspelt backend fails at once.
     chosen = _backends(checked, extra, ask.allowed)
+    # Settled once: git is asked a single time, and the stamp depends on the revision that is printed.
     ask = replace(ask, revision=outputs.revision_of(checked, ask))
+    # No stamp with further backends: what their templates read is not among the inputs below.
     name = "" if chosen else stamp.key(_inputs(checked, ask, template))
     parts = stamp.fresh(kept.folder(), name, target, checked.chapters.picture) if name else None
     warned: list[str] = []
@@ -37,11 +41,14 @@ def build(
     for part in parts or _build(checked, replace(ask, warn=_noting(ask.warn, warned)), target, template, chosen):
         done.append(part)
         yield target / part / ("index.html" if part == "site" else "")
+    # A build with warnings is repeated next time, so that its warnings are repeated, too.
     if name and parts is None and not warned:
         stamp.keep(kept.folder(), name, target, done, checked.chapters.asked)
 
 
 def _noting(warn: Callable[[str], None], said: list[str]) -> Callable[[str], None]:
+    """Return a `warn` that also collects its texts in a list."""
+
     def warned(text: str) -> None:
         said.append(text)
         warn(text)
@@ -50,9 +57,13 @@ def _noting(warn: Callable[[str], None], said: list[str]) -> Callable[[str], Non
 
 
 def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[object]:
-    """Give all that the outputs depend on, but for this program and the pictures of chapters."""
+    """Yield all that decides the outputs' bytes, except this program and the pictures of chapters.
+
+    The program is part of the stamp's key; chapter pictures are known only after the writers asked for them.
+    """
     project, sources, chapters = checked.architecture.project, checked.sources, checked.chapters
     yield project.id, project.title, ask.words, ask.level, ask.revision
+    # `sources` has the text of every file that was read, interface definitions included.
     yield checked.files, checked.all_files, [(file, sources.text(file)) for file in sources.files()]
     yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked.findings
     yield template and template.read_bytes()
@@ -60,7 +71,7 @@ def _inputs(checked: Checked, ask: Ask, template: Path | None) -> Iterator[objec
 
 
 def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chosen: Sequence[Backend]) -> Iterator[str]:
-    """Write each part; give its name."""
+    """Write each part and yield its name."""
     from archgen.emit import graphviz
 
     with graphviz.early(kept.folder()) as ready, ThreadPoolExecutor(1) as beside:
@@ -70,6 +81,7 @@ def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chos
         outline, listed = report_view.report(made.view, made.edition), tuple(pages.pages(made.view, made.edition))
         packed = outputs.packed(checked).encode()
         pictures = drawing.result()
+    # From here on files appear: all views are made and all pictures are drawn.
     tree.write_file(target / "report.docx", outputs.docx(checked, outline, pictures, ask, template))
     yield "report.docx"
     tree.write(outputs.site_tree(checked, made, listed, pictures), target / "site")
@@ -85,12 +97,13 @@ def _build(checked: Checked, ask: Ask, target: Path, template: Path | None, chos
 
 
 def _backends(checked: Checked, names: Sequence[str], allowed: Collection[str] | None) -> list[Backend]:
-    """Find the further backends that the user asks for, before any long work."""
+    """Return the named text backends. Raise OutputError for unknown, broken or forbidden ones."""
     if not names:
         return []
     from archgen.emit import backends
 
     found, problems = backends.find(checked.root)
+    # Only manifests of backends that are asked for count; a broken one beside them must not stop the build.
     wrong = [problem for problem in problems if any(f"backends/{name}/" in problem.span.file for name in names)]
     _refuse(wrong)
     for name in names:
@@ -98,6 +111,7 @@ def _backends(checked: Checked, names: Sequence[str], allowed: Collection[str] |
             known = ", ".join(name for name, backend in found.items() if backend.emitter == "text")
             msg = f"there is no text backend `{name}`"
             raise tree.OutputError(msg, f"there are {known}")
+        # The branch under review may be anybody's: its own backends run only if the trusted revision allows them.
         if found[name].own and allowed is not None and name not in allowed:
             msg = f"the project's own backend `{name}` is not run here: the revision that is trusted does not name it"
             raise tree.OutputError(msg, "add it to `review.backends` there, in a change of its own")
@@ -105,9 +119,10 @@ def _backends(checked: Checked, names: Sequence[str], allowed: Collection[str] |
 
 
 def _extra(made: Made, backend: Backend, target: Path) -> None:
-    """Write what one text backend makes."""
+    """Write the output of one text backend."""
     from archgen.emit import text
 
+    # Made only on demand: a backend names the views that it needs in its manifest.
     shapes: dict[str, Callable[[], object]] = {
         "outline": lambda: report_view.report(made.view, made.edition),
         "pages": lambda: pages.pages(made.view, made.edition),
@@ -122,6 +137,7 @@ def _extra(made: Made, backend: Backend, target: Path) -> None:
 
 
 def _refuse(problems: Sequence[Diagnostic]) -> None:
+    """Raise OutputError with all problems, if there are any."""
     if problems:
         said = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)
         raise tree.OutputError(said, problems[0].help)

@@ -1,4 +1,4 @@
-"""What archgen says about a mistake: the diagnostic, its severity, and the rule it belongs to."""
+"""Diagnostics, their severities, and the rules that they belong to."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 class Severity(enum.StrEnum):
-    """How much a finding matters. `off` stands only in settings, never on a diagnostic."""
+    """How serious a finding is. `off` occurs only in settings, never on a diagnostic."""
+
+    # From the least to the most serious: the order of definition is used to compare severities.
 
     OFF = "off"
     NOTE = "note"
@@ -24,7 +26,7 @@ class Severity(enum.StrEnum):
 
 
 class Label(NamedTuple):
-    """A secondary place that helps to understand a diagnostic."""
+    """A secondary span that helps to understand a diagnostic."""
 
     span: Span
     text: str
@@ -32,10 +34,10 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding.
+    """A finding.
 
-    `severity` None means the rule's own; `settle` replaces it. `element` is the id of the element concerned
-    (`group.component`, a node's id, a type's name, ...), where there is one.
+    `severity` None means the rule's default, which `settle_diagnostics` fills in. `element` is the id of the element
+    that the finding is about (`group.component`, a node's id, a type's name, ...), if any.
     """
 
     rule: str
@@ -48,16 +50,16 @@ class Diagnostic:
 
     @property
     def key(self) -> tuple[str, int, int, str, str]:
-        """Sort by file, line, column, rule, message."""
+        """The sort key: file, line, column, rule, message."""
         return (self.span.file, self.span.line, self.span.column, self.rule, self.message)
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A kind of finding: its name, its severity where nobody says otherwise, its page.
+    """A kind of finding: its name, its default severity, its page.
 
     `doc` is Markdown: a summary sentence, then the sections `Why`, `Bad` and `Good` (see CONTRIBUTING.md). `fixed`
-    rules (reading and linking) cannot be ignored or switched off: what comes after them rests on them.
+    rules (reading and linking) cannot be ignored or switched off: all later stages rely on them.
     """
 
     name: str
@@ -67,16 +69,17 @@ class Rule:
 
     @classmethod
     def of(cls, function: Callable[..., object], severity: Severity) -> Rule:
-        """Make the rule that a function judges: its name and its docstring are the function's."""
+        """Make a rule from the function that implements it: its name and page are the function's name and docstring."""
         return cls(function.__name__.replace("_", "-"), severity, inspect.cleandoc(function.__doc__ or ""))
 
 
 def settle(
     diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], settings: Mapping[str, Severity]
 ) -> tuple[Diagnostic, ...]:
-    """Give each diagnostic its severity, drop what is switched off, and sort.
+    """Return the diagnostics with their effective severities, without duplicates and those switched off, sorted.
 
-    A rule that chose a severity of its own for one finding keeps it, unless the project sets the rule.
+    The severity is the project's setting for the rule (ignored for fixed rules), else the diagnostic's own, else the
+    rule's default.
     """
     settled = set[Diagnostic]()
     for diagnostic in diagnostics:

@@ -1,8 +1,10 @@
-"""Which finding is which: by its rule, its element and the names in its message, never by where it stands.
+"""The identity of findings across versions: rule, element and the names in the message, never file or line.
 
-Lines move, files are renamed and reordered, figures change with every measurement, titles and messages are reworded. A finding
-is the same one as long as its rule, its element and what its message names in backticks are (the whole message, without
-figures, where it names nothing); where several are alike, they are told apart by their number.
+Lines move, files are renamed, figures change with every measurement, messages are reworded. A finding is the same one
+as long as its rule, its element and what its message names in backticks are the same (the whole message without
+figures, if it names nothing). Findings with the same identity are numbered. docs/decisions/0005-known-findings.md has
+the rejected ways: the whole message fails with every figure that changes, the element alone cannot tell one output from
+another.
 """
 
 from __future__ import annotations
@@ -18,24 +20,28 @@ if TYPE_CHECKING:
     from archgen.diagnostic import Diagnostic
     from archgen.source import Span
 
+# A number, but not a digit within a name or path (`node_2`, `v1.2`) or before a letter.
 _FIGURE = re.compile(r"(?<![\w.-])\d[\d.,]*(?!\w)")
 
 
 class Identity(NamedTuple):
-    """What makes a finding the same one wherever it stands. `about` is what is left of its message."""
+    """What identifies a finding in different versions of a project. `subject` is what remains of its message."""
 
     rule: str
     element: str
     about: str
 
     def fingerprint(self, number: int) -> str:
-        """Give the hash of the finding with this identity that is the `number`th (from 1) of those alike."""
+        """Return a hash (32 hex digits) of this identity and the finding's number (from 1) among those that have it.
+
+        SARIF's fingerprints are made of it: another hash here makes every alert a new one.
+        """
         text = "\0".join((*self, str(number)))
         return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
 class Known(NamedTuple):
-    """A finding that was known before, as a baseline lists it: `times` alike, written at `at`."""
+    """A known finding as a baseline lists it: `occurrences` of it are known, and `span` is the entry's place."""
 
     rule: str
     element: str
@@ -45,22 +51,22 @@ class Known(NamedTuple):
 
     @property
     def identity(self) -> Identity:
-        """Give what it is matched by."""
+        """The identity that findings are matched with."""
         return _identity(self.rule, self.element, self.message)
 
 
 class Renames(Protocol):
-    """Knows the ids that elements have now, by those that they had."""
+    """Replaces the old ids of renamed elements by their new ones. `compare` implements it."""
 
     def words(self, text: str) -> str:
-        """Put the ids of now into a text."""
+        """Replace old ids anywhere in a text by the new ones."""
 
     def ticked(self, text: str) -> str:
-        """Put the ids of now into what stands between backticks."""
+        """Replace old ids between backticks by the new ones."""
 
 
 def identity(diagnostic: Diagnostic, renames: Renames | None = None) -> Identity:
-    """Give a finding's identity, with the ids that elements have now where `renames` knows them."""
+    """Return the identity of a finding; with `renamer`, as if its elements had their new ids already."""
     element, message = diagnostic.element or "", diagnostic.message
     if renames is not None:
         element, message = renames.words(element), renames.ticked(message)
@@ -68,7 +74,7 @@ def identity(diagnostic: Diagnostic, renames: Renames | None = None) -> Identity
 
 
 def numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Diagnostic, Identity, int]]:
-    """Give each finding with its identity and its number (from 1) among those alike."""
+    """Yield each finding with its identity and its number (from 1) among the findings with the same identity."""
     seen = Counter[Identity]()
     for diagnostic in diagnostics:
         found = identity(diagnostic)
@@ -77,11 +83,14 @@ def numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Diagnostic, Id
 
 
 def partners(now: Sequence[Sequence[Hashable]], before: Sequence[Sequence[Hashable]]) -> tuple[int | None, ...]:
-    """Match each of `now` with one of `before`; give the position of each one's partner, None for what has none.
+    """Match new findings with old ones, and return the index of the old one for each new one, None without a match.
 
-    Each has its keys, the strictest first: what agrees in the first key is matched before anything else is.
+    Each finding is given by its keys, from the strictest to the loosest, and all have the same number of keys. All
+    matches by a stricter key are made before any by a looser one, so that of several similar findings the one that
+    moved least is taken as the same.
     """
     found: list[int | None] = [None] * len(now)
+    # A dictionary as an ordered set: among equal keys the first old finding is matched first.
     free = dict.fromkeys(range(len(before)))
     for level in range(len(now[0]) if now else 0):
         offers = defaultdict[object, deque[int]](deque)
@@ -100,12 +109,16 @@ def _identity(rule: str, element: str, message: str) -> Identity:
 
 
 def _storable(text: str) -> str:
-    """Give text as a file gives it back: lone surrogates cannot stand in one."""
+    """Return a text as it comes back from a UTF-8 file: lone surrogates are replaced by question marks.
+
+    Otherwise the identity of a new finding would differ from that of the same finding in a baseline.
+    """
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _about(message: str) -> str:
-    """Give what a message names, else its words without what changes and leaves the fault the same: figures, blanks."""
+    """Return the names between backticks in a message; without any, the message with each figure replaced by 0."""
+    # Every second part is between backticks. The others are dropped, so that a rule's message may be reworded.
     names = message.split("`")[1::2]
     text = "`".join(names) if any(names) else _FIGURE.sub("0", message)
     return " ".join(text.split())

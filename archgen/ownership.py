@@ -14,16 +14,22 @@ from archgen.views.owners import ownership as sorted_out
 
 
 def ownership(checked: Checked) -> Ownership:
-    """Sort out which partner owns which elements and files."""
+    """Find out which partner owns which elements and files of a project."""
+    # Files come from the merged tree: the architecture keeps one span for an element, but slices may add to it in
+    # others.
     return sorted_out(checked.architecture, places(checked.merged), checked.files)
 
 
 def codeowners(checked: Checked, prefix: str | None = None) -> Codeowners:
-    """Write CODEOWNERS. `prefix` is the project's folder from the repository's root on; None asks git."""
+    """Make CODEOWNERS.
+
+    `prefix` is the project's folder relative to the root of the repository; None asks git.
+    """
     return emitter.codeowners(ownership(checked), _prefix(checked.root) if prefix is None else prefix)
 
 
 def _prefix(root: Path) -> str:
+    """Return the folder of a project relative to its repository, empty outside of any."""
     try:
         return repository(root).prefix
     except NoRepositoryError:

@@ -1,6 +1,8 @@
-"""Every stage in order: whoever reads this first has seen the whole way from YAML files to documents.
+"""All stages in order, from YAML files to findings. Read this module first for an overview of archgen.
 
-project -> syntax -> schema -> link -> model -> transform -> analyses -> views -> emit -> files
+project -> syntax -> schema -> link -> model -> transform -> analyses -> findings
+
+`archgen.products` goes on from there: views -> emit -> files.
 """
 
 from __future__ import annotations
@@ -34,60 +36,60 @@ ALL_RULES: tuple[Rule, ...] = (
     *analyses.RULES,
     *findings.RULES,
 )
-"""Every rule there is, in the order in which the stages run."""
+"""All rules, in the order in which the stages run."""
 _BY_NAME = rules.by_name(ALL_RULES)
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """A project, read and judged: the architecture as far as it is sound, and what was found."""
+    """A checked project: its architecture, without what could not be read, and its findings."""
 
     loaded: Loaded
     merged: Table
     architecture: Architecture
     chapters: Chapters
     findings: tuple[Diagnostic, ...]
-    """Settled and sorted; those that a comment silences are left out."""
+    """Settled and sorted, without those that a comment or a setting silences."""
     silenced: tuple[Diagnostic, ...] = ()
-    """What a comment or a setting of the project keeps out of the findings."""
+    """The findings that a comment or a setting of the project silences."""
 
     @property
     def root(self) -> Path:
-        """Give the project's folder."""
+        """The project's folder."""
         return self.loaded.root
 
     @property
     def out(self) -> Path:
-        """Give the folder that outputs go to where nobody says otherwise."""
+        """The default folder for outputs."""
         return self.loaded.root / "archgen-out"
 
     @property
     def sources(self) -> Sources:
-        """Give the texts that diagnostics quote."""
+        """The texts of the project's files, which diagnostics quote."""
         return self.loaded.sources
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Name the project's YAML files."""
+        """The paths of the project's YAML files, relative to its folder."""
         return tuple(document.file for document in self.loaded.documents)
 
     @property
     def all_files(self) -> tuple[str, ...]:
-        """Name every file that the outputs are made from: YAML, interfaces, chapters."""
+        """The paths of all files that outputs depend on: YAML, interface definitions, chapters."""
         return (*self.files, *self.loaded.interfaces, *self.chapters.texts)
 
     @property
     def broken(self) -> bool:
-        """Say whether there are errors."""
+        """Whether there are errors."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
 
     @property
     def unsound(self) -> tuple[Diagnostic, ...]:
-        """Give the errors of reading and linking: what they speak of is not in the architecture."""
+        """The errors of reading and linking: what they are about is missing in the architecture."""
         return tuple(d for d in self.findings if d.severity is Severity.ERROR and _BY_NAME[d.rule].fixed)
 
     def packed(self) -> Packed:
-        """Give the whole project as one mapping, with what stands in other files put in."""
+        """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""
         texts, _ = definitions(self.loaded)
         attached = Attachments(
             {name: text for file, text in texts.items() if (name := interfaces.name_of(file))},
@@ -99,40 +101,40 @@ class Checked:
 
 
 def check(path: Path | None = None, known: Slices | None = None) -> Checked:
-    """Read the project at a path (a folder, a file, or None for the one around the current folder) and judge it.
+    """Read and check the project at a path (a folder, a file, or None for the one around the current folder).
 
-    Whoever reads several versions of one project keeps its slices in `known`: what is the same is parsed once.
-
-    Raises `project.ProjectNotFoundError` where there is none.
+    `parsed_slices` is a cache that is filled: pass the same one for several versions of a project, and files that are
+    the same in them are parsed once. Raises `project.ProjectNotFoundError` if there is no project.
     """
     with _without_collection():
         return judge(project.load(path, known))
 
 
 def check_at(path: Path | None, revision: str, known: Slices | None = None) -> Checked:
-    """Judge the project at a path as a revision of its repository holds it, read from git's objects.
+    """Check the project at a path as it is at a revision of its repository, read from git's objects.
 
-    Raises `git.GitError`, `project.NotAtRevisionError` where the project does not exist there, and
-    `project.ProjectNotFoundError` where there is neither a project nor a repository.
+    Raises `git.GitError`, `project.NotAtRevisionError` if the project does not exist at the revision, and
+    `project.ProjectNotFoundError` if there is neither a project nor a repository.
     """
     return check_tracked(project.tracked(path), revision, known)
 
 
 def check_tracked(tracked: Tracked, revision: str, known: Slices | None = None) -> Checked:
-    """Judge a project at a revision; whoever wants many revisions finds the project once, and keeps the slices in `known`."""
+    """Check a tracked project at a revision. For many revisions, find the project once, and share `parsed_slices`."""
     with _without_collection():
         return judge(project.load_at(tracked, revision, known))
 
 
 def judged(loaded: Loaded) -> Checked:
-    """Judge a project that was read."""
+    """Check a project that is loaded already."""
     with _without_collection():
         return judge(loaded)
 
 
 @contextmanager
 def _without_collection() -> Iterator[None]:
-    """Keep the garbage collector out: trees and models hold no circles, and it walks all of them again and again."""
+    """Pause the garbage collector: trees and models contain no cycles, and it walks all of them again and again."""
+    # The command line has disabled it for good; this is for users of the Python API, whose setting is restored.
     collecting = gc.isenabled()
     gc.disable()
     try:
@@ -143,7 +145,7 @@ def _without_collection() -> Iterator[None]:
 
 
 def check_text(text: str) -> tuple[Diagnostic, ...]:
-    """Judge a one-file project given as text; the file is called `project.yaml` in its findings."""
+    """Check a project of one file, given as text; findings call the file `project.yaml`."""
     with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
         file = Path(folder) / "project.yaml"
         file.write_text(text, encoding="utf-8")
@@ -151,7 +153,10 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 
 def judge(loaded: Loaded) -> Checked:
-    """Take a project that was read through all stages up to its findings."""
+    """Run all stages on a loaded project, up to its findings.
+
+    No stage stops at errors: each yields its diagnostics and passes on what is sound.
+    """
     merged, merge_findings = merge.merge(loaded.documents, loaded.lost)
     known, interface_findings = _interfaces(loaded, merged)
     linked, link_findings = link.link(
@@ -165,6 +170,8 @@ def judge(loaded: Loaded) -> Checked:
     )
     architecture = transform.transform(linked)
     read, chapter_findings = chapters.chapters(merged, loaded.files)
+    # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
+    # explain, so that one mistake is reported once.
     unread = [d for d in loaded.diagnostics if _BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
     raw = (
         *loaded.diagnostics,
@@ -176,6 +183,7 @@ def judge(loaded: Loaded) -> Checked:
         *rules.judge_settings(loaded.rule_places.items(), _BY_NAME),
     )
     ignores = [ignore for found in loaded.ignores.values() for ignore in found]
+    # Only projects that ignore something pay for this.
     first_lines = suppress.first_lines(architecture) if ignores else {}
     kept = settle(suppress.suppress(raw, ignores, _BY_NAME, first_lines), _BY_NAME, loaded.rules)
     silenced = _silenced(raw, kept, loaded.rules) if ignores or Severity.OFF in loaded.rules.values() else ()
@@ -185,14 +193,14 @@ def judge(loaded: Loaded) -> Checked:
 def _silenced(
     raw: Iterable[Diagnostic], kept: Iterable[Diagnostic], settings: Mapping[str, Severity]
 ) -> tuple[Diagnostic, ...]:
-    """Give the findings that there would be without comments and rules that are switched off."""
+    """Return the findings that only comments, or settings that switch a rule off, keep out of the settled ones."""
     shown = frozenset(kept)
     every = settle(raw, _BY_NAME, {rule: severity for rule, severity in settings.items() if severity != Severity.OFF})
     return tuple(finding for finding in every if finding not in shown)
 
 
 def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
-    """Read the project's own interface definitions, and lay them over those that ship."""
+    """Read the project's own interface definitions (files, and `ros.definitions`), which override the shipped ones."""
     texts, diagnostics = definitions(loaded)
     ros = merged.get("ros")
     inline = ros.get("definitions") if isinstance(ros, Table) else None
@@ -203,7 +211,7 @@ def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagno
 
 
 def definitions(loaded: Loaded) -> tuple[dict[str, str], tuple[Diagnostic, ...]]:
-    """Read the interface files that the project names, by their path."""
+    """Read the interface files that the project names; return their texts by path, and what could not be read."""
     texts, diagnostics = {}, []
     for file in loaded.interfaces:
         read = files.read(loaded.files, file)

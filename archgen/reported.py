@@ -1,4 +1,7 @@
-"""Which findings a check reports: all of them, those that a baseline does not know, or those that a change caused."""
+"""Which findings a check reports: all, those that a baseline does not list, or those that a change caused.
+
+What makes two findings the same: docs/decisions/0005-known-findings.md.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +20,17 @@ from archgen.pipeline import ALL_RULES, Checked
 from archgen.project import baseline as reading
 
 FILE = "archgen-baseline.yaml"
-"""The baseline of a project where nobody names another file."""
+"""The baseline of a project, unless another file is named."""
 RULES = by_name(ALL_RULES)
 """Every rule by its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reported:
-    """What a check reports.
+    """What a check reports, and what it keeps quiet.
 
-    Kept quiet are `known` ones (a baseline lists them) and `earlier` ones (they were there before a change). `cured` is
-    what the baseline lists, `healed` what was there before, and is no more.
+    A baseline lists `known_findings`; `earlier_findings` were there before a change. Of what the baseline lists or what
+    was there before, `cured_entries` and `healed_findings` no longer exist.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -36,12 +39,12 @@ class Reported:
     earlier: tuple[Diagnostic, ...] = ()
     healed: tuple[Diagnostic, ...] = ()
     compared: bool = False
-    """Whether there was anything to compare with."""
+    """Whether there was a baseline or an earlier version to compare with."""
 
 
 @dataclass(frozen=True, slots=True)
 class Updated:
-    """What an update of a baseline did: how many findings it knows, how many of them it did not know, how many it lost."""
+    """What an update of a baseline did: findings that it lists now, newly listed ones, and removed ones."""
 
     path: Path
     known: int
@@ -50,19 +53,27 @@ class Updated:
 
 
 def unread(findings: Iterable[Diagnostic]) -> Diagnostic | None:
-    """Give the first error of reading or linking: behind such a one there is more to find, and nobody knows what is cured."""
+    """Return the first error of reading or linking, None where there is none.
+
+    Behind such an error more may be hidden, so nobody can say which findings are cured.
+    """
     return next((d for d in findings if RULES[d.rule].fixed and d.severity is Severity.ERROR), None)
 
 
 def report(checked: Checked, file: Path | None = None, before: Checked | None = None) -> Reported:
-    """Report what a baseline does not know (and what is wrong with it), and what was not there before."""
+    """Compare a project's findings with a baseline and with an earlier version of the project.
+
+    Findings about the baseline itself are reported, too.
+    """
     known, problems = _read(checked, file) if file else ((), ())
     new, old, cured = baseline.divide(checked.findings, known, RULES)
     caused, healed = since(checked, before) if before else (checked.findings, ())
     found = set(caused)
+    # The baseline is read after the project, so its problems have not been through `settle` yet.
     wrong = settle(problems, RULES, checked.loaded.rules)
     sound = unread(checked.findings) is None
     return Reported(
+        # New to both: neither listed in the baseline nor there before the change.
         findings=tuple(sorted((*(d for d in new if d in found), *wrong), key=lambda finding: finding.key)),
         known=old,
         cured=cured if sound else (),
@@ -73,10 +84,10 @@ def report(checked: Checked, file: Path | None = None, before: Checked | None = 
 
 
 def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Give the findings that were not there before or count more now, and those that are no more. Renamed elements keep
-    theirs.
+    """Return the findings that are new or graver than before, and those that are gone.
 
-    Of findings that are alike, those in the same line of the same file are matched first, so that the new one is shown.
+    Renamed elements keep their findings. Of several findings that are alike, those on the same line of the same file
+    are matched first, so that the one reported is the new one.
     """
     from archgen.compare.match import match
 
@@ -84,6 +95,7 @@ def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tu
     now = [_keys(finding, checked, None) for finding in checked.findings]
     then = [_keys(finding, before, renames) for finding in before.findings]
     old = partners(now, then)
+    # Positions, not findings: equal findings may occur several times, and each is matched by itself.
     new = [
         place for place, was in enumerate(old) if was is None or _graver(checked.findings[place], before.findings[was])
     ]
@@ -92,21 +104,23 @@ def since(checked: Checked, before: Checked) -> tuple[tuple[Diagnostic, ...], tu
 
 
 def _graver(now: Diagnostic, then: Diagnostic) -> bool:
-    """Say whether a change made a finding count more, by setting its rule for instance."""
+    """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
     order = list(Severity)
     return order.index(now.severity or Severity.ERROR) > order.index(then.severity or Severity.ERROR)
 
 
 def _keys(finding: Diagnostic, of: Checked, renames: Renames | None) -> tuple[Hashable, Hashable]:
+    """Return the keys for matching, strictest first: identity with file and text of the line, then identity alone."""
     same = identity(finding, renames)
+    # The line's text and not its number: lines move with every edit above them.
     line = of.sources.line(finding.span.file, finding.span.line) or ""
     return (same, finding.span.file, line.strip()), same
 
 
 def earlier(path: Path | None, revision: str) -> Checked:
-    """Judge the project as it was at a revision; `main...` is where HEAD left main.
+    """Check the project as it was at a revision; `main...` is the commit where HEAD left main.
 
-    Raises what `pipeline.check_at` raises.
+    Raise what `pipeline.check_at` raises.
     """
     if not revision.endswith("..."):
         return pipeline.check_at(path, revision)
@@ -116,8 +130,12 @@ def earlier(path: Path | None, revision: str) -> Checked:
 
 
 def update(checked: Checked, file: Path) -> Updated:
-    """Write the baseline that knows every finding of now. A file that is none is never replaced."""
+    """Write a baseline that lists every finding of now.
+
+    Raise OutputError instead of replacing a file that is no baseline.
+    """
     known: tuple[Known, ...] = ()
+    # `lexists`: a dangling link is in the way as well and must not be replaced unread.
     if os.path.lexists(file):
         known, problems = _read(checked, file)
         if not reading.is_own(checked.sources.text(_shown(checked, file)) or ""):
@@ -126,11 +144,13 @@ def update(checked: Checked, file: Path) -> Updated:
             raise tree.OutputError(msg, "give another file with `--baseline`")
     new, old, cured = baseline.divide(checked.findings, known, RULES)
     tree.write_file(file, baseline.write(checked.findings, RULES).encode())
+    # Errors of reading and linking are never listed in a baseline, so they are not counted as added.
     added = sum(not RULES[finding.rule].fixed for finding in new)
     return Updated(file, len(old) + added, added, sum(entry.times for entry in cured))
 
 
 def _read(checked: Checked, file: Path) -> tuple[tuple[Known, ...], tuple[Diagnostic, ...]]:
+    """Read a baseline, and make its text available for excerpts in messages."""
     shown = _shown(checked, file)
     text, known, problems = reading.read(file, shown, RULES)
     checked.sources.add(shown, text)
@@ -138,5 +158,5 @@ def _read(checked: Checked, file: Path) -> tuple[tuple[Known, ...], tuple[Diagno
 
 
 def _shown(checked: Checked, file: Path) -> str:
-    """Name the baseline as the project's own files are named, from the project's folder."""
+    """Return the path of the baseline relative to the project's folder, as paths are shown in findings."""
     return Path(os.path.relpath(file.absolute(), checked.root.absolute())).as_posix()

@@ -1,4 +1,4 @@
-"""Find what ships with archgen beside its Python: schemas, backends, the type mapper, data, the font."""
+"""Find the files that ship with archgen beside its code: schemas, backends, the type mapper, examples."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 def root() -> Path:
-    """Give the folder that holds `schemas/`, `backends/`, `ros_type_mapper.yaml` and `example_ramcip/`.
+    """Return the folder with `schemas/`, `backends/`, `start/`, `ros_type_mapper.yaml` and `example_ramcip/`.
 
-    In a wheel they lie in `archgen/_data`; in a checkout, at its top.
+    It is `archgen/_data` in an installed wheel, and the top of the repository in a checkout.
     """
     packed = _PACKAGE / "_data"
     return packed if packed.is_dir() else _PACKAGE.parent
 
 
 def path(*parts: str) -> Path:
-    """Give the path of one shipped file or folder."""
+    """Return the path of a shipped file or folder."""
     return root().joinpath(*parts)

@@ -1,4 +1,4 @@
-"""Which commit a project's files stand at, read from git's objects alone: no filter, hook or pager is ever run."""
+"""The commit that a project's files are at, read from git's objects only: no filter, hook or pager is ever run."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from archgen.git.call import call
 
 
 def revision(root: Path, files: Iterable[str]) -> str:
-    """Name the last commit that touched these files (relative to `root`), with `+` if one of them differs from it.
+    """Return the short hash of the last commit that touched these files, with a `+` if one of them differs from HEAD.
 
-    Empty outside of a git repository, without git, or where nothing was committed yet.
+    Files are relative to `root`. Empty outside a git repository, without git, or if none of them was committed yet.
     """
     names = sorted(files)
     if not names:
@@ -24,7 +24,8 @@ def revision(root: Path, files: Iterable[str]) -> str:
 
 
 def _changed(root: Path, names: list[str]) -> bool:
-    """Compare the files with HEAD's blobs by hash; line ends that git converts count as equal."""
+    """Whether some file differs from HEAD's blob; differences that git's conversion of line ends makes do not count."""
+    # `git status` or `git diff` would run the filters that a repository configures: hashes are compared instead.
     listing = _git(root, "ls-tree", "-r", "-z", "HEAD", "--", *names)
     held = {
         name: words.split()[2]
@@ -35,9 +36,11 @@ def _changed(root: Path, names: list[str]) -> bool:
 
 
 def _same(file: Path, blob: str | None) -> bool:
+    """Whether a file has the content of a blob, given by its hash; a file that is not in HEAD has none."""
     if blob is None:
         return False
     data = file.read_bytes() if file.is_file() else b""
+    # A repository with the SHA-256 object format has hashes of 64 digits.
     algorithm = "sha1" if len(blob) == 40 else "sha256"  # noqa: PLR2004 - the length of a SHA-1 in hex
     return blob in {_blob(data, algorithm), _blob(data.replace(b"\r\n", b"\n"), algorithm)}
 
@@ -47,5 +50,6 @@ def _blob(data: bytes, algorithm: str) -> str:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
+    """Return the output of a git command, None if it fails."""
     done = call(root, *arguments)
     return None if done.status else done.out.decode("utf-8", "replace")

@@ -1,4 +1,4 @@
-"""One guess at what a mistyped word meant: fold case and separators first, then edit distance."""
+"""Guess what a mistyped word means: the same word but for case and separators, else the one with the fewest slips."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
 
 
 _LONGEST = 200
-"""Characters of the longest name there can be (a type's). Comparing longer words takes time and finds nothing."""
+"""The length of the longest possible name (a type's) in characters. Comparing longer words only takes time."""
 
 
 def closest(word: str, candidates: Iterable[str]) -> str | None:
-    """Give the candidate that `word` most likely stands for, or None where none is near enough.
+    """Return the candidate that `word` most likely means, or None if none is similar enough.
 
-    Near enough is one slip for every three letters. Ties go to the alphabetically first, so that the answer never
-    depends on order.
+    One slip is allowed for every three letters, and at least one. Of equally good candidates the alphabetically first
+    one wins, so that the answer does not depend on their order.
     """
     names = sorted(set(candidates))
     folded = _fold(word)
@@ -29,7 +29,7 @@ def closest(word: str, candidates: Iterable[str]) -> str | None:
     best: tuple[int, str] | None = None
     for name in names:
         if abs(len(name) - len(word)) > limit:
-            continue
+            continue  # the difference of lengths is a lower bound of the distance, and much cheaper
         distance = _distance(word, name, limit)
         if distance <= limit and (best is None or distance < best[0]):
             best = (distance, name)
@@ -37,7 +37,7 @@ def closest(word: str, candidates: Iterable[str]) -> str | None:
 
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
-    """Phrase the guess as a help line, or None where there is no guess."""
+    """Return a help line with the closest candidate, or None if there is none, or none but the word itself."""
     name = closest(word, candidates)
     return f"did you mean `{name}`?" if name is not None and name != word else None
 
@@ -47,7 +47,11 @@ def _fold(word: str) -> str:
 
 
 def _distance(a: str, b: str, limit: int) -> int:
-    """Count the slips between two words (Damerau-Levenshtein with adjacent swaps), giving up above `limit`."""
+    """Count the slips between two words; above `limit` return `limit + 1`.
+
+    This is the optimal string alignment distance: Levenshtein's, where a swap of adjacent letters counts as one slip.
+    """
+    # Three rows of the table of distances between prefixes are kept: a swap looks back two of them.
     before: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):
@@ -56,6 +60,8 @@ def _distance(a: str, b: str, limit: int) -> int:
             row[j] = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (x != y))
             if i > 1 and j > 1 and x == b[j - 2] and a[i - 2] == y:
                 row[j] = min(row[j], older[j - 2] + 1)
+        # No row can be below its predecessor's minimum, except by a swap, which builds on the row before that one. That
+        # row's minimum is at least `limit` here (it is at most 1 less than this one's), and the swap adds 1.
         if min(row) > limit:
             return limit + 1
     return row[-1]

@@ -1,4 +1,4 @@
-"""Analyses: pure functions that compute, and right below each the rule that judges."""
+"""Analyses: pure functions that compute something of an architecture, and the rules that judge the result."""
 
 from __future__ import annotations
 
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from archgen.diagnostic import Diagnostic
     from archgen.model.architecture import Architecture
 
+# A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
+# that in which rules run; findings are sorted later.
 _JUDGES = (
     *connectivity.RULES,
     *port_types.RULES,
@@ -59,16 +61,17 @@ _JUDGES = (
 )
 
 _TIMED_JUDGES = (*timing.RULES, *triggers.RULES, *load.RULES, *latency.RULES)
-"""These also take what follows from the architecture's timing, which is found once for all of them."""
+"""These also take the timing analysis of the architecture, which is computed once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))
 """All rules that judge an architecture, in the order in which they run."""
 
 
 def check(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Run all rules. The findings are neither sorted nor settled."""
+    """Run all rules and yield their raw diagnostics, neither sorted nor settled."""
     for judge, _ in _JUDGES:
         yield from judge(architecture)
+    # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
     if _is_timed(architecture):
         found = analyse(architecture, judging=True)
         for judge_timing, _ in _TIMED_JUDGES:
@@ -76,7 +79,7 @@ def check(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _is_timed(architecture: Architecture) -> bool:
-    """Say whether anybody has written anything about time yet."""
+    """Whether any node or component has a `timing`."""
     return any(node.timing for node in architecture.nodes.values()) or any(
         component.timing for component in architecture.components.values()
     )

@@ -47,15 +47,18 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     if not any(len(chain.through) > 1 for chain in architecture.chains.values()):
         return
+    # The graph of components, not of nodes: a chain can be judged before anything is mapped to nodes.
     after = graph.components(architecture).after
     readers = _readers(architecture)
     unsure = {i.component for i in architecture.inputs.values() if i.from_written and not i.connections}
     for chain in architecture.chains.values():
         for here, there in pairwise(chain.through):
+            # A chain that goes through an output leaves its component by that output only.
             starts = readers[here.id] if here.kind == "output" else _components(architecture, here)
             goals = _components(architecture, there)
             reached = graph.reach(after, starts).keys()
-            # An open reference somewhere is reported already, and may be the very step that is missing.
+            # Inputs whose `from` could not be resolved are reported already, and one of them may be the missing step:
+            # `unsure - reached` are the components with such inputs that cannot be reached from here.
             if not goals or not _components(architecture, here) or goals & reached or unsure - reached:
                 continue
             yield Diagnostic(
@@ -69,7 +72,7 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _readers(architecture: Architecture) -> Mapping[str, set[str]]:
-    """Give the components that read each output."""
+    """Return the ids of the components that read each output, by output id."""
     readers = defaultdict[str, set[str]](set)
     for edge in architecture.edges:
         readers[edge.output].add(architecture.inputs[edge.input].component)
@@ -77,7 +80,7 @@ def _readers(architecture: Architecture) -> Mapping[str, set[str]]:
 
 
 def _components(architecture: Architecture, point: Waypoint) -> set[str]:
-    """Give the components that an element of a chain belongs to."""
+    """Return the ids of the components that a chain's element belongs to."""
     if point.kind == "node":
         return set(architecture.nodes[point.id].implements)
     return {point.id if point.kind == "component" else architecture.outputs[point.id].component}

@@ -1,4 +1,4 @@
-"""Is everything joined to something? Components that nobody knows, inputs that nothing feeds, outputs that nobody reads."""
+"""Is everything connected? Isolated components, inputs that nothing feeds, outputs that nobody reads."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 
 def linked_components(architecture: Architecture) -> frozenset[str]:
-    """Give the components that a connection joins to another one, by complete id.
+    """Return the ids of all components that a connection joins to another component.
 
-    A component whose outputs are not known yet is joined by a reference to it, or to its group.
+    A component whose outputs are not known yet counts as connected if a reference names it or its group.
     """
     linked = set[str]()
     for connection in architecture.connections:
         reader = architecture.inputs[connection.input].component
         feeders = {architecture.outputs[output].component for output in connection.outputs}
         feeders.update(c.id for c in _targets(architecture, connection) if not c.outputs_known)
-        feeders.discard(reader)
+        feeders.discard(reader)  # a component that reads its own output is still connected to nobody
         if feeders:
             linked.add(reader)
             linked |= feeders
@@ -61,6 +61,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
           controller: {implements: controller}
           recorder: {implements: recorder}
     """
+    # With an unread file, what looks isolated may be connected there.
     if len(architecture.components) == 1 or architecture.partial:
         return
     linked = linked_components(architecture)
@@ -70,7 +71,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
         if not architecture.suspects.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
         ):
-            continue  # a reference that could not be resolved meant it
+            continue  # an unresolved reference, reported already, probably meant this component
         stub = not (component.inputs or component.outputs or (component.inputs_known and component.outputs_known))
         if stub and not architecture.connections:
             continue
@@ -161,7 +162,9 @@ def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
         if connection.outputs or connection.kind == "output":
             continue
         reader = architecture.inputs[connection.input].component
+        # A reference to one's own group never brings one's own outputs.
         targets = [c for c in _targets(architecture, connection) if c.id != reader]
+        # Stubs may still get outputs: the reference may turn out to bring something.
         if not all(c.outputs_known for c in targets):
             continue
         outputs = [output for c in targets for output in c.outputs.values()]
@@ -211,6 +214,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     read = {edge.output for edge in architecture.edges}
     shared = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
+    # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
         group = architecture.components[output.component].group
@@ -245,7 +249,7 @@ def _verb(architecture: Architecture, output: Output) -> str:
 
 
 def _targets(architecture: Architecture, connection: Connection) -> Iterable[Component]:
-    """Give the components whose outputs a reference stands for."""
+    """Return the components whose outputs a reference stands for; none for a reference to a single output."""
     if connection.kind == "group":
         return architecture.groups[connection.target].components.values()
     if connection.kind == "component":
@@ -258,7 +262,7 @@ def _touches_the_world(component: Component) -> bool:
 
 
 def _has_open_reference(component: Component) -> bool:
-    """Tell whether some reference could not be resolved or brings nothing: that is reported already."""
+    """Whether some reference could not be resolved or brings nothing. Both are reported by other rules."""
     return any(
         entry.from_written and not any(c.outputs for c in entry.connections) for entry in component.inputs.values()
     )

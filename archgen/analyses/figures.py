@@ -1,4 +1,4 @@
-"""Are the figures of timing plausible? What is legal, and mostly a slip."""
+"""Are the figures of timing plausible? Values that are legal, but usually a mistake."""
 
 from __future__ import annotations
 
@@ -80,10 +80,12 @@ def large_jitter(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _above_period(architecture: Architecture, key: str, name: str, rule: str) -> Iterator[Diagnostic]:
-    """Compare a figure with the period, where both are written. What a node writes for several components counts once."""
+    """Yield a finding for each figure (by its key in `Timing`) that is above the period, if both are written."""
+    # A node that implements several components may have one `timing` for all of them: the same span comes up again.
     said: set[Span] = set()
     for node in architecture.nodes.values():
         for timing in node.timing.values():
+            # `key` is an attribute of `Timing` and the key in the YAML (and in `places`) alike.
             quantity: Quantity | None = getattr(timing, key)
             period = _period(timing)
             if quantity and period and quantity.value > period and timing.places[key] not in said:
@@ -96,7 +98,7 @@ def _above_period(architecture: Architecture, key: str, name: str, rule: str) ->
 
 
 def _period(timing: Timing) -> Fraction | None:
-    """Give the period in ns, where it is written as such or as a rate."""
+    """Return the period in ns, written as such or as a rate; None if neither is written."""
     if timing.period:
         return timing.period.value
     return _NS / timing.rate.value if timing.rate else None

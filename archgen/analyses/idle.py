@@ -1,4 +1,4 @@
-"""Is anything written of timing that cannot have an effect?"""
+"""Is any key of timing without effect?"""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from archgen.source import Span
 
 _FIRED = ("trigger", "every", "throttle")
-"""What says something of how inputs fire."""
+"""Keys that say how inputs trigger an activity: attributes of `Timing`, and keys of its `places`."""
+# Behaviours that inputs do not trigger, each with the reason and the help of its finding.
 _BY_ITSELF = {
     "periodic": ("its period fires it", "leave it out, or write `behaviour: event` where inputs are to fire it"),
     "once": ("it works once, at the start", "leave it out"),
@@ -55,6 +56,7 @@ def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
           viewer: {implements: viewer, timing: {behaviour: event, every: 2}}
     """
     uses = _uses(architecture)
+    # One `timing` may stand for several components of a node: its faults are reported once.
     said: set[Span] = set()
     for node in architecture.nodes.values():
         for timing in node.timing.values():
@@ -65,14 +67,16 @@ def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
-    """Give how each node uses each port."""
+    """Return how each node uses each port ("publishes", ..., "unknown" without a message), by node id and port id."""
     found = defaultdict[tuple[str, str], set[str]](set)
     for end in architecture.endpoints:
+        # Without a message nobody knows yet whether it will be a topic or a service: no `calls` is idle then.
         found[end.node, end.port or end.name].add(end.use if end.message else "unknown")
     return found
 
 
 def _fired(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    # As timing infers it: who states a rate and no behaviour is periodic.
     stated = timing.period is not None or timing.rate is not None
     behaviour = timing.behaviour or ("periodic" if stated else None)
     if behaviour not in _BY_ITSELF:
@@ -93,6 +97,7 @@ def _called(node: Node, timing: Timing, uses: Mapping[tuple[str, str], set[str]]
             yield Diagnostic(
                 "idle-timing",
                 f"`calls` of `{node.id}` has no effect for `{port}`: it is a topic, which nobody calls",
+                # The linker records the span of each entry below `calls` as `calls PORT`.
                 timing.places.get(f"calls {port}", timing.places.get("calls", timing.at)),
                 help="`calls` counts calls of services and actions; of a topic, `every` takes each n-th message",
                 element=node.id,
@@ -140,6 +145,7 @@ def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
         host = architecture.hosts.get(node.host or "")
         for timing in node.timing.values():
             place = timing.places.get("core")
+            # A host that does not say how many cores it has is judged by nobody.
             if host is None or host.cores is None or timing.core is None or place is None or place in said:
                 continue
             if timing.core >= host.cores:

@@ -72,6 +72,8 @@ def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagn
 
 
 def _said(bound: Value) -> str:
+    """Format a bound on a latency (ns), with what makes it unbounded or incomplete."""
+    # `missed` returns only chains whose bound is exceeded, so that None here means unbounded, never unknown.
     if bound.value is None:
         return "any time, for a host is overloaded" if "overload" in bound.assumptions else "any time"
     more = "" if known(bound) else " and more, for not all of its figures are known"
@@ -79,11 +81,13 @@ def _said(bound: Value) -> str:
 
 
 def _weight(term: Term) -> tuple[bool, object]:
+    """Return a sort key: unbounded terms above all others, then the known parts of the sum (ns)."""
     endless = boundless(term.sampling) or boundless(term.response)
     return (endless, sum((v.value for v in (term.sampling, term.response, term.link) if v.value is not None), 0))
 
 
 def _part(term: Term) -> str:
+    """Format a term of a chain as its waiting, its response and its link; parts of 0 are left out."""
     parts = (("waits", term.sampling), ("takes", term.response), ("link", term.link))
     said = [
         f"{word} {wording.duration(value.value) if value.value is not None else wording.reason(value)}"

@@ -1,4 +1,4 @@
-"""Do computers, networks and servers manage what is asked of them?"""
+"""Can hosts, links and servers carry their load?"""
 
 from __future__ import annotations
 
@@ -53,15 +53,17 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
     """
     for host, load in found.hosts.items():
         for place, cores, used in load.places:
-            # What is just full may do.
+            # A utilisation of exactly 1 can be schedulable (strictly periodic, fixed priorities), so the host's verdict
+            # decides; the utilisation says which of its cores it is about.
             if used.value is not None and used.value >= cores and load.verdict == "overload":
                 yield _overload(architecture, found, host, load, (place, cores, used.value))
     yield from _overloaded_containers(architecture, found)
+    # An activity may overload a core by itself on a host whose cores are enough in total, or without any host.
     full = {host for host, load in found.hosts.items() if load.verdict == "overload"}
     for name, pace in found.paces.items():
         activity = found.system.activities[name]
         alone = share(found.system, name, pace).value
-        # Where a period is written, `long-execution` says so.
+        # A period that is written is compared with the execution time by `long-execution`: one slip, one finding.
         if activity.period is None and alone is not None and alone >= 1 and activity.host not in full:
             yield Diagnostic(
                 "overloaded-host",
@@ -73,7 +75,8 @@ def overloaded_host(architecture: Architecture, found: Analysis) -> Iterator[Dia
 
 
 def _overloaded_containers(architecture: Architecture, found: Analysis) -> Iterator[Diagnostic]:
-    """Look at containers without a host whose members share fewer threads than they are."""
+    """Yield a finding for each overloaded container that has no host and fewer threads than members."""
+    # With a host, the host's utilisation counts the members already.
     for name, members in homeless(found.system).items():
         threads = found.system.threads.get(name) or 1
         used = total(share(found.system, one.id, found.paces[one.id]) for one in members).value
@@ -91,6 +94,7 @@ def _overloaded_containers(architecture: Architecture, found: Analysis) -> Itera
 def _overload(
     architecture: Architecture, found: Analysis, host: str, load: HostLoad, place: tuple[str, int, Fraction]
 ) -> Diagnostic:
+    """Report an overloaded host, or the cores of it that `place` names: (name, number of cores, utilisation)."""
     name, cores, used = place
     parts = sorted(((v.value or Fraction(0), part) for part, v in load.parts), key=lambda p: -p[0])
     heaviest = found.system.activities[parts[0][1]]
@@ -107,6 +111,7 @@ def _overload(
 
 
 def _cores(count: int) -> str:
+    """Format a number of cores with its possessive: "its 4 cores"."""
     return "its core" if count == 1 else f"its {count} cores"
 
 
@@ -140,10 +145,11 @@ def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diag
         component = architecture.components.get(activity.component or "")
         worst = found.responses[activity.id].worst.value
         if component is None or worst is None:
-            continue  # an overload is reported as such
+            continue  # unknown, or unbounded by an overload, which `overloaded-host` reports
         for indicator in component.performance:
             asked = indicator.execution_time
             if asked is not None and worst > asked.value:
+                # Whether the activity alone is too slow, or what runs beside it makes it so: `wcet` is in ticks.
                 alone = activity.response is not None or worst == (activity.wcet or 0) * found.system.tick
                 yield _slow(component, indicator, activity, worst, alone=alone)
 
@@ -151,6 +157,7 @@ def slow_component(architecture: Architecture, found: Analysis) -> Iterator[Diag
 def _slow(
     component: Component, indicator: Indicator, activity: Activity, worst: Fraction, *, alone: bool
 ) -> Diagnostic:
+    """Report a response that is above the required execution time, both in ns."""
     place = activity.places.get("wcet" if activity.response is None else "response", activity.at)
     others = "" if alone or activity.host is None else f" with all that works on `{activity.host}`"
     return Diagnostic(
@@ -248,6 +255,7 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
         seen.add((arc.source, arc.target))
         load, caller = found.services[arc.target], found.system.activities[arc.source]
         waited = load.waits[caller.id].value
+        # Only periodic callers can be late for their own next activation.
         if waited is None or caller.period is None:
             continue
         there_is = caller.period * found.system.tick
@@ -259,6 +267,7 @@ def slow_service(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
 def _late(
     load: ServiceLoad, caller: Activity, server: Activity, times: tuple[Fraction, Fraction], place: Span
 ) -> Diagnostic:
+    """Report a caller that waits longer than its period; `times` are both, in ns, in this order."""
     several = f", with {len(load.callers)} callers" if len(load.callers) > 1 else ""
     return Diagnostic(
         "slow-service",

@@ -1,4 +1,4 @@
-"""Does the low level carry the whole high level? Components without nodes, nodes without components, ports nobody takes."""
+"""Do nodes cover the components? Components without nodes, nodes without components, ports that no node takes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, ...]]:
-    """Give the nodes that somebody wrote, by the complete id of the component that they implement."""
+    """Return the nodes that implement each component, by component id, without planned nodes that archgen adds."""
     found: dict[str, list[Node]] = defaultdict(list)
     for node in architecture.nodes.values():
         if node.written:
@@ -50,6 +50,7 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
           camera_driver: {implements: camera}
           image_view: {implements: screen}
     """
+    # The node may be in the file that could not be read.
     if architecture.partial:
         return
     nodes = nodes_of_components(architecture)
@@ -92,6 +93,7 @@ def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
           image_view: {implements: screen}
     """
     for node in architecture.nodes.values():
+        # `implements` that resolves to nothing is reported by the linker.
         if node.written and not node.implements and not node.implements_written:
             yield Diagnostic(
                 "unjustified-node",
@@ -188,13 +190,15 @@ def unsubscribed_input(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _shared_components(architecture: Architecture) -> Iterator[tuple[Component, tuple[Node, ...], frozenset[str]]]:
-    """Give each component that several nodes implement, with them and the ports that they carry."""
+    """Yield each component that several nodes implement, those nodes, and the ids of all ports that nodes carry."""
     if architecture.partial:
         return
+    # A component with one node is never looked at: that node carries all of its ports by definition.
     several = {component: nodes for component, nodes in nodes_of_components(architecture).items() if len(nodes) > 1}
     endpoints = {e.port for e in architecture.endpoints if e.component in several and e.port}
     for component, nodes in several.items():
         named = {use.port for node in nodes for use in node.uses if use.port}
+        # What an unresolved reference probably meant counts as carried, since the reference itself is reported.
         yield architecture.components[component], nodes, frozenset(named | endpoints) | architecture.suspects
 
 

@@ -1,4 +1,4 @@
-"""Messages: whether they exist, and whether every topic carries only one."""
+"""Do the messages, services and actions exist, and does every topic carry only one message?"""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _KIND = {"topic": "message", "service": "service", "action": "action"}
 
 
 class Mention(NamedTuple):
-    """One place where the project writes a message, and the element that it stands in."""
+    """A message as the project writes it, where, and the id of the element that it belongs to."""
 
     message: str
     at: Span
@@ -26,9 +26,9 @@ class Mention(NamedTuple):
 
 
 def mentions(architecture: Architecture) -> Iterator[Mention]:
-    """Give every place where somebody wrote a message, once; not those that are planned.
+    """Yield every mention of a message written in the project, once for each span, without planned messages.
 
-    A planned message is planned wherever it is written: the type says so for all.
+    A message is planned wherever it is mentioned if one type with `status: planned` maps to it.
     """
     planned = {type_.message for type_ in architecture.types.values() if type_.status == "planned"}
     seen = set[Span]()
@@ -40,9 +40,11 @@ def mentions(architecture: Architecture) -> Iterator[Mention]:
 
 def _written(architecture: Architecture) -> Iterator[Mention]:
     ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
+    # Reversed, so that the first port of each type wins, and outputs win over inputs.
     used_at = {port.type: port.type_at for port in reversed(ports)}
     for type_ in architecture.types.values():
         if type_.message is not None and type_.origin != "shipped":
+            # A type that is itself a message (`type: std_msgs/msg/String`) has no declaration: the port is its place.
             at = _first(type_.message_at, type_.at, used_at.get(type_.name, NOWHERE))
             yield Mention(type_.message, at, type_.name)
     for node in architecture.nodes.values():
@@ -52,7 +54,7 @@ def _written(architecture: Architecture) -> Iterator[Mention]:
 
 
 def _first(*places: Span) -> Span:
-    """Give the first place that somebody wrote."""
+    """Return the first span that is not `NO_SPAN`, or `NO_SPAN`."""
     return next((place for place in places if place != NOWHERE), NOWHERE)
 
 
@@ -149,7 +151,7 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     interfaces = architecture.interfaces
     if interfaces.distro is not None and not interfaces.held:
-        return  # `unknown_distro` says it once
+        return  # `unknown-distro` reports that nothing is checked, once instead of for each message
     for message, at, element in _answered(architecture, "not held"):
         yield Diagnostic(
             "unchecked-message",
@@ -161,7 +163,7 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _unheld(message: str, interfaces: Interfaces) -> str:
-    """Say why a name cannot be judged."""
+    """Explain why it is not known whether a message exists."""
     package = message.partition("/")[0]
     if interfaces.distro is None:
         return "the project names no distribution (`ros: {distro: jazzy}`)"
@@ -176,14 +178,14 @@ def _meant(message: str, interfaces: Interfaces) -> str | None:
 
 
 def _slip(message: str, interfaces: Interfaces) -> str | None:
-    """Guess as above, but a namesake in a package of quite another name is no guess: the name may well be right."""
+    """Suggest an interface whose package has nearly the same name, else nothing: the name may well be right."""
     guess = interfaces.nearest(message)
     near = guess and closest(message.partition("/")[0], [guess.partition("/")[0]])
     return f"did you mean `{guess}`?" if near else None
 
 
 def _later(message: str, interfaces: Interfaces) -> str:
-    """Say what to do about a name that is right, but not there yet."""
+    """Suggest how to declare a message that is named correctly, but does not exist yet."""
     package, kind, name = message.split("/")
     planned = "if it is still to be defined, write `status: planned` at its type"
     if package in interfaces.project_packages:
@@ -192,7 +194,7 @@ def _later(message: str, interfaces: Interfaces) -> str:
 
 
 def _define(message: str) -> str:
-    """Say how the project makes a message known."""
+    """Suggest a file that defines a message, and the setting that makes archgen read it."""
     package, kind, name = message.split("/")
     file = f"msgs/{package}/{kind}/{name}.{kind}"
     return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
@@ -231,6 +233,7 @@ def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
     for topic in architecture.topics.values():
         users = _first_users((*topic.writers, *topic.readers))
         if len(users) > 1:
+            # The finding is placed at the second user: the first one set the message, the second one deviates from it.
             first, second = list(users.values())[:2]
             labels = (
                 Label(_place(user, architecture), f"`{user.message}` here, by the node `{user.node}`")
@@ -250,7 +253,7 @@ def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _first_users(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
-    """Give the first endpoint for each message that a name carries."""
+    """Return the first endpoint that uses each message, by message, in the order of the endpoints."""
     found = dict[str, Endpoint]()
     for endpoint in endpoints:
         if endpoint.message is not None:
@@ -259,7 +262,7 @@ def _first_users(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
 
 
 def _place(endpoint: Endpoint, architecture: Architecture) -> Span:
-    """Give where an endpoint's message comes from: it was written, or its port has it, or its node stands there."""
+    """Return the span where an endpoint's message was written, else its endpoint's, its port's or its node's."""
     port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
     node = architecture.nodes.get(endpoint.node)
     return _first(

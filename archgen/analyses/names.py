@@ -1,4 +1,4 @@
-"""Are the names of nodes, namespaces, topics and services names that ROS accepts, and is each node's name its own?"""
+"""Does ROS accept the names of nodes, namespaces, topics and services, and is every node's name unique?"""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SUBSTITUTION = re.compile(r"\{(?:node|ns|namespace)\}")
 
 
 def name_fault(text: str, *, ros_1: bool = False) -> str | None:
-    """Say what is wrong with the name of a topic, service or namespace, or give None.
+    """Return what is wrong with the name of a topic, service or namespace, or None.
 
     The rules are those of https://design.ros2.org/articles/topic_and_service_names.html as far as ROS 2 enforces them, and
     of http://wiki.ros.org/Names for ROS 1, where only the first letter of the whole name must not be a digit.
@@ -36,6 +36,7 @@ def name_fault(text: str, *, ros_1: bool = False) -> str | None:
         return None
     if rest.endswith("/"):
         return "it ends with `/`"
+    # Substitutions such as `{node}` are replaced by a valid name; other braces remain and are reported.
     tokens = _SUBSTITUTION.sub("x", rest.removeprefix("/")).split("/")
     for position, token in enumerate(tokens):
         fault = _token_fault(token, digit_first=ros_1 and (position > 0 or rest.startswith("/")))
@@ -45,7 +46,7 @@ def name_fault(text: str, *, ros_1: bool = False) -> str | None:
 
 
 def node_name_fault(name: str) -> str | None:
-    """Say what is wrong with a node's name, or give None."""
+    """Return what is wrong with a node's name, or None."""
     if "/" in name:
         return "it holds `/`: what stands before the name belongs into `namespace`"
     return _token_fault(name, digit_first=False) if name else "it is empty"
@@ -101,6 +102,7 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
             yield _invalid(node, "a namespace", node.namespace, node.at, fault)
         for use in node.uses:
             sort = "a topic" if use.use in {"publishes", "subscribes"} else "a service or action"
+            # Only the linker fills in `topic_places`, one span for each topic.
             places = use.topic_places or (use.at,) * len(use.topics)
             for topic, place in zip(use.topics, places, strict=True):
                 fault = "it is only a `/`" if topic == "/" else name_fault(topic, ros_1=ros_1)
@@ -114,6 +116,7 @@ def _invalid(node: Node, sort: str, name: str, place: Span, fault: str) -> Diagn
 
 
 def _place(node: Node) -> Span:
+    """Return the span of a node's `name`, else of the node."""
     return node.at if node.name_at == NOWHERE else node.name_at
 
 

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 def forbidden_flows(
     architecture: Architecture, tails: Collection[str], heads: Collection[str]
 ) -> Iterator[tuple[Connection, tuple[str, ...]]]:
-    """Give the connections along which something flows directly from one of `tails` to one of `heads`, and their outputs.
+    """Yield each connection that carries data directly from a sender to a receiver, with the outputs that do.
 
-    A service or action carries data both ways: from its client to its server, and back. What a component sends itself is
-    no flow.
+    Senders and receivers are complete ids of components. A service or action carries data both ways: from its client to
+    its server, and back. What a component sends to itself does not count.
     """
     both_ways = {o.id for o in architecture.outputs.values() if flow_of(architecture.message(o)) != "topic"}
     for connection in architecture.connections:
@@ -76,6 +76,7 @@ def forbidden_flow(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     selecting = Selecting(architecture)
     for policy in architecture.policies.values():
+        # A selector with an error selects nothing, and `wrong-selector` reports it.
         tails, _ = selecting.select(policy.forbid_from) if policy.forbid_from else (None, ())
         heads, _ = selecting.select(policy.forbid_to) if policy.forbid_to else (None, ())
         if tails and heads:

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def fits(architecture: Architecture, expected: str, output: Output) -> bool:
-    """Tell whether an output sends what an input expects. An output whose type is not known yet does.
+    """Whether an output sends the type that an input expects. An output without a type does.
 
-    Conceptual types are compared by name: two that travel in the same message still mean different things. Where one of
-    them is written as a message, the messages are compared. A caller may expect a service, or a type inside it.
+    Conceptual types are compared by name: two types with the same message still mean different things. If one of them
+    is written as a message, the messages are compared. A caller may expect a service's type, or a type inside it.
     """
     sent = output.type
     if sent is None or sent == expected:
@@ -26,6 +26,7 @@ def fits(architecture: Architecture, expected: str, output: Output) -> bool:
     mapped = architecture.types.get(sent)
     if full_message(expected) or full_message(sent):
         messages = {_message(architecture, expected), _message(architecture, sent)}
+        # A type that is not mapped yet may still be mapped to this message.
         return None in messages or len(messages) == 1
     if mapped is None or flow_of(mapped.message) == "topic":
         return False
@@ -133,6 +134,7 @@ def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _help(architecture: Architecture, expected: str, output: Output) -> str | None:
+    """Suggest to use one name where both types have the same message."""
     messages = {_message(architecture, expected), architecture.message(output)}
     if len(messages) == 1 and None not in messages:
         return f"both travel as `{messages.pop()}`, but are two types: use one name if they mean the same"
@@ -140,6 +142,7 @@ def _help(architecture: Architecture, expected: str, output: Output) -> str | No
 
 
 def _message(architecture: Architecture, name: str) -> str | None:
+    """Return the message of a conceptual type, or of a type that is itself the name of a message; None if unmapped."""
     mapped = architecture.types.get(name)
     return (mapped.message if mapped else None) or full_message(name)
 

@@ -1,4 +1,4 @@
-"""What is still blank: the note that lists what a component lacks."""
+"""What does a component still lack?"""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ if TYPE_CHECKING:
 
 
 def missing_details(architecture: Architecture, component: Component, *, timed: bool) -> Iterator[str]:
-    """Name what nobody has written about a component yet, in the order in which it is usually filled in.
+    """Yield what is still missing of a component, in the order in which it is usually filled in.
 
-    `inputs: {}` and `requirements: []` are answers. A source is not asked for inputs, nor a sink for outputs.
+    `inputs: {}` and `requirements: []` are answers. A source needs no inputs, a sink no outputs.
     """
     if not component.functionality:
         yield "functionality"
+    # A project without partners has nobody who could be the owner.
     if architecture.partners and component.owner is None:
         yield "owner"
     if not component.requirements_known:
@@ -89,6 +90,7 @@ def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera}
           screen: {implements: screen}
     """
+    # Timing may be written on the component or on any of its nodes.
     timed = {component for node in architecture.nodes.values() for component in node.timing}
     for component in architecture.components.values():
         missing = list(missing_details(architecture, component, timed=bool(component.timing) or component.id in timed))
@@ -102,6 +104,7 @@ def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _listed(words: list[str]) -> str:
+    """Join words as in "a, b and c"."""
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 

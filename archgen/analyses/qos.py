@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Clash(NamedTuple):
-    """One policy in which an offer falls short of a request, each in words, and what would be needed."""
+    """A QoS policy whose offered value does not satisfy the requested one; all parts are phrases for a message."""
 
     policy: str
     requested: str
@@ -28,7 +28,7 @@ class Clash(NamedTuple):
 
 
 def clashes(offered: Qos, requested: Qos) -> Iterator[Clash]:
-    """Compare an offer with a request: reliability, durability, deadline, liveliness and lease duration.
+    """Yield the conflicts between offered and requested reliability, durability, deadline, liveliness, lease duration.
 
     History, depth and lifespan never conflict. A duration of zero means "not given", as in ROS. The rules are those of
     https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html#qos-compatibilities.
@@ -104,12 +104,13 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
             continue
         for writer in topic.writers:
             for reader in topic.readers:
-                # Nobody has decided anything about a node that archgen itself put in.
+                # Planned nodes that archgen adds have no decided QoS that could conflict.
                 if architecture.nodes[writer.node].written and architecture.nodes[reader.node].written:
                     yield from _judge(architecture, topic, writer, reader)
 
 
 def _judge(architecture: Architecture, topic: Topic, writer: Endpoint, reader: Endpoint) -> Iterator[Diagnostic]:
+    """Report all conflicts between a publisher and a subscriber in one diagnostic."""
     found = tuple(clashes(writer.qos, reader.qos))
     if not found:
         return
@@ -128,7 +129,7 @@ def _judge(architecture: Architecture, topic: Topic, writer: Endpoint, reader: E
 
 
 def _assumption(endpoint: Endpoint) -> str:
-    """Say what is not certain about one side's settings."""
+    """Describe what is assumed about one side's settings; empty if all of it is written."""
     if not endpoint.qos.written:
         return f" (`{endpoint.node}` leaves `qos` out, so the profile `default` counts)"
     if endpoint.qos.profile == "system_default":
@@ -137,7 +138,7 @@ def _assumption(endpoint: Endpoint) -> str:
 
 
 def _place(architecture: Architecture, endpoint: Endpoint) -> Span:
-    """Give where the settings were written, or else the topic, or the node that leaves both out."""
+    """Return the span of an endpoint's QoS settings, else of its entry, else of its node."""
     written = (endpoint.qos.at, endpoint.at)
     return next((at for at in written if at != NOWHERE), architecture.nodes[endpoint.node].at)
 
@@ -147,7 +148,7 @@ def _given(duration: Quantity | None) -> bool:
 
 
 def _later(offered: Quantity | None, requested: Quantity | None) -> bool:
-    """Tell whether an offered duration is longer than the requested one; not given is endless."""
+    """Whether an offered duration is longer than the requested one; a duration that is not given is infinite."""
     if requested is None or not _given(requested):
         return False
     value: Fraction | None = offered.value if offered and _given(offered) else None

@@ -1,4 +1,4 @@
-"""Does every requirement have a component that serves it, and every component a requirement?"""
+"""Is every requirement served by a component, and does every component serve a requirement?"""
 
 from __future__ import annotations
 
@@ -50,12 +50,13 @@ def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
                 yield _unknown(architecture, use.text, use.at, component.id)
     for chain in architecture.chains.values():
         for requirement in chain.requirements:
+            # Unlike a component's, a chain's requirements do not say which of them are sentences: these have blanks.
             if not _is_declared(architecture, requirement) and " " not in requirement:
                 yield _unknown(architecture, requirement, chain.at, chain.id)
 
 
 def _is_declared(architecture: Architecture, requirement: str) -> bool:
-    """Say whether a requirement is there, or may be in what could not be read."""
+    """Whether a requirement is declared, or may be declared in what could not be read."""
     return requirement in architecture.requirements or requirement in architecture.lost
 
 
@@ -100,7 +101,7 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     named = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
     named.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
-    # A slip in an id is reported as such, and not once more as a requirement that nobody serves.
+    # A misspelt id is reported by `unknown-requirement`; the requirement that it means is not reported once more.
     meant = {closest(text, architecture.requirements) for text in named if text not in architecture.requirements}
     for requirement in architecture.requirements.values():
         if requirement.id not in named and requirement.id not in meant:

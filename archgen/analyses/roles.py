@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What a component's ports show of its role.
+    """The properties of a component's ports that its role depends on.
 
-    `fed` counts data from other components, not the answers to calls that it makes. `maybe_fed` is an input whose source is
-    missing or could not be resolved, `maybe_serves` an output whose message nobody named: both may turn out either way.
+    `is_fed`: an input takes data from another component; answers to the component's own calls do not count.
+    `may_be_fed`: an input's source is missing or could not be resolved. `may_serve_calls`: the message of an output is
+    unknown, so that it may be a service.
     """
 
     outputs: bool
@@ -37,7 +38,7 @@ class Shape:
 
 
 def shape(architecture: Architecture, component: Component) -> Shape:
-    """Look at a component's ports."""
+    """Summarise the properties of a component's ports that its role depends on."""
     outputs = component.outputs.values()
     flows = [flow_of(architecture.message(o)) for o in outputs if not o.physical]
     open_inputs = [i for i in component.inputs.values() if not (i.connections or i.external or i.optional)]
@@ -107,14 +108,15 @@ def role_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _fault(role: str, seen: Shape) -> str | None:
-    """Say what speaks against a role, or None."""
+    """Return what contradicts a role, or None."""
     return next((fault for fits, fault in _demands(role, seen) if not fits), None)
 
 
 def _demands(role: str, seen: Shape) -> tuple[tuple[bool, str], ...]:
-    """Give what a role asks for, each with what to say where it is not so."""
+    """Return the conditions of a role, each with the fault to report where it does not hold."""
     if role == "source":
         return ((seen.outputs, "it has no output"), (not seen.fed, "it takes data from another component"))
+    # From here on what may still turn out either way counts in the component's favour.
     serves = seen.serves or seen.maybe_serves
     if role == "reactive":
         return ((serves, "it serves no service and no action"),)
@@ -131,14 +133,14 @@ def _demands(role: str, seen: Shape) -> tuple[tuple[bool, str], ...]:
 
 
 def _from_inside(architecture: Architecture, component: Component, connection: Connection) -> bool:
-    """Tell whether a reference brings data from another component, a call's answer apart."""
+    """Whether a reference brings data from another component; answers to calls do not count."""
     if connection.kind == "output":
         output = architecture.outputs[connection.target]
         flow = "topic" if output.physical else flow_of(architecture.message(output))
         return output.component != component.id and flow == "topic"
     if connection.outputs:
         return any(architecture.outputs[o].component != component.id for o in connection.outputs)
-    # Nothing came of it yet: a stub in another component will bring data, the component itself will not.
+    # It brings nothing yet. A stub of another component will bring data once it has outputs; no component feeds itself.
     return connection.target != component.id
 
 

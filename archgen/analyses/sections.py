@@ -1,4 +1,4 @@
-"""Does each port of a node stand in the section that its message asks for: a topic, or a service or action?"""
+"""Is each port of a node listed in the section that fits its message: as a topic, or as a service or action?"""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.model.node import Flow, PortUse
 
+# The section where an entry belongs, by the section where it is written: the direction (out, in) stays the same.
 _TOPIC_SECTION = {"publishes": "publishes", "serves": "publishes", "subscribes": "subscribes", "calls": "subscribes"}
 _SERVICE_SECTION = {"publishes": "serves", "serves": "serves", "subscribes": "calls", "calls": "calls"}
 _ARTICLES: Mapping[Flow, str] = {"topic": "a topic", "service": "a service", "action": "an action"}
@@ -61,13 +62,15 @@ def wrong_section(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _fault(architecture: Architecture, flows: Mapping[str, set[Flow]], use: PortUse) -> tuple[str, str] | None:
-    """Say what is wrong with an entry and what to do, or give None."""
+    """Return what is wrong with an entry and what to do about it, or None."""
     port = architecture.outputs.get(use.port or "") or architecture.inputs.get(use.port or "")
     if port and port.physical:
         return (
             f"is physical and does not stand below `{use.use}`",
             "leave it out: physical ports have neither topic nor message",
         )
+    # A message that the node itself names outranks those of the port. An input may have sources of several kinds: then
+    # any of their sections will do.
     there = {flow_of(use.message)} if use.message else flows.get(use.port or "", set())
     right = {(_TOPIC_SECTION if flow == "topic" else _SERVICE_SECTION)[use.use] for flow in there}
     if not there or use.use in right:
@@ -78,7 +81,7 @@ def _fault(architecture: Architecture, flows: Mapping[str, set[Flow]], use: Port
 
 
 def _flows_of_ports(architecture: Architecture) -> Mapping[str, set[Flow]]:
-    """Give what flows through each output and input, as far as messages are named."""
+    """Return what flows through each port (topic, service, action) as far as messages are known, by port id."""
     flows: dict[str, set[Flow]] = defaultdict(set)
     for output in architecture.outputs.values():
         message = architecture.message(output)

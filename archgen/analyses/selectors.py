@@ -1,4 +1,4 @@
-"""Do the selectors of views and policies name something?"""
+"""Do the selectors of views and policies select something?"""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Written(NamedTuple):
-    """A selector that stands in the project: whose it is, as words and by id, its text and its place."""
+    """A selector written in the project: its view or policy (as a phrase, and by id), its text and its span."""
 
     whose: str
     element: str
@@ -25,7 +25,7 @@ class Written(NamedTuple):
 
 
 def written_selectors(architecture: Architecture) -> Iterator[Written]:
-    """Give all selectors of views and policies."""
+    """Yield all selectors of views and policies, except empty ones."""
     for view in architecture.views.values():
         if view.show:
             yield Written(f"the view `{view.id}`", view.id, view.show, view.show_at)
@@ -65,13 +65,14 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
         views:
           eyes: {show: "camera+1"}
     """
+    # One evaluator for all selectors: its look-ups (paths, graphs) are made once, when first needed.
     selecting = Selecting(architecture)
     for written in written_selectors(architecture):
         for problem in selecting.select(written.text)[1]:
             if problem.severity == "warning" and "finding:" in written.text[problem.start : problem.end]:
-                continue  # what is found stands only behind the rules
+                continue  # rules see no findings yet, so `finding:` selects nothing here
             if _is_lost(architecture, written.text[problem.start : problem.end]):
-                continue  # where it may be declared, something else is reported
+                continue  # it may be declared in what could not be read, which is reported already
             yield Diagnostic(
                 "wrong-selector",
                 f"in the selector of {written.whose}: {problem.message}",
@@ -128,14 +129,18 @@ def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _is_lost(architecture: Architecture, path: str) -> bool:
+    """Whether something that a path, key or pattern names may be in what could not be read."""
+    # The last two parts of a path are the element's key and its parent's.
     return not architecture.lost.isdisjoint(path.split(".")[-2:]) or (
         architecture.partial and ("*" in path or ":" in path)
     )
 
 
 def _place(written: Written, problem: Problem) -> Span:
-    """Point at the part of the selector, where it stands in one line as it was written (quoted or not)."""
+    """Return the span of the part of a selector that a problem is about, else of the whole selector."""
     at = written.at
+    # The span includes quotes if there are any: it is longer than the text by 0 or 2 columns. Anything else (escapes,
+    # several lines) does not map to columns of the text.
     quotes = at.end_column - at.column - len(written.text)
     if at.line != at.end_line or quotes not in {0, 2}:
         return at

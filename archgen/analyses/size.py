@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """Counts, and means as exact fractions (0 where there is nothing to divide by).
+    """Counts of elements, and means as exact fractions (0 if there is nothing to divide by).
 
     `connections` are references as written, `edges` the pairs of output and input that they make. A connection is mapped
-    when the messages of all that it carries are named (a planned message counts); a physical one needs none. `nodes` are
-    those that somebody wrote, `planned_nodes` those that stand in for a component without any. `messages` are distinct.
+    if all outputs that it carries have a message (a planned message counts); physical outputs need none. `nodes` are
+    those written in the project, `planned_nodes` those that archgen adds. `messages` are distinct names.
     """
 
     groups: int
@@ -56,15 +56,15 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How many of a set of components have each thing written.
+    """How many of a set of components have each kind of information.
 
-    `described`: a functionality. `typed`: at least one port, and a type for each output. `mapped`: a node, written by
-    somebody. `timed`: a timing, on the component or on every node that implements it. `traced`: a declared requirement.
+    `described`: a functionality. `typed`: at least one port, and a type for each output. `mapped`: a node written in
+    the project. `timed`: a timing, on the component or on all of its nodes. `traced`: a declared requirement.
     """
 
     scope: Literal["project", "group", "partner"]
     id: str
-    """The group's or partner's id; the project's for the whole; empty for the components that nobody owns."""
+    """The id of the project, group or partner; empty for the components without an owner."""
     title: str
     components: int
     described: int
@@ -75,7 +75,8 @@ class Progress:
 
 
 def size(architecture: Architecture) -> Size:
-    """Count everything."""
+    """Count the elements of each kind."""
+    # The field names are keys of `archgen stats --format json` (through `asdict`) and of views/statistics.
     a = architecture
     components, groups = len(a.components), len(a.groups)
     flows = [topic.flow for topic in a.topics.values()]
@@ -113,14 +114,15 @@ def size(architecture: Architecture) -> Size:
 
 
 def mapped_connections(architecture: Architecture) -> int:
-    """Count the connections whose messages are all named, by a type or by the node that publishes them."""
+    """Count the connections whose outputs all have a message, from their type or from the node that publishes them."""
     named = {e.port for e in architecture.endpoints if e.message and e.use in {"publishes", "serves"}}
     named.update(o.id for o in architecture.outputs.values() if o.physical or architecture.message(o))
     return sum(bool(c.outputs) and named.issuperset(c.outputs) for c in architecture.connections)
 
 
 def progress(architecture: Architecture) -> tuple[Progress, ...]:
-    """Measure the whole, then each group, then each partner, and at last what nobody owns while others have owners."""
+    """Count for the project, each group, each partner, and (if there are partners) the components without an owner."""
+    # For each component, one entry for each of its written nodes: whether that node has a timing for it.
     nodes_of = defaultdict[str, list[bool]](list)
     for node in architecture.nodes.values():
         for component in node.implements if node.written else ():
@@ -162,6 +164,7 @@ def _typed(component: Component) -> bool:
 
 
 def _messages(architecture: Architecture) -> set[str]:
+    """Return the full names of all messages that topics or outputs carry."""
     used = {message for topic in architecture.topics.values() for message in topic.messages}
     return used | {m for o in architecture.outputs.values() if (m := architecture.message(o))}
 

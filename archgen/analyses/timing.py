@@ -1,4 +1,4 @@
-"""Do rates fit: what elements state and what their inputs give, what is sent and what is read?"""
+"""Are rates consistent: what elements state and what their inputs give, what is sent and what is read?"""
 
 from __future__ import annotations
 
@@ -63,6 +63,8 @@ def period_conflict(architecture: Architecture, found: Analysis) -> Iterator[Dia
             help="leave the rate out, or correct it; `behaviour: periodic` if a timer decides",
             element=name,
         )
+    # A component with one node has one timing, written in either place. With several nodes its timing is a claim about
+    # the whole, which no node inherits: it is compared with what the nodes publish.
     shared = Counter(component for node in architecture.nodes.values() for component in node.implements)
     for component in architecture.components.values():
         if component.timing and shared[component.id] > 1:
@@ -70,7 +72,7 @@ def period_conflict(architecture: Architecture, found: Analysis) -> Iterator[Dia
 
 
 def _differs(stated: Fraction, derived: Value) -> bool:
-    """Say whether a rate is impossible: not the exact one, or on the wrong side of a bound."""
+    """Whether a stated rate contradicts the derived one (both in Hz): another exact value, or beyond a bound."""
     if derived.value is None:
         return False
     if derived.side == "at most":
@@ -81,6 +83,7 @@ def _differs(stated: Fraction, derived: Value) -> bool:
 
 
 def _bounded(value: Value) -> str:
+    """Format a rate (Hz) with the side on which it bounds: "at most 10 Hz"."""
     text = rate(value.value) if value.value is not None else "nothing known"
     return text if value.side == "exact" else f"{value.side} {text}"
 
@@ -90,11 +93,12 @@ def _stated_at(activity: Activity) -> Span:
 
 
 def _claim(found: Analysis, component: Component) -> Iterator[Diagnostic]:
-    """Compare what a component of several nodes states of the whole with what its nodes publish."""
+    """Report a component with several nodes whose stated rate none of its outputs has."""
     claimed = period(component.timing) if component.timing else None
     if claimed is None or component.timing is None:
         return
     stated = SECOND / claimed
+    # Nodes of one component may work at different rates: the claim stands if any output has the stated rate.
     published = {key: pace.rate for (_, key), pace in found.outputs.items() if key in _ports(component)}
     if not published or not all(_differs(stated, one) for one in published.values()):
         return
@@ -151,7 +155,7 @@ def lost_samples(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
         sent = found.outputs[edge.arc.source, edge.arc.output].rate.value
         read = found.paces[target.id].rate.value
         if sent is None or not read:
-            continue  # what never runs is reported as such
+            continue  # `deadlocked-trigger` reports what never runs
         yield Diagnostic(
             "lost-samples",
             f"`{target.id}` uses {number(100 * (1 - edge.loss.value))} % of what `{edge.arc.source}` sends: "

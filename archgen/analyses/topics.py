@@ -1,4 +1,4 @@
-"""Do the topics and services of nodes agree with what their components say that they exchange?"""
+"""Do the topics and services of nodes agree with the interfaces of their components?"""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ _EVERY_NODE = re.compile(
     r"|change_state|get_(state|available_states|available_transitions|transition_graph)"
     r"|get_logger_levels|set_logger_levels|(un)?load_node|list_nodes)"
 )
-"""Services that nodes and containers bring along by themselves: nobody writes them in a design."""
+"""Services of every ROS 2 node (parameters, life cycle, loggers) and container: a design does not list them."""
 
 
 @dataclass(slots=True)
 class _Traffic:
-    """Who writes what where, and which outputs each component names; `shared` topics are left out."""
+    """Writers and readers of topics and services, and the outputs that inputs name; shared topics are left out."""
 
     writers: dict[tuple[str, Flow], list[Endpoint]] = field(default_factory=lambda: defaultdict(list))
     readers: list[Endpoint] = field(default_factory=list)
     names_of: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The topics of each output."""
+    """The names of topics or services that each output is published under, by output id."""
     named: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The outputs that each component's inputs name."""
+    """The ids of all outputs that a component's inputs name, by component id."""
     sources: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The outputs that each input names."""
+    """The ids of the outputs that an input names, by input id."""
 
 
 def _traffic(architecture: Architecture) -> _Traffic:
@@ -89,6 +89,7 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
           base: {implements: base}
     """
     traffic = _traffic(architecture)
+    # Several nodes and ports of a component may read one topic: one finding for each component and topic.
     told = set[tuple[str, str]]()
     for reader in traffic.readers:
         if reader.port is None or reader.component is None or (reader.component, reader.name) in told:
@@ -144,7 +145,7 @@ def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
     traffic = _traffic(architecture)
     for reader in traffic.readers:
         if not architecture.nodes[reader.node].implements:
-            continue  # an unjustified node is reported as a whole
+            continue  # `unjustified-node` reports the node as a whole
         found = (
             _foreign(architecture, traffic, reader)
             if reader.internal
@@ -155,7 +156,7 @@ def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _foreign(architecture: Architecture, traffic: _Traffic, reader: Endpoint) -> Diagnostic | None:
-    """Judge what a node reads inside its component: it comes from the component's own nodes."""
+    """Return a finding if an internal topic or service is not provided by a node of the reader's own component."""
     writers = traffic.writers.get((reader.name, reader.flow), [])
     own = set(architecture.nodes[reader.node].implements)
     strangers = [w for w in writers if own.isdisjoint(architecture.nodes[w.node].implements)]
@@ -175,16 +176,16 @@ def _foreign(architecture: Architecture, traffic: _Traffic, reader: Endpoint) ->
 
 
 def _not_among_sources(architecture: Architecture, traffic: _Traffic, reader: Endpoint) -> Diagnostic | None:
-    """Judge a topic that a node wrote for one of its component's inputs."""
+    """Return a finding if the topic that a node names for an input is none of its sources' topics."""
     if not reader.name_written or reader.port is None or architecture.inputs[reader.port].external:
         return None
     expected = sorted({name for output in traffic.sources[reader.port] for name in traffic.names_of[output]})
     writers = traffic.writers.get((reader.name, reader.flow), [])
     if not expected or reader.name in expected or any(w.port for w in writers):
-        return None  # nothing to compare, right, or another output's topic: `unnamed_source` tells
+        return None  # nothing to compare with, correct, or another output's topic, which `unnamed-source` reports
     meant = {name for output in traffic.sources[reader.port] for name in (output, output.rpartition(".")[0])}
     if not architecture.suspects.isdisjoint(meant):
-        return None  # what its source's node wrote of the topic was not understood, and is reported
+        return None  # the node of a source names its topic in an entry that could not be resolved: reported already
     entry = architecture.inputs[reader.port]
     listed = " and ".join(f"`{name}`" for name in expected)
     message = f"no source of `{entry.name}` publishes on `{reader.name}`: they use {listed}"
@@ -202,7 +203,7 @@ def _unaccounted(
 
 
 def _place(architecture: Architecture, endpoint: Endpoint) -> Span:
-    """Give where an endpoint was written, or else its port, or its node."""
+    """Return the span of an endpoint, else of its port, else of its node."""
     if endpoint.at != NOWHERE:
         return endpoint.at
     port = architecture.inputs.get(endpoint.port or "") or architecture.outputs.get(endpoint.port or "")

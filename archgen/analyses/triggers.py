@@ -1,4 +1,4 @@
-"""Who fires whom: does it ever begin, and does it ever end?"""
+"""Do triggers form cycles that never end, or that never begin?"""
 
 from __future__ import annotations
 
@@ -52,6 +52,8 @@ def endless_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]:
     """
     for ring in found.endless:
         members = [found.system.activities[name] for name in ring]
+        # It is an error only if the behaviour of every member is written: an inferred one may be wrong. The finding is
+        # placed at a member whose behaviour is written, if there is one.
         guessed = [activity for activity in members if activity.behaviour_inferred]
         first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
         sure = not guessed
@@ -107,6 +109,7 @@ def deadlocked_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]
     arrives = _arrives(found)
     for ring in found.deadlocked:
         members = [found.system.activities[name] for name in ring]
+        # Only an activity that waits for all of its inputs can start a deadlock; the other members wait for its output.
         first = next(activity for activity in members if activity.mode == "all")
         empty = [key for key in first.triggers if key not in arrives[first.id]]
         why = f"nothing feeds {_listed(empty)}" if empty else f"{_listed(ring)} wait for one another"
@@ -123,6 +126,7 @@ def deadlocked_trigger(_: Architecture, found: Analysis) -> Iterator[Diagnostic]
 
 
 def _arrives(found: Analysis) -> dict[str, set[str]]:
+    """Return the input keys at which something arrives, from other activities or from outside, by activity id."""
     arrives = defaultdict[str, set[str]](set)
     for arc in found.system.arcs:
         arrives[arc.target].add(arc.input)
@@ -132,6 +136,7 @@ def _arrives(found: Analysis) -> dict[str, set[str]]:
 
 
 def _listed(names: tuple[str, ...] | list[str]) -> str:
+    """Join names in backticks as in "`a`, `b` and `c`"."""
     shown = [f"`{name}`" for name in names]
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
 

@@ -1,4 +1,4 @@
-"""The type mapper's upkeep: conceptual types that nobody mapped, and mapped ones that nobody uses."""
+"""Is every conceptual type that is used mapped to a message, and every declared one used?"""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from archgen.suggest import did_you_mean
 
 
 def _ports(architecture: Architecture) -> tuple[Output | Input, ...]:
-    """Give all ports; the outputs, which say what a type is, come first."""
+    """Return all ports, outputs first: a finding is placed at an output that has the type if there is one."""
     return (*architecture.outputs.values(), *architecture.inputs.values())
 
 
 def _uses(architecture: Architecture) -> dict[str, list[Span]]:
-    """Give the places where ports that carry messages name each type."""
+    """Return the spans where digital ports name each type, by type name."""
     found = dict[str, list[Span]]()
     for port in _ports(architecture):
         if port.type is not None and not port.physical:
@@ -116,9 +116,11 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     if architecture.partial:
         return
+    # Physical ports count here: their types need no message, but they use the type.
     used = {port.type for port in _ports(architecture)}
     for type_ in architecture.types.values():
         used |= {type_.request, type_.response, type_.feedback}
+    # An unused mapping beside a used type without one is most likely a misspelt name.
     unmapped = [name for name in used if name and not _has_message(architecture, name)]
     for type_ in architecture.types.values():
         if type_.origin == "project" and type_.at != NOWHERE and type_.name not in used:

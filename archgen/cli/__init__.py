@@ -28,20 +28,21 @@ VERBS = {
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
-"""Every verb with its line in the help; each is a module of this package with a command of the same name."""
+"""Every verb with its line in the help. Each is a module of this package, `VERB_.py`, with a function `command`."""
 
 
 class Verbs(click.Group):
     """A group that imports a verb only when it is called, so that `--help` is immediate."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        """Name the verbs in the order of their use."""
+        """Return the verbs in the order of their use."""
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002 - the same
         """Import one verb."""
         if cmd_name not in VERBS:
             return None
+        # By name, so nothing else refers to these modules: renaming one or its `command` is noticed here only.
         module = importlib.import_module(f"archgen.cli.{cmd_name}_")
         command: click.Command = module.command
         return command

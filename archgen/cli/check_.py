@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from archgen.reported import Reported
 
 _CURED = 20
-"""Lines for what is cured; the rest is counted."""
+"""This many lines for cured findings; the rest is counted."""
 
 
 @click.command("check")
@@ -78,11 +78,14 @@ def command(  # noqa: PLR0913 - one for each option
     if not quiet:
         _say_known(found, baseline)
         _say_earlier(found, changed_since)
+    # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
     sys.exit(run.status(found.findings, strict=strict) or int(strict and bool(found.cured)))
 
 
 def _before(project: Path | None, revision: str) -> Checked | None:
-    """Judge the project at the revision; where what it held there cannot be told, say so: then everything counts."""
+    """Check the project at a revision. Return None, with a warning, where it cannot be read there: then everything
+    counts.
+    """
     from archgen import reported
     from archgen.git import GitError
     from archgen.project import NotAtRevisionError
@@ -115,7 +118,7 @@ def _print(form: str, shown: Reported, checked: Checked, *, strict: bool) -> Non
 
 
 def _say_known(found: Reported, baseline: Path | None) -> None:
-    """Say on the error stream what a baseline did: standard output holds findings only."""
+    """Print on the error stream what a baseline did: standard output has findings only."""
     if found.known:
         click.echo(visible(f"not shown: {run.counted(found.known)} that {baseline} knows"), err=True)
     gone = [f"{entry.rule}: {entry.message}{f' ({entry.times} times)' * (entry.times > 1)}" for entry in found.cured]
@@ -124,7 +127,7 @@ def _say_known(found: Reported, baseline: Path | None) -> None:
 
 
 def _say_earlier(found: Reported, revision: str | None) -> None:
-    """Say what a comparison with a revision left out, and what the change cured."""
+    """Print what a comparison with a revision left out, and what the change cured."""
     if found.earlier:
         click.echo(visible(f"not shown: {run.counted(found.earlier)} that {revision} had already"), err=True)
     gone = [f"{finding.rule}: {finding.message}" for finding in found.healed]
@@ -142,7 +145,7 @@ def _cured(gone: list[str], count: int, where: str, what_to_do: str) -> None:
 
 
 def _update(checked: Checked, baseline: Path | None) -> NoReturn:
-    """Write the baseline; errors of reading come first, since what is behind them would be lost from it."""
+    """Write the baseline. Errors of reading come first, since what they hide would be missing in it."""
     from archgen import reported
 
     if reported.unread(checked.findings) is not None:

@@ -29,6 +29,7 @@ def command(file: Path, key: str) -> None:
         click.echo(f"comment {comment(text, key)}")
     except ForgeError as error:
         summary = os.environ.get("GITHUB_STEP_SUMMARY")
+        # What a forge answers to a token that may not write: GitHub says 404 where the token may not even read.
         if error.status not in {401, 403, 404} or not summary:
             raise click.ClickException(visible(str(error))) from None
         with Path(summary).open("a", encoding="utf-8") as stream:

@@ -21,7 +21,7 @@ Write = Callable[["Comparison", "Side", "Side"], str | bytes]
 
 
 def _sides(before: str | None, after: str | None, project: Path | None) -> tuple[Side, Side]:
-    """Read both sides; what cannot be found is wrong usage."""
+    """Read both versions. What cannot be found is wrong usage."""
     from archgen.findings.escape import visible
     from archgen.git import GitError
     from archgen.project import ProjectNotFoundError
@@ -34,7 +34,7 @@ def _sides(before: str | None, after: str | None, project: Path | None) -> tuple
 
 
 def _selected(found: Comparison, old: Side, new: Side, words: str | None) -> Comparison:
-    """Keep what touches the selected part of either side. What only one side knows is selected there alone."""
+    """Keep what touches the selected part of either version. What only one version has is selected there alone."""
     from archgen import outputs
     from archgen.compare.selected import selected
     from archgen.findings.escape import visible
@@ -43,6 +43,7 @@ def _selected(found: Comparison, old: Side, new: Side, words: str | None) -> Com
     if words is None:
         return found
     (one, wrong), (other, wrong_too) = (outputs.select(side.checked, words) for side in (old, new))
+    # A word that names nothing in one version may name something in the other: only what is wrong in both is wrong.
     problems = [problem for problem in wrong_too if problem.message in {each.message for each in wrong}]
     for problem in problems:
         click.echo(visible(f"{problem.severity}: {problem.message}"), err=True)
@@ -64,7 +65,7 @@ def _text(found: Comparison, old: Side, new: Side) -> str:
 
 
 def _broken(side: Side) -> list[str]:
-    """Say what of a side could not be read."""
+    """Return lines that say what of a version could not be read."""
     from archgen.findings import text
     from archgen.findings.escape import visible
 
@@ -107,14 +108,15 @@ def _ask() -> Ask:
 
 
 FORMATS: Mapping[str, Write] = {"text": _text, "json": _json, "markdown": _markdown, "html": _html, "svg": _svg}
-"""How a comparison is written, by the name of the format."""
+"""The functions that write a comparison, by the name of the format."""
 
 
 def _put(made: str | bytes, output: Path | None) -> None:
-    """Write to a file, whole or not at all, or to standard output."""
+    """Write a document to a file, all of it or nothing, or to standard output."""
     from archgen.emit import tree
 
     if output is not None:
+        # Colours depend on the terminal, and belong into no file.
         tree.write_file(output, made if isinstance(made, bytes) else click.unstyle(made).encode())
         run.wrote(output)
     elif isinstance(made, bytes):

@@ -1,4 +1,4 @@
-"""What a check reports, written in the formats that programs and servers read."""
+"""Render the findings of a check in the formats that programs and servers read."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FORMATS = ("json", "github", "sarif", "junit")
 
 
 def document(form: str, found: Reported, checked: Checked, *, strict: bool = False) -> str:
-    """Write findings as json, github's commands, sarif or junit; with `strict`, warnings are failures too."""
+    """Render findings as json, GitHub's commands, sarif or junit. With `strict`, warnings are failures too."""
     from archgen.findings import github, json, junit, sarif
     from archgen.project import MARKER
     from archgen.reported import RULES
@@ -35,12 +35,13 @@ def document(form: str, found: Reported, checked: Checked, *, strict: bool = Fal
 
 
 def in_repository(root: Path) -> str:
-    """Give a project's folder from the repository's root, from which servers name files.
+    """Return a project's folder relative to the repository's root, from which servers name files.
 
-    On GitHub that is the workspace; elsewhere the folder that holds `.git`, or else the current one.
+    On GitHub that is the workspace; elsewhere the folder that has `.git`, or else the current one. Outside of it: "".
     """
     resolved = root.resolve()
     workspace = os.environ.get("GITHUB_WORKSPACE")
+    # lexists: in a worktree or submodule `.git` is a file.
     above = (folder for folder in (resolved, *resolved.parents) if os.path.lexists(folder / ".git"))
     top = Path(workspace).resolve() if workspace else next(above, Path.cwd().resolve())
     return resolved.relative_to(top).as_posix() if resolved.is_relative_to(top) else ""

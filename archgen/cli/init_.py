@@ -79,6 +79,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         msg = "--from takes the groups from the table: leave out --group"
         raise click.UsageError(msg)
     answers = _answers(target, title=title, partners=partners, groups=groups, distro=distro, forge=ci or "github")
+    # What a flag or the tables answer is not asked. The keys are those that `questions` knows.
     given = {"title": title, "partner": partners or tables, "group": groups or tables, "distro": distro, "ci": ci}
     if not yes and sys.stdin.isatty() and sys.stdout.isatty():
         from archgen.cli import questions
@@ -91,7 +92,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
 
 
 def _see_free(target: Path) -> None:
-    """Refuse where a project is, or where its files would have to be replaced."""
+    """Refuse a folder that has a project already."""
     from archgen.project import MARKER
 
     if os.path.lexists(target / MARKER):
@@ -110,7 +111,7 @@ def _answers(target: Path, **flags: Any) -> Answers:  # noqa: ANN401 - as `gathe
 
 
 def _import(tables: tuple[Path, ...], distro: str) -> Imported:
-    """Read the tables; what was not taken is said, and where nothing can be taken the run ends."""
+    """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
     from archgen import importers
     from archgen.importers import MAX_BYTES
 
@@ -149,7 +150,7 @@ def _see_slices_free(made: Plan, target: Path, files: Mapping[str, bytes]) -> No
 
 
 def _say(target: Path, checked: Checked, made: Plan) -> None:
-    """Say what there is now, and what comes next."""
+    """Print what there is now, and what comes next."""
     from archgen.findings.text import summary
 
     size = f"{len(checked.architecture.groups)} groups, {len(checked.architecture.components)} components"

@@ -73,7 +73,7 @@ def command(  # noqa: PLR0913 - one for each option
 
 
 def _format(form: Format | None, output: Path | None) -> Format:
-    """Take the format that was asked for, else that of the file's ending; nothing said is Markdown."""
+    """Return the format that was asked for, else that of the file's ending; Markdown if neither says it."""
     from archgen.agreements import ENDINGS
 
     if form or output is None:
@@ -86,7 +86,7 @@ def _format(form: Format | None, output: Path | None) -> Format:
 
 
 def _earlier(words: str, project: Path | None) -> Side:
-    """Read the project as it was; a revision that cannot be read is wrong usage."""
+    """Read the project as it was. A revision that cannot be read is wrong usage."""
     from archgen import sides
     from archgen.findings.escape import visible
     from archgen.git import GitError

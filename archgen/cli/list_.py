@@ -1,4 +1,4 @@
-"""`archgen list`: list what a selector names, or all of one sort of element."""
+"""`archgen list`: list what a selector names, or all elements of a kind."""
 
 from __future__ import annotations
 

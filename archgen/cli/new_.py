@@ -31,6 +31,7 @@ def command() -> None:
 
 
 def _shared(function: Callable[..., Any]) -> Callable[..., Any]:
+    # click lists options in the reverse order of application: the first of these is the last in the help.
     for option in (
         click.option("--dry-run", is_flag=True, help="Print the difference and write nothing."),
         options.project_option,
@@ -139,7 +140,7 @@ def _given(**keys: Any) -> dict[str, Any]:  # noqa: ANN401 - text, tuples of tex
 
 
 def _free(name: str, sort: str, known: dict[str, Span]) -> None:
-    """See to it that an id is one and is not taken."""
+    """Raise UsageError where a text is not a valid id, or the id is taken."""
     from archgen.findings.escape import visible
     from archgen.model import ids
 
@@ -170,7 +171,7 @@ def _group(checked: Checked, name: str | None) -> str:
 
 
 def _component(checked: Checked, words: str) -> str | None:
-    """Give the component that a reference names; the check of the result says what is wrong with any other."""
+    """Return the component that a reference names, or None: the check of the result says what is wrong with it."""
     from archgen.model.names import Names
 
     found = Names({"component": checked.architecture.components}).find(words, ["component"])
@@ -178,6 +179,7 @@ def _component(checked: Checked, words: str) -> str | None:
 
 
 def _placed() -> Any:  # noqa: ANN401 - a context
+    # Made inside, since the exception's module is imported only where something is to be placed.
     from contextlib import contextmanager
 
     from archgen.edit.place import NoPlaceError
@@ -206,6 +208,7 @@ def _add(checked: Checked, place: Place, element: Element, own: str, *, dry_run:
         return
     target = (checked.root / edit.file).resolve()
     with run.phrased():
+        # `write_file` puts a new file in place of the old one, which would lose its permissions.
         mode = target.stat().st_mode if edit.before is not None else None
         tree.write_file(target, edit.after)
         if mode is not None:

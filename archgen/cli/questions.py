@@ -1,4 +1,6 @@
-"""The questions of `archgen init`: what a flag has not said. Enter takes what stands in brackets; Ctrl-C leaves nothing."""
+"""Ask the questions of `archgen init`: what no flag has answered. Enter takes the default; Ctrl-C leaves nothing
+behind.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ FORGES: tuple[Forge, ...] = ("github", "gitlab", "none")
 
 
 def ask(given: Answers, said: frozenset[str], distros: tuple[str, ...]) -> Answers:
-    """Ask for everything that was not said in a flag."""
+    """Ask for everything that no flag has answered. `answered` has the flags' names."""
     click.echo("A few questions; Enter takes what stands in brackets, Ctrl-C leaves everything as it is.\n")
     title = given.title if "title" in said else click.prompt("Title of the project", default=given.title).strip()
     distro = given.distro
@@ -61,12 +63,13 @@ def _groups(default: tuple[Group, ...], partners: tuple[Partner, ...]) -> tuple[
 
 
 def _until(question: str, default: str, read: Callable[[str], T]) -> T:
-    """Ask until the answer can be read."""
+    """Ask until the answer can be parsed."""
 
     def checked(words: str) -> T:
         try:
             return read(words)
         except ValueError as error:
+            # click asks again after a UsageError of a `value_proc`.
             raise click.UsageError(str(error)) from None
 
     answer: T = click.prompt(question, default=default, show_default=bool(default), value_proc=checked)

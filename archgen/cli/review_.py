@@ -88,6 +88,8 @@ def command(  # noqa: PLR0913 - one for each option
         for name, form in (("findings.sarif", "sarif"), ("findings.xml", "junit")):
             _write(target / name, documents.document(form, found, checked, strict=strict))
         if merged:
+            # `REV...` is where the branch left REV. The first parent of GitHub's merge commit needs no dots:
+            # HEAD has all of it.
             bad |= _compare(project, merged if merged != base else f"{base}...", target)
         if build:
             bad |= _build(checked, target / "outputs", backend, allowed)
@@ -95,8 +97,10 @@ def command(  # noqa: PLR0913 - one for each option
 
 
 def _merged_into(base: str | None) -> str | None:
-    """Name what the change is merged into. GitHub makes a commit of a pull request, whose first parent that is; the base
-    that the event names may be older.
+    """Return the revision that the change is merged into, or None.
+
+    GitHub makes a merge commit of a pull request: its first parent is that revision, and what the event names as base
+    may be older.
     """
     made = re.fullmatch(r"refs/pull/\d+/merge", os.environ.get("GITHUB_REF", ""))
     return "HEAD^1" if base and made else base or None
@@ -119,7 +123,7 @@ def _write(path: Path, made: str | bytes) -> None:
 
 
 def _compare(project: Path | None, start: str, target: Path) -> int:
-    """Write what changed, and give the status that the project's policy asks for."""
+    """Write what changed. Return the exit status that the project's policy asks for."""
     from archgen import changes, git, outputs
     from archgen.findings import diff_json
     from archgen.project import NotAtRevisionError
@@ -145,7 +149,7 @@ def _compare(project: Path | None, start: str, target: Path) -> int:
 
 
 def _build(checked: Checked, target: Path, backends: tuple[str, ...], allowed: tuple[str, ...] | None) -> int:
-    """Make the outputs of what is sound."""
+    """Build the outputs of what is sound. Return 0: outputs do not decide the status."""
     from archgen import build, outputs
 
     ask = outputs.Ask(progress=run.progress(), warn=run.warn, allowed=allowed)

@@ -1,4 +1,4 @@
-"""What verbs have in common: check a project, print findings, say what was written, show progress, end with a status."""
+"""What commands have in common: check a project, print findings and written files, show progress, end with a status."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ERROR = Severity.ERROR
 
 
 def check(project: Path | None) -> Checked:
-    """Check a project; that there is none is wrong usage."""
+    """Check a project. It is wrong usage if there is none."""
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
 
@@ -35,14 +35,18 @@ def check(project: Path | None) -> Checked:
 
 
 def trusted(project: Path | None, revision: str | None) -> tuple[str, ...] | None:
-    """Name the project's own backends that a revision allows to run in a review; None where no revision is asked."""
+    """Return the project's own backends that a revision allows to run in a review; None if no revision is given: all
+    may.
+    """
     from archgen import git, pipeline
     from archgen.project import NotAtRevisionError
 
     if not revision:
         return None
     try:
+        # The main line decides: the branch under review must not allow its own templates to run.
         return pipeline.check_at(project, revision).architecture.review.backends
+    # A project that is new in this branch: nothing is allowed yet.
     except NotAtRevisionError:
         return ()
     except git.GitError as error:
@@ -50,20 +54,21 @@ def trusted(project: Path | None, revision: str | None) -> tuple[str, ...] | Non
 
 
 def report(checked: Checked, *, least: Severity = Severity.WARNING) -> None:
-    """Print findings and their count to the error stream; notes only where they are asked for."""
+    """Print findings from a severity on, and their count, to the error stream."""
     order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
+    # A finding without a severity counts as severe enough: it must not vanish.
     shown = [d for d in checked.findings if order.index(d.severity or least) >= order.index(least)]
     if shown:
         lines(shown, checked, sys.stderr)
 
 
 def lines(shown: Sequence[Diagnostic], checked: Checked, stream: TextIO) -> None:
-    """Print findings for people, as wide as the terminal is."""
+    """Print a project's findings for people, as wide as the terminal."""
     excerpts(shown, checked.sources, stream)
 
 
 def excerpts(shown: Sequence[Diagnostic], sources: Sources, stream: TextIO) -> None:
-    """Print findings with the lines of these texts."""
+    """Print findings with the lines of these sources."""
     from archgen.findings import text
 
     colour = text.wants_colour(stream, os.environ)
@@ -72,13 +77,13 @@ def excerpts(shown: Sequence[Diagnostic], sources: Sources, stream: TextIO) -> N
 
 
 def status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
-    """Give the exit status for findings."""
+    """Return the exit status for findings: 1 with errors (`strict`: or warnings), else 0."""
     bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
     return 1 if any(finding.severity in bad for finding in findings) else 0
 
 
 def ready(project: Path | None, *, keep_going: bool) -> Checked:
-    """Check before something is written: errors are shown and, without --keep-going, stop here."""
+    """Check a project before something is written. Errors are printed and, without --keep-going, end the run."""
     checked = check(project)
     report(checked, least=Severity.ERROR)
     if status(checked.findings) and not keep_going:
@@ -88,7 +93,7 @@ def ready(project: Path | None, *, keep_going: bool) -> Checked:
 
 
 def selected(checked: Checked, words: str | None) -> Selection | None:
-    """Evaluate a selector from the command line; what names nothing is wrong usage."""
+    """Evaluate a selector from the command line. What names nothing is wrong usage."""
     from archgen import outputs
     from archgen.findings.escape import visible
 
@@ -126,7 +131,9 @@ def phrased() -> Iterator[None]:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """Read a file, or the standard input where it is `-`: one byte more than the most at the most."""
+    """Read a file, or the standard input for `-`. At most one byte more than `max_bytes`, so the caller sees what is
+    too long.
+    """
     try:
         if str(path) == "-":
             return sys.stdin.buffer.read(most + 1)
@@ -145,19 +152,19 @@ def counted(findings: Sequence[Diagnostic]) -> str:
 
 
 def warn(said: str) -> None:
-    """Print what an output could not hold as asked."""
+    """Print a warning, such as what an output could not show as asked."""
     from archgen.findings.escape import visible
 
     click.echo(f"warning: {visible(said)}", err=True)
 
 
 def wrote(path: Path, detail: str = "") -> None:
-    """Say what was written, relative to the current folder where that is shorter."""
+    """Print what was written, relative to the current folder where that is shorter."""
     click.echo(f"wrote {shown(path)}{f' ({detail})' if detail else ''}")
 
 
 def shown(path: Path) -> Path:
-    """Give a path relative to the current folder where that is shorter."""
+    """Return a path relative to the current folder if it is below it."""
     try:
         return path.resolve().relative_to(Path.cwd())
     except ValueError:
@@ -165,9 +172,12 @@ def shown(path: Path) -> Path:
 
 
 def progress(doing: str = "drawing") -> Callable[[int, int], None] | None:
-    """Give a function that shows on a terminal how much of long work is done, of how much; None in a pipe."""
+    """Return a function that shows progress on a terminal, as done of total; None where the error stream is not a
+    terminal.
+    """
     if not sys.stderr.isatty():
         return None
+    # A list, so that the inner function can change it.
     last = [0.0]
 
     def show(done: int, total: int) -> None:

@@ -45,7 +45,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
 
 def laid_out(shown: Card) -> str:
-    """Lay a card out for the terminal, control characters taken out."""
+    """Lay out a card for the terminal, with control characters made visible."""
     from archgen.findings.escape import plain_line, visible
 
     place = f"   {shown.at}" if shown.at.file else ""

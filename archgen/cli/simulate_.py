@@ -36,6 +36,7 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     architecture = checked.architecture
     _known(asked, tuple(architecture.chains))
     analysis = analyse(architecture)
+    # Events that trigger one another in a ring: their simulation would not come to an end.
     if analysis.endless:
         raise click.ClickException(visible(_endless(analysis.endless)))
     found = {key: one for key, one in chains(analysis, architecture).items() if not asked or key in asked}

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a call asks for."""
+    """What one call asks for."""
 
     checked: Checked
     architecture: Architecture
-    """With the figures of `--set`."""
+    """The architecture with the figures of `--set`."""
     as_json: bool
     written: tuple[str, ...] = ()
 
@@ -144,6 +144,7 @@ def _why(asked: Asked, word: str) -> None:
 
     analysis, chains = _computed(asked.architecture)
     names = [word]
+    # Chains, hosts and links explain themselves; a node or component stands for its activities.
     if not explain(analysis, chains, word):
         try:
             names = list(naming.activities(asked.architecture, analysis.system, word))
@@ -203,6 +204,7 @@ def _measured(asked: Asked, file: Path) -> None:
             text = file.read_bytes().decode("utf-8-sig")
         except UnicodeDecodeError:
             _wrong(f"{file} is not UTF-8 text")
+    # So that excerpts below can show the lines of this file too.
     asked.checked.sources.add(str(file), text)
     observed, unread = reading.read(str(file), text)
     compared, unknown = measured.compare(analyse(asked.architecture), observed)

@@ -1,4 +1,4 @@
-"""What `archgen --version` says: archgen and the libraries that it stands on."""
+"""Format what `archgen --version` prints: archgen and the libraries that it uses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _LIBRARIES = ("click", "jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pyg
 
 
 def version() -> str:
-    """List versions, one a line; say where a fast part is missing."""
+    """Return versions, one a line, and whether a fast part is missing."""
     lines = [f"archgen {__version__}", f"Python {platform.python_version()}"]
     lines += [f"{name} {_installed(name)}" for name in _LIBRARIES]
     return "\n".join(lines)

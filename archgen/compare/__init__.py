@@ -1,7 +1,8 @@
-"""Compare two versions of an architecture: models, findings and chains, never lines.
+"""Compare two versions of an architecture: their models, findings and chains, never the lines of their files.
 
-`compare` finds what was renamed or moved first (`match`), lists both sides in normal form with one set of names
-(`elements`), and what differs then is a change (`differences`), with its consequences (`wiring`) in words (`sentences`).
+`match_elements` pairs renamed and moved elements first, `compared_elements` lists both versions in normal form under
+common ids, and every difference then is a change (`difference_finder`), described by `change_sentences` with its
+effects on connections (`connection_maps`).
 """
 
 from archgen.compare.change import Break, ChainChange, Change, Comparison

@@ -1,4 +1,4 @@
-"""Which changes break another partner, whom and why; and which of these the project accepts."""
+"""Decide which changes break another partner, whom and why, and which of them the project accepts."""
 
 from __future__ import annotations
 
@@ -26,17 +26,23 @@ _STRICTNESS = (Severity.OFF, Severity.NOTE, Severity.WARNING, Severity.ERROR)
 
 
 def severity(before: Review, after: Review) -> Severity:
-    """Give the stricter policy: no branch weakens what its own changes are held against."""
+    """Return the stricter policy of both versions, so that no branch weakens the policy it is judged by."""
     return max((each.breaking or Severity.WARNING for each in (before, after)), key=_STRICTNESS.index)
 
 
 def breaking(both: Both, chains: Sequence[ChainChange], timed: Timed | None) -> tuple[Change, ...]:
-    """Say of each change whom it breaks and whether that is accepted; what is not accepted comes first."""
+    """Add to each change whom it breaks and whether that is accepted; breaking changes come first, accepted ones after
+    the rest of them.
+    """
     if not both.changes or not (both.before.partners or both.after.partners):
         return tuple(both.changes)
+    # An inner dict instead of a list: two finders may report the same loss of the same partner, and the order must
+    # stay.
     found: dict[int, dict[Break, None]] = defaultdict(dict)
     for loss in _losses(both, chains, timed):
         found[loss.change][Break(loss.partner, loss.why)] = None
+    # Only the second version's agreements count, although the stricter policy of both does: an acceptance belongs into
+    # the branch that it is about (docs/decisions/0007-breaking-changes.md).
     accepted = both.after.review.accepted
     changes = [
         replace(change, breaks=tuple(found[place]), accepted=_reason(change, accepted.get(change.element)))
@@ -44,6 +50,7 @@ def breaking(both: Both, chains: Sequence[ChainChange], timed: Timed | None) -> 
         else change
         for place, change in enumerate(both.changes)
     ]
+    # The sort is stable: within each class the order of `change_order` remains.
     return tuple(sorted(changes, key=lambda change: (not change.breaks, change.accepted is not None)))
 
 
@@ -62,13 +69,13 @@ def _reason(change: Change, entry: Accepted | None) -> str | None:
 
 
 def idle(changes: Sequence[Change], review: Review) -> tuple[Accepted, ...]:
-    """Give the accepted entries that name no breaking change."""
+    """Return the accepted entries that name no breaking change."""
     every = review.accepted.values()
     return tuple(e for e in every if not any(c.breaks and c.element == e.element and _reason(c, e) for c in changes))
 
 
 def only(found: Comparison) -> Comparison:
-    """Keep what breaks somebody: neither what else changed, nor chains and findings."""
+    """Keep only the changes that break somebody, without other changes, chains and findings."""
     changes = tuple(change for change in found.changes if change.breaks)
     concerned = owners(changes, found.told)
     return replace(found, changes=changes, new=(), cured=(), silenced=(), chains=(), owners=concerned, narrowed=True)

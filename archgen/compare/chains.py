@@ -1,4 +1,4 @@
-"""Chains of which the bound changed."""
+"""Find the chains whose bound or deadline changed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from archgen.timing.analysis import Analysis, ChainResult
 
 
 def chains(before: Architecture, after: Architecture, names: Names, timed: Timed | None) -> tuple[ChainChange, ...]:
-    """Give the chains that came, went, or have another bound or deadline, in the order of the second version."""
+    """Return the chains that were added or removed, or have another bound or deadline, in the order of the second
+    version.
+    """
     if timed is None:
         return ()
     new, old = _results(after, timed.after), _results(before, timed.before)
@@ -30,5 +32,6 @@ def _results(found: Architecture, analysis: Analysis) -> Mapping[str, ChainResul
 def _differ(one: ChainResult | None, other: ChainResult | None) -> bool:
     if one is None or other is None:
         return True
+    # The words of a bound (what it lacks, where it is from) may change without the figure: they are left out.
     bounds = [(each.bound.value, each.bound.complete, each.bound.side) for each in (one, other)]
     return bounds[0] != bounds[1] or one.deadline != other.deadline

@@ -1,4 +1,4 @@
-"""What a comparison takes and gives."""
+"""The data of a comparison: changes, chain changes, and the comparison as a whole."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ Kind = Literal["added", "removed", "changed", "renamed", "moved"]
 
 @dataclass(frozen=True, slots=True)
 class Break:
-    """What a partner loses by a change. `why` goes on where the change's name ends: "takes `a.b.c` from sssa, who ..."."""
+    """What a partner loses by a change. `reason` completes a sentence after the change: "takes `a.b.c` from sssa, who
+    ...".
+    """
 
     partner: str
     why: str
@@ -26,12 +28,13 @@ class Break:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One change. `element` is its complete id, as it was where it is removed; `was` is the id before a rename or a move.
+    """One change. `element_id` is the complete id in the second version, or in the first one for what was removed.
 
-    `key` is what changed of an element, `before` and `after` its values as plain data (None: not written). `confidence`
-    is below 1 where a rename or a move was only recognised. `breaks` are what partners other than the owner lose, those
-    of the parts included; `accepted` is why the project accepts that, None where it does not. `parts` are what came or
-    went with an element, and what follows from the change.
+    `old_id` is the id before a rename or a move. `key` is what changed of an element, `before` and `after` are its
+    values as plain data (None: not written). `confidence` is below 1 where a rename or a move was only recognised by
+    likeness. `breaks` are the losses of partners other than the owner, those of the parts included; `acceptance_reason`
+    is why the project accepts them (None: it does not). `parts` are what came or went with an element, and what follows
+    from the change.
     """
 
     kind: Kind
@@ -49,13 +52,13 @@ class Change:
 
     @property
     def broken(self) -> tuple[str, ...]:
-        """Name the partners who lose something, sorted."""
+        """Return the partners who lose something, sorted."""
         return tuple(sorted({each.partner for each in self.breaks}))
 
 
 @dataclass(frozen=True, slots=True)
 class ChainChange:
-    """A chain of which the bound or the deadline changed, by its id (before, where it is gone). None: it is not there."""
+    """A chain whose bound or deadline changed, by its id (the old one if it was removed). None: not in that version."""
 
     id: str
     before: ChainResult | None
@@ -63,18 +66,19 @@ class ChainChange:
 
     @property
     def deadline(self) -> Value | None:
-        """Give the deadline that counts now."""
+        """Return the deadline of the second version, or of the first one if the chain was removed."""
         there = self.after or self.before
         return there.deadline if there else None
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """All that differs. `cured` and `silenced` findings speak of the first version, `new` ones of the second. A silenced one
-    is not cured: a comment or a setting keeps it quiet now.
+    """Everything that differs. `cured_findings` and `silenced_findings` belong to the first version, `new_findings` to
+    the second.
 
-    `breaking` is how much a change matters that breaks a partner: what the stricter version says. `idle` are the accepted
-    entries of the second version that name no breaking change here.
+    A silenced finding is not cured: a comment or a setting hides it now. `breaking_severity` is how serious it is to
+    break a partner: the stricter policy of both versions. `idle_acceptances` are the accepted entries of the second
+    version that name no breaking change.
     """
 
     before: Version
@@ -90,14 +94,14 @@ class Comparison:
     breaking: Severity = Severity.WARNING
     idle: tuple[Accepted, ...] = ()
     narrowed: bool = False
-    """Only what breaks a partner was kept."""
+    """Whether only the changes that break a partner were kept."""
 
     @property
     def failing(self) -> bool:
-        """Say whether the project's policy refuses this: a partner is broken, and nobody accepted that."""
+        """Whether the project's policy refuses this comparison: a partner is broken, and nobody accepted it."""
         return self.breaking is Severity.ERROR and any(each.breaks and each.accepted is None for each in self.changes)
 
     @property
     def empty(self) -> bool:
-        """Say whether nothing differs."""
+        """Whether nothing differs."""
         return not (self.changes or self.new or self.cured or self.silenced or self.chains)

@@ -1,4 +1,4 @@
-"""The whole comparison, from two versions to changes, findings, chains and owners."""
+"""Compare two versions as a whole: changes, findings, chains and the owners concerned."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from archgen.model.review import Accepted
 
 def compare(before: Version, after: Version) -> Comparison:
     """Compare two versions of an architecture."""
+    # Matching comes first: everything below lists the first version under the ids of the second.
     names = match(before.architecture, after.architecture)
     listed = both(before, after, names)
     old, new = wires(before.architecture, names), wires(after.architecture, Names())
@@ -34,6 +35,7 @@ def compare(before: Version, after: Version) -> Comparison:
     changes = Differences(*listed, names, told).all(old, new)
     judged = findings(before, after, names)
     timing = timed(before.architecture, after.architecture, changes)
+    # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     moved = chains(before.architecture, after.architecture, names, timing)
     policy = severity(before.architecture.review, after.architecture.review)
     unused: tuple[Accepted, ...] = ()
@@ -57,14 +59,14 @@ def compare(before: Version, after: Version) -> Comparison:
 
 
 def _unnamed(found: Architecture) -> frozenset[str]:
-    """Give the outputs of written nodes whose topic, service or action nobody named."""
+    """Return the outputs of written nodes whose topic, service or action has no written name."""
     written = {node.id for node in found.nodes.values() if node.written}
     ends = (end for end in found.endpoints if end.node in written and end.use in {"publishes", "serves"})
     return frozenset(end.port for end in ends if end.port and not end.name_written)
 
 
 def _serving(listed: Mapping[Key, Element]) -> Mapping[str, frozenset[str]]:
-    """Give the components that name each requirement."""
+    """Return for each requirement the components that name it."""
     found: dict[str, set[str]] = defaultdict(set)
     for (sort, name), element in listed.items():
         named = element.values.get("requirements") if sort == "component" else None

@@ -1,4 +1,4 @@
-"""An architecture with the look-ups that describing its elements needs."""
+"""An architecture with the reverse look-ups that describing its elements for matching needs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from archgen.model.component import Component, Input, Output
 
 
 def own_messages(found: Architecture) -> list[str]:
-    """Name the interfaces that the project defines itself."""
+    """Return the sorted names of the interfaces that the project defines itself."""
     own = found.interfaces.project_packages
     return sorted(name for name in found.interfaces.names if name.partition("/")[0] in own) if own else []
 
@@ -35,31 +35,34 @@ IDS: Mapping[str, Callable[[Architecture], Iterable[str]]] = {
     "view": lambda found: found.views,
     "policy": lambda found: found.policies,
 }
-"""The ids of all elements of a sort that somebody wrote."""
+"""For each kind of element, the ids of all that somebody wrote."""
 
 
 @dataclass
 class Described:
-    """An architecture with the look-ups that descriptions need; `name` gives the common name of a referred element."""
+    """An architecture with reverse look-ups; `find_common_id` returns the id after the comparison's matching, None if
+    unmatched.
+    """
 
     found: Architecture
     name: Callable[[str, str], str | None]
 
     def refs(self, sort: str, ids: Iterable[str | None]) -> frozenset[str]:
-        """Give the common names of what is referred to."""
+        """Return the common ids of those elements that are matched already."""
         return frozenset(name for one in ids if one is not None and (name := self.name(sort, one)) is not None)
 
     @cached_property
     def readers(self) -> Mapping[str, list[str]]:
-        """Find the inputs that read an output."""
+        """Return for each output the inputs that read it."""
         found: dict[str, list[str]] = defaultdict(list)
         for edge in self.found.edges:
             found[edge.output].append(edge.input)
+        # A defaultdict is returned on purpose: what nobody uses has an empty list.
         return found
 
     @cached_property
     def sources(self) -> Mapping[str, list[str]]:
-        """Find the outputs that an input reads."""
+        """Return for each input the outputs that it reads."""
         found: dict[str, list[str]] = defaultdict(list)
         for edge in self.found.edges:
             found[edge.input].append(edge.output)
@@ -67,7 +70,7 @@ class Described:
 
     @cached_property
     def nodes_of(self) -> Mapping[str, list[str]]:
-        """Find the nodes of components (`component:ID`), hosts and containers."""
+        """Return the written nodes of components (`component:ID`), hosts (`host:ID`) and containers."""
         found: dict[str, list[str]] = defaultdict(list)
         for node in self.found.nodes.values():
             if node.written:
@@ -81,7 +84,7 @@ class Described:
 
     @cached_property
     def topics(self) -> Mapping[str, list[str]]:
-        """Find the topics on which nodes carry a port, as they are written."""
+        """Return for each port the topics on which nodes carry it, as written."""
         found: dict[str, list[str]] = defaultdict(list)
         for node in self.found.nodes.values():
             for use in node.uses:
@@ -91,7 +94,7 @@ class Described:
 
     @cached_property
     def users(self) -> Mapping[str, list[str]]:
-        """Find the components with ports of a type, or that serve a requirement."""
+        """Return the users of types (`type:ID`: ports), requirements (components) and use cases (requirements)."""
         found: dict[str, list[str]] = defaultdict(list)
         for component in self.found.components.values():
             for port in ports_of(component):
@@ -106,7 +109,7 @@ class Described:
 
     @cached_property
     def owned(self) -> Mapping[str, list[str]]:
-        """Find the groups and components of a partner."""
+        """Return for each partner the groups and components that it owns."""
         found: dict[str, list[str]] = defaultdict(list)
         for group in self.found.groups.values():
             if group.owner:
@@ -118,6 +121,6 @@ class Described:
 
 
 def ports_of(component: Component) -> Iterator[Input | Output]:
-    """Give all ports of a component."""
+    """Yield all ports of a component, inputs first."""
     yield from component.inputs.values()
     yield from component.outputs.values()

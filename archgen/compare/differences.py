@@ -1,4 +1,4 @@
-"""What differs between two versions: whole elements, their keys, their connections; what belongs together in one change."""
+"""Find what differs between two versions (elements, keys, connections), and which of it is one change."""
 
 from __future__ import annotations
 
@@ -22,29 +22,33 @@ RANKS = {
         )
     )
 }
-"""The sorts of elements, in the order in which changes are told."""
+"""The position of each kind of element in the order in which changes are reported."""
 
 
 @dataclass(slots=True)
 class Differences:
-    """Both versions, and the changes that were found. `hanging` are those that belong to an element that came or went."""
+    """Collects the changes between two versions. `attached_changes` belong to an element that was added or removed."""
 
     before: Mapping[Key, Element]
     after: Mapping[Key, Element]
     names: Names
     told: Told
     _sharing: frozenset[Key] = frozenset()
-    """Nodes that, in both versions, share their components with others, and so say which ports they carry."""
+    """Nodes that share their components with other nodes in both versions, and therefore say which ports they carry."""
     top: list[Change] = field(default_factory=list)
     hanging: dict[Key, list[Change]] = field(default_factory=lambda: defaultdict(list))
 
     def all(self, old: Wires, new: Wires) -> tuple[Change, ...]:
-        """Give all changes, in the order in which they are told."""
+        """Return all changes in the order of the report. Call it once: it fills `top_changes`."""
+        # "carried" is only among the values of a port where the node must say that it carries it: internal ports, and
+        # components with several nodes.
         carriers = (
             {e.parent for e in side.values() if e.parent and "carried" in e.values}
             for side in (self.before, self.after)
         )
         self._sharing = frozenset.intersection(*map(frozenset, carriers))
+        # Connections and ports come before `_add_whole_elements`: it attaches what they left in `attached_changes`, and
+        # what is attached afterwards would be lost.
         self._connections(old, new)
         self._renames()
         for key, element in self.after.items():
@@ -59,7 +63,7 @@ class Differences:
         return tuple(sorted(self.top, key=rank))
 
     def _whole(self) -> None:
-        """Tell what came and went, the parts below the whole."""
+        """Add the elements that were added or removed, each with its parts inside the same change."""
         for kind, here, there in (("removed", self.before, self.after), ("added", self.after, self.before)):
             below: dict[Key, list[Element]] = defaultdict(list)
             roots = []
@@ -104,10 +108,13 @@ class Differences:
         return replace(change, text=sentences.changed(change, self.told))
 
     def _port(self, old: Element | None, new: Element | None) -> None:
-        """Tell what a node says of a port in one version only: with the port, with the node, or as a change of its own."""
+        """Add what a node says of a port in one version only: to the port's change, to the node's, or as a change of
+        its own.
+        """
         there = new or old
         if there is None or there.parent is None:
             return
+        # Compared with an element without values, every value of the port is a change of its own.
         nothing = replace(there, values={})
         port = self._came_or_went(there.refs[0]) if there.refs else None
         node = there.parent if (there.parent in self.before) != (there.parent in self.after) else None
@@ -121,13 +128,14 @@ class Differences:
             self._keys(old or nothing, new or nothing)
 
     def _came_or_went(self, port: str) -> Key | None:
-        """Give the outermost element with which a port came or went, if it did."""
+        """Return the outermost element with which a port was added or removed, None if the port is in both versions."""
+        # A port's complete id does not say its direction.
         keys_of = (("output", port), ("input", port))
         key = next((key for key in keys_of if (key in self.before) != (key in self.after)), None)
         return self._outermost(key) if key else None
 
     def _outermost(self, key: Key) -> Key:
-        """Give the component of a port, if it came or went too."""
+        """Return the component of a port if it was added or removed too, else the port."""
         parent = (self.before.get(key) or self.after[key]).parent
         gone = parent is not None and (parent in self.before) != (parent in self.after)
         return parent if gone and parent is not None else key
@@ -145,7 +153,7 @@ class Differences:
             (self.hanging[home] if home else self.top).append(change)
 
     def _unread(self, each: Rewired) -> bool:
-        """Say whether a connection only seems to have come or gone, because one of its ends could not be read."""
+        """Whether a connection only seems to have changed because one of its ends could not be read."""
         before, after = self.told.lost
         if not (before or after):
             return False
@@ -154,10 +162,11 @@ class Differences:
         return not (after.isdisjoint(words) and before.isdisjoint(came))
 
     def _cause(self, each: Rewired) -> Key | None:
-        """Give the element that came or went and took the connection along: the input's, or that of the sources."""
+        """Return the element whose addition or removal took the connection along, if there is one."""
         key = ("input", each.input)
         if (key in self.before) != (key in self.after):
             return self._outermost(key)
+        # The reader was rewired to something that exists: that is its own decision, whatever became of the old source.
         if each.lost and any(("output", name) in self.after for name in each.gained):
             return None
         here, there = (self.before, self.after) if each.lost else (self.after, self.before)
@@ -171,11 +180,11 @@ class Differences:
         return element.own if element else name
 
     def _owns(self, outputs: list[str]) -> list[str]:
-        """Give outputs of the first version by the names that they had."""
+        """Return the outputs of the first version by the ids that they had there."""
         return sorted(self.before[key].own if (key := ("output", name)) in self.before else name for name in outputs)
 
 
 def rank(change: Change) -> tuple[int, str, int, str]:
-    """Order changes: by sort, element, what happened, key."""
+    """Return the sort key of a change: kind of element, id, what happened, key."""
     kinds = ("renamed", "moved", "removed", "added", "changed")
     return RANKS[change.sort], change.element, kinds.index(change.kind), change.key or ""

@@ -1,6 +1,6 @@
-"""One version as flat elements in normal form: what is equal here means the same, however it is written.
+"""List one version as flat elements in normal form: equal elements mean the same, however they are written.
 
-The first version is listed with the names of the second, so that what only follows a rename is equal.
+The first version is listed under the ids of the second, so that whatever merely follows a rename is equal.
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ from archgen.model.node import Node
 from archgen.model.review import Review
 
 SOME = "some"
-"""The component has ports: they are elements of their own."""
+"""Value of the keys "inputs" and "outputs" of a component that has ports: these are elements of their own."""
 MAPPED = "mapped"
-"""The key of a component that says whether somebody wrote a node for it."""
+"""Key of a component that says whether somebody wrote a node for it."""
 Key = tuple[str, str]
-"""A sort and an id."""
+"""A kind of element and a common id."""
 
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One element. `id` is the common name, `own` the one that it has in its version; `parent` is whom it goes with.
+    """One element. `id` is the common id, `own_id` the one in its version; `parent_key` is the element that it is added
+    and removed with.
 
-    `owner` is a partner; `stated` is False for what stands there without being declared (a type that is only used).
+    `owner` is a partner; `is_declared` is False for what exists without a declaration (a type that is only used).
     """
 
     sort: str
@@ -42,11 +43,13 @@ class Element:
     owner: str | None = None
     stated: bool = True
     refs: tuple[str, ...] = ()
-    """Common ids of the components behind it; of a node's port the component's port."""
+    """Common ids of the components behind it; for a port of a node, the id of the component's port."""
 
 
 def both(before: Version, after: Version, names: Names) -> tuple[dict[Key, Element], dict[Key, Element]]:
-    """List all elements of both versions, by the names of the second."""
+    """List all elements of both versions under the ids of the second one."""
+    # A component with one node in one version and several in the other is compared by its nodes in both versions: else
+    # its timing and ports would change their place, not their meaning.
     one = {names.to("component", name) for name in alone(before.architecture)}
     split = one ^ alone(after.architecture)
     split &= set(after.architecture.components) & set(names.ahead.get("component", {}).values())
@@ -64,6 +67,7 @@ def _elements(version: Version, names: Names, split: frozenset[str]) -> dict[Key
         *_deployment(found, names),
         *_asked(found, names),
     )
+    # Values hold no spans: elements that move between files have not changed.
     return {(each.sort, each.id): each for each in listed}
 
 
@@ -90,7 +94,7 @@ def _project(version: Version, names: Names) -> Iterator[Element]:
 
 
 def _fields(definition: Interface) -> tuple[str, ...]:
-    """Give the fields as ROS writes them, `---` between the parts of a service or action."""
+    """Return the fields of an interface as ROS writes them, with `---` between the parts of a service or action."""
     parts = [[f"{field.type}{field.array} {field.name}" for field in part] for part in definition.parts]
     return tuple(parts[0]) + tuple(line for part in parts[1:] for line in ("---", *part)) if parts else ()
 
@@ -222,6 +226,7 @@ def _types(found: Architecture, names: Names) -> Iterator[Element]:
             "message": names.to("message", one.message) if one.message else None,
             "comment": prose(one.comment),
             "size": one.size,
+            # Defaults count as not written: writing them out is no change.
             "status": None if one.status == "existing" else one.status,
             **{key: names.to("type", value) if value else None for key, value in inside.items()},
         }
@@ -256,7 +261,7 @@ def _deployment(found: Architecture, names: Names) -> Iterator[Element]:
 
 
 def _asked(found: Architecture, names: Names) -> Iterator[Element]:
-    """List chains, views and policies."""
+    """Yield chains, views and policies."""
     for chain in found.chains.values():
         values: dict[str, object] = {
             "title": title(chain.id, chain.title),

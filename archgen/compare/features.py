@@ -1,7 +1,7 @@
-"""What an element is recognised by when its id changed: its text, ports, partners, neighbours, and the nodes behind it.
+"""The features by which an element is recognised after its id changed: text, ports, partners, neighbours, nodes.
 
-References count by what they refer to, as far as that is the same element in both versions. What is new or gone itself
-says nothing.
+References count by the element they refer to if that is matched already; new and removed elements say nothing. The
+weights are the first argument of each `Feature`.
 """
 
 from __future__ import annotations
@@ -20,16 +20,17 @@ def _named(name: str, title: str) -> Features:
 
 
 def partner(of: Described, name: str) -> Features:
-    """Describe a partner."""
+    """Return the features of a partner."""
     found = of.found.partners[name]
     return {**_named(name, found.title), "owns": Feature(4, frozenset(of.owned[name]))}
 
 
 def group(of: Described, name: str) -> Features:
-    """Describe a group."""
+    """Return the features of a group."""
     found = of.found.groups[name]
     return {
         **_named(name, found.title),
+        # The names of its components outweigh all else: a group is what it holds.
         "components": Feature(8, frozenset(found.components)),
         "text": Feature(2, words(found.description)),
         "owner": Feature(0.5, of.refs("partner", [found.owner])),
@@ -37,8 +38,9 @@ def group(of: Described, name: str) -> Features:
 
 
 def component(of: Described, name: str) -> Features:
-    """Describe a component."""
+    """Return the features of a component."""
     found = of.found.components[name]
+    # The direction is part of the mark, so that an input and an output of one name are not alike.
     ports = [f"> {port.name}" for port in found.inputs.values()]
     ports += [f"{port.name} >" for port in found.outputs.values()]
     types = [port.type for port in ports_of(found)]
@@ -61,12 +63,13 @@ def component(of: Described, name: str) -> Features:
 
 
 def output(of: Described, name: str) -> Features:
-    """Describe an output."""
+    """Return the features of an output."""
     found = of.found.outputs[name]
     readers = [reader.rpartition(".")[0] for reader in of.readers.get(name, ())]
     return {
         "name": Feature(2, letters(found.name)),
         "type": Feature(4, _own(found.type)),
+        # `topics_by_port` is a defaultdict: a port that no node names has no marks.
         "topics": Feature(3, frozenset(of.topics[name])),
         "readers": Feature(5, of.refs("component", readers)),
         "text": Feature(1, words(found.description) | words(found.external)),
@@ -74,7 +77,7 @@ def output(of: Described, name: str) -> Features:
 
 
 def input(of: Described, name: str) -> Features:  # noqa: A001 - what it describes
-    """Describe an input."""
+    """Return the features of an input."""
     found = of.found.inputs[name]
     return {
         "name": Feature(2, letters(found.name)),
@@ -86,7 +89,7 @@ def input(of: Described, name: str) -> Features:  # noqa: A001 - what it describ
 
 
 def type(of: Described, name: str) -> Features:  # noqa: A001 - what it describes
-    """Describe a type."""
+    """Return the features of a conceptual type."""
     found = of.found.types[name]
     ports = of.users.get(f"type:{name}", ())
     return {
@@ -100,7 +103,7 @@ def type(of: Described, name: str) -> Features:  # noqa: A001 - what it describe
 
 
 def message(of: Described, name: str) -> Features:
-    """Describe an interface of the project's own."""
+    """Return the features of an interface that the project defines."""
     definition = of.found.interfaces.definitions.get(name)
     fields = [f"{field.name} {field.type}" for part in definition.parts for field in part] if definition else []
     users = [t.name for t in of.found.types.values() if t.message == name]
@@ -113,7 +116,7 @@ def message(of: Described, name: str) -> Features:
 
 
 def node(of: Described, name: str) -> Features:
-    """Describe a node."""
+    """Return the features of a node."""
     found = of.found.nodes[name]
     return {
         **_named(name, found.title),
@@ -129,7 +132,7 @@ def node(of: Described, name: str) -> Features:
 
 
 def container(of: Described, name: str) -> Features:
-    """Describe a container."""
+    """Return the features of a container."""
     found = of.found.containers[name]
     return {
         **_named(name, found.title),
@@ -140,7 +143,7 @@ def container(of: Described, name: str) -> Features:
 
 
 def host(of: Described, name: str) -> Features:
-    """Describe a host."""
+    """Return the features of a host."""
     found = of.found.hosts[name]
     held = [one.id for one in of.found.containers.values() if one.host == name]
     return {
@@ -153,7 +156,7 @@ def host(of: Described, name: str) -> Features:
 
 
 def link(of: Described, name: str) -> Features:
-    """Describe a link."""
+    """Return the features of a link."""
     found = of.found.links[name]
     return {
         **_named(name, found.title),
@@ -163,7 +166,7 @@ def link(of: Described, name: str) -> Features:
 
 
 def chain(of: Described, name: str) -> Features:
-    """Describe a chain."""
+    """Return the features of a chain."""
     found = of.found.chains[name]
     through = (of.refs(point.kind, [point.id]) for point in found.through)
     return {
@@ -174,10 +177,11 @@ def chain(of: Described, name: str) -> Features:
 
 
 def requirement(of: Described, name: str) -> Features:
-    """Describe a requirement."""
+    """Return the features of a requirement."""
     found = of.found.requirements[name]
     return {
         "name": Feature(1, letters(name)),
+        # Unlike elsewhere the title weighs more than the id, here and for use cases.
         "title": Feature(4, words(found.title), found.title == name),
         "users": Feature(3, of.refs("component", of.users.get(f"requirement:{name}", ()))),
         "text": Feature(2, words(found.description)),
@@ -185,7 +189,7 @@ def requirement(of: Described, name: str) -> Features:
 
 
 def use_case(of: Described, name: str) -> Features:
-    """Describe a use case."""
+    """Return the features of a use case."""
     found = of.found.use_cases[name]
     return {
         "name": Feature(1, letters(name)),
@@ -196,12 +200,12 @@ def use_case(of: Described, name: str) -> Features:
 
 
 def view(of: Described, name: str) -> Features:
-    """Describe a view."""
+    """Return the features of a view."""
     found = of.found.views[name]
     return {**_named(name, found.title), "show": Feature(5, words(found.show))}
 
 
 def policy(of: Described, name: str) -> Features:
-    """Describe a policy."""
+    """Return the features of a policy."""
     found = of.found.policies[name]
     return {**_named(name, found.title), "forbids": Feature(5, _own(f"{found.forbid_from} > {found.forbid_to}"))}

@@ -1,4 +1,4 @@
-"""Findings that appeared and findings that were cured: by what they say of what, not by where."""
+"""Split findings into new, cured and silenced ones: by what they say about which element, never by their position."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from archgen.identity import identity, partners
 
 
 class Told(NamedTuple):
-    """Findings that appeared, that were cured, and that are there still but kept quiet."""
+    """Findings that appeared, that were cured, and that are still there but hidden."""
 
     new: tuple[Diagnostic, ...]
     cured: tuple[Diagnostic, ...]
@@ -20,14 +20,15 @@ class Told(NamedTuple):
 
 
 def findings(before: Version, after: Version, names: Names) -> Told:
-    """Tell findings apart. One that only gives another figure is none of these.
+    """Classify the findings of both versions. A finding that only gives another figure is none of these.
 
-    Where a part of the first version could not be read, nobody knows what was found there: then only errors are new.
+    If a part of the first version could not be read, what was found there is unknown: then only errors are new.
     """
     new, gone = _apart(before.findings, after.findings, names)
     if before.architecture.lost:
         new = tuple(each for each in new if each.severity is Severity.ERROR)
     _, cured = _apart(gone, after.silenced, names)
+    # By object identity: two equal findings are two findings.
     kept = set(map(id, cured))
     return Told(new, cured, tuple(each for each in gone if id(each) not in kept))
 
@@ -35,7 +36,7 @@ def findings(before: Version, after: Version, names: Names) -> Told:
 def _apart(
     before: Sequence[Diagnostic], after: Sequence[Diagnostic], names: Names
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Give what stands only in the second, and only in the first."""
+    """Return the findings that are only in the second version, and those only in the first."""
     old = partners([_keys(each, Names()) for each in after], [_keys(each, names) for each in before])
     gone = set(range(len(before))).difference(old)
     new = tuple(each for each, was in zip(after, old, strict=True) if was is None)
@@ -43,6 +44,8 @@ def _apart(
 
 
 def _keys(finding: Diagnostic, names: Names) -> tuple[Hashable, Hashable]:
-    """Of findings that are alike, those in the same words are matched first."""
+    """Return the keys to match by, the strictest first: among similar findings those with the same words are matched
+    first.
+    """
     same = identity(finding, names)
     return (same, names.ticked(finding.message)), same

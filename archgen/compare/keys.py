@@ -1,4 +1,4 @@
-"""The keys of an element that changed, without those that only follow from another change."""
+"""List the keys of an element that changed, without those that only follow from another change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Row = tuple[str, object, object]
 
 
 def changed(old: Element, new: Element, before: Mapping[Key, Element], after: Mapping[Key, Element]) -> Iterator[Row]:
-    """Give each key that changed, with its values as plain data; all that changed of `qos` is one."""
+    """Yield each changed key with its old and new value as plain data; all changes of `qos` are combined into one."""
     quality: list[Row] = []
     for key in _ordered(old.values, new.values):
         one, other = old.values.get(key), new.values.get(key)

@@ -1,6 +1,6 @@
-"""Find the elements that both versions have, be it under another id or in another group.
+"""Find the elements that both versions have, even under another id or in another group.
 
-From the outside in, so that what is found helps with the next: groups, components, ports, nodes, and all that refers to
+From the outside in, so that each match helps with the next: groups, components, ports, nodes, and all that refers to
 them.
 """
 
@@ -20,6 +20,8 @@ Describe = Callable[[Described, str], Features]
 def match(before: Architecture, after: Architecture) -> Names:
     """Pair the elements of both versions."""
     names = Names()
+    # Both look up `matched_ids` while it fills: features of later kinds see the matches of earlier ones. The order of
+    # the calls below is therefore part of the algorithm.
     left, right = Described(before, names.known), Described(after, _itself(names))
     names.pair("project", before.project.id, after.project.id)
     for sort, ids in _FIRST.items():
@@ -40,7 +42,7 @@ def _itself(names: Names) -> Callable[[str, str], str | None]:
 
 
 def _same(names: Names, sort: str, before: Iterable[str], after: Iterable[str]) -> None:
-    """Pair what has one id."""
+    """Pair elements that have the same id in both versions."""
     there = set(after)
     for name in before:
         if name in there:
@@ -48,7 +50,7 @@ def _same(names: Names, sort: str, before: Iterable[str], after: Iterable[str]) 
 
 
 def _below(names: Names, sort: str, before: Iterable[str], after: Iterable[str], above: str) -> None:
-    """Pair what has one name below a pair."""
+    """Pair elements that have the same name below a matched parent."""
     there = set(after)
     for name in before:
         parent, _, own = name.rpartition(".")
@@ -58,18 +60,19 @@ def _below(names: Names, sort: str, before: Iterable[str], after: Iterable[str],
 
 
 def _match(names: Names, sort: str, left: Described, right: Described, describe: Describe) -> None:
-    """Pair what is left over by likeness."""
+    """Pair the remaining elements by likeness."""
     ids = IDS[sort]
     gone = {name: describe(left, name) for name in ids(left.found) if names.known(sort, name) is None}
     if not gone:
         return
+    # Described only if something is left to pair.
     come = {name: describe(right, name) for name in ids(right.found) if not names.has(sort, name)}
     for one, other, confidence in pairs(gone, come):
         names.pair(sort, one, other, confidence)
 
 
 def _ports(names: Names, sort: str, left: Described, right: Described, describe: Describe) -> None:
-    """Pair ports: first by name, then by likeness inside each pair of components."""
+    """Pair ports, first by name, then by likeness within each pair of components."""
     ids = IDS[sort]
     _below(names, sort, ids(left.found), ids(right.found), "component")
     gone: dict[str, dict[str, Features]] = {}
@@ -85,8 +88,10 @@ def _ports(names: Names, sort: str, left: Described, right: Described, describe:
             names.pair(sort, one, other, confidence)
 
 
+# Components and ports are matched below their group or component instead: their ids change when a parent is renamed.
 _FIRST = {sort: ids for sort, ids in IDS.items() if sort not in {"component", "input", "output"}}
 _LATER: Mapping[str, Describe] = {
+    # In an order in which an element comes after those its features refer to: hosts after nodes, links after hosts.
     "type": features.type,
     "message": features.message,
     "node": features.node,

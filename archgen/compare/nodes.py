@@ -1,4 +1,4 @@
-"""Nodes in normal form: what they say of themselves, of their ports, and of time."""
+"""List nodes in normal form: what they say of themselves, of their ports, and of timing."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ from archgen.timing.wording import rate as hertz
 from archgen.transform import ros_names
 
 Row = tuple[str, str, str, Mapping[str, object], tuple[str, str] | None, str | None, bool, tuple[str, ...]]
-"""What an element is made of."""
+"""The positional arguments of a `ComparedElement` (a tuple because compared_elements imports this module)."""
 QOS = ("reliability", "durability", "history", "depth", "deadline", "lifespan", "liveliness", "lease_duration")
 _DEFAULT = Qos()
 _SECOND = 10**9
 
 
 def nodes(found: Architecture, names: Names, split: frozenset[str]) -> Iterator[Row]:
-    """List the nodes that somebody wrote, and what they say of their ports.
+    """Yield the written nodes, and what they say of their ports.
 
-    `split` are components with one node in one version and several in the other: told by their nodes in both.
+    `split` are components with one node in one version and several in the other: both versions describe them by their
+    nodes.
     """
     whole = alone(found)
     sole = frozenset(component for component in whole if names.to("component", component) not in split)
@@ -54,7 +55,7 @@ def nodes(found: Architecture, names: Names, split: frozenset[str]) -> Iterator[
 
 
 def alone(found: Architecture) -> frozenset[str]:
-    """Give the components that have one node: it exposes all their ports, whether or not it says so."""
+    """Return the components that have exactly one node: it exposes all their ports, whether or not it says so."""
     once, twice = set[str](), set[str]()
     for node in found.nodes.values():
         for component in node.implements:
@@ -63,7 +64,7 @@ def alone(found: Architecture) -> frozenset[str]:
 
 
 def _implied(found: Architecture, node: Node, components: frozenset[str]) -> Iterator[PortUse]:
-    """Give the ports that a node carries without a word, of some of its components."""
+    """Yield the ports of some of its components that a node carries without writing them."""
     written = {use.port for use in node.uses}
     for end in found.endpoints if components.intersection(node.implements) else ():
         if end.node == node.id and end.port not in written and end.port and end.port.rpartition(".")[0] in components:
@@ -75,18 +76,19 @@ def _whole(use: PortUse, alone: frozenset[str]) -> bool:
 
 
 def _port_id(use: PortUse, node: Node, names: Names) -> tuple[str, str]:
-    """Give a port's id below its node, as it is called in both versions and in this one."""
+    """Return a port's id below its node, with the common name and with the name in this version."""
     if use.internal:
         return f"internal.{use.use}.{use.key}", f"internal.{use.use}.{use.key}"
     if use.port is None:
         return f"{use.use}.{use.key}", f"{use.use}.{use.key}"
     common = _port(use, names)[0]
+    # Two components may have ports of one name: with several components the id names the component as well.
     parts = 1 if len(node.implements) <= 1 else 2
     return f"{use.use}.{_end(common, parts)}", f"{use.use}.{_end(use.port, parts)}"
 
 
 def _port(use: PortUse, names: Names) -> tuple[str, ...]:
-    """Give the port of the component behind a use, None of an internal one."""
+    """Return the common id of the component's port behind a use, nothing for an internal one."""
     return (names.to("output" if use.use in {"publishes", "serves"} else "input", use.port),) if use.port else ()
 
 
@@ -95,7 +97,7 @@ def _end(path: str, parts: int) -> str:
 
 
 def _further(found: Architecture, node: Node) -> tuple[str, ...]:
-    """Give a node's further owners, unless they are just those of its components."""
+    """Return a node's further owners, unless they are exactly those of its components."""
     inherited = {owner for component in node.implements for owner in found.components[component].owners}
     return () if set(node.owners) == inherited else node.co_owners
 
@@ -103,6 +105,7 @@ def _further(found: Architecture, node: Node) -> tuple[str, ...]:
 def _node(found: Architecture, node: Node, names: Names, alone: frozenset[str]) -> dict[str, object]:
     container = names.to("container", node.container) if node.container else None
     held = found.containers.get(node.container) if node.container else None
+    # A host that is the container's own adds nothing, and would change with it.
     host = None if held and held.host == node.host else node.host
     return {
         "title": title(node.id, node.title),
@@ -138,12 +141,12 @@ def _use(use: PortUse, node: Node, *, stated: bool) -> dict[str, object]:
 
 
 def default_qos(key: str) -> object:
-    """Give what counts where nobody wrote a key of `qos`."""
+    """Return the value of a key of `qos` that nobody wrote."""
     return getattr(_DEFAULT, key)
 
 
 def behind(found: Architecture) -> Mapping[str, list[Node]]:
-    """Find the nodes of each component, the planned ones too."""
+    """Return for each component its nodes, planned ones included."""
     made: dict[str, list[Node]] = defaultdict(list)
     for node in found.nodes.values():
         for component in node.implements:
@@ -154,14 +157,14 @@ def behind(found: Architecture) -> Mapping[str, list[Node]]:
 def timing_values(
     component: Component, nodes_of: Sequence[Node], names: Names, split: frozenset[str]
 ) -> dict[str, object]:
-    """Give the timing of a component: with one node it is that of both, wherever it is written; with several, its claim."""
+    """Return a component's timing: that of its node if it has exactly one, else what it says itself."""
     alone = len(nodes_of) == 1 and names.to("component", component.id) not in split
     timing = nodes_of[0].timing.get(component.id) if alone else component.timing
     return dict(_timing("timing", timing, names)) if timing else {}
 
 
 def _node_timing(node: Node, names: Names, alone: frozenset[str]) -> dict[str, object]:
-    """Give the timing of what is not told at a component: of parts of components, and of a node without any."""
+    """Return the timing that no component reports: of components with several nodes, and of a node without any."""
     values: dict[str, object] = {}
     for component, timing in node.timing.items():
         if component not in alone:
@@ -171,9 +174,10 @@ def _node_timing(node: Node, names: Names, alone: frozenset[str]) -> dict[str, o
 
 
 def _timing(prefix: str, timing: Timing, names: Names) -> Iterator[tuple[str, object]]:
-    """Give what is said about time; a period is told as the rate that it is."""
+    """Yield the timing by key; a period is given as the rate it amounts to."""
     rate = timing.rate
     if timing.period is not None and timing.period.value:
+        # Periods are in ns. `period: 100 ms` and `rate: 10 Hz` mean the same and must compare equal.
         rate = Quantity(Fraction(_SECOND) / timing.period.value, hertz(Fraction(_SECOND) / timing.period.value))
     yield f"{prefix}.behaviour", timing.behaviour
     yield f"{prefix}.rate", rate

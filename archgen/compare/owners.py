@@ -1,4 +1,4 @@
-"""Whose elements, and whose ends of connections, a comparison touches."""
+"""Find the partners who own the elements, or the other ends of connections, that a comparison touches."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from archgen.compare.wiring import Wires
 
 
 def owners(changes: Sequence[Change], told: Told) -> tuple[str, ...]:
-    """Name the partners who should look at the changes: owners of what changed and of its other ends."""
+    """Return the partners who should look at the changes, sorted: owners of what changed and of its other ends."""
     found = set[str]()
+    # Removed elements are reported by their old id, `elements_before` has them by the common one.
     own = {(e.sort, e.own): e for e in told.before.values()}
     for change in _all(changes):
+        # Both versions: who read the output before is concerned as much as who reads it now.
         for listed, wires in ((told.before, told.old), (told.after, told.new)):
             element = _element(change, listed, own)
             found.update(_of(change, element, listed, wires))
@@ -47,7 +49,7 @@ def _of(change: Change, element: Element | None, listed: Mapping[Key, Element], 
 
 
 def _others(change: Change, element: Element, listed: Mapping[Key, Element], wires: Wires) -> Iterator[Key]:
-    """Give what is at the other end of an element that changed."""
+    """Yield the keys of what is at the other end of a changed element."""
     match change.sort:
         case "connection":
             yield from (("output", name) for name in wires.sources.get(element.id, ()))
@@ -69,14 +71,15 @@ def _others(change: Change, element: Element, listed: Mapping[Key, Element], wir
 
 
 def _way(chain: Element) -> Iterator[Key]:
-    """Give the components and nodes that a chain leads through."""
+    """Yield the components, nodes and outputs that a chain may lead through."""
     through = chain.values.get("through")
     for point in through if isinstance(through, tuple) else ():
+        # A point's id does not say its kind; the keys that do not exist are skipped by `_owners_of_change`.
         yield from (("component", point), ("node", point), ("output", point))
 
 
 def _there(place: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
-    """Give the nodes on a host, in a container, or on the hosts that a link connects."""
+    """Yield the nodes on a host, in a container, or on the hosts that a link connects."""
     hosts = place.values.get("connects") if place.sort == "link" else frozenset({place.id})
     if not isinstance(hosts, frozenset):
         return
@@ -89,7 +92,7 @@ def _there(place: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
 
 
 def _users(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
-    """Give the ports of a type, or the components that serve a requirement."""
+    """Yield the ports of a type, or the components that serve a requirement."""
     for key, other in listed.items():
         if element.sort == "type" and key[0] in {"output", "input"} and other.values.get("type") == element.id:
             yield key

@@ -1,4 +1,4 @@
-"""How each key of an element is told."""
+"""The wording of a changed key."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FLAT = {
     "status": "is",
     "version": "is version",
 }
-"""Keys with a verb of their own: `x` VERB after instead of before."""
+"""Keys with a verb of their own: `x` VERB new value instead of old value."""
 _NAMES = {
     "timing.rate": "rate",
     "timing.wcet": "worst case execution time",
@@ -46,14 +46,14 @@ _VERBS = {
     "use_cases": ("now belongs to", "no longer belongs to"),
     "kind": ("is now", "is no longer"),
 }
-"""Keys of lists that are told as what the element does with what was added, and removed."""
+"""List keys, with what the element does with added and with removed items."""
 _PATHS = frozenset({"component", "input", "output", "connection", "port"})
-"""Sorts whose ids are paths that say enough."""
+"""Kinds whose ids are paths that need no kind in front of them."""
 _SORTS = {"use_case": "use case", "message": "message", "port": "port"}
 
 
 def changed_key(change: Change) -> str:
-    """Say what a key was and is."""
+    """Describe how the value of a key changed."""
     key, before, after = change.key or "", change.before, change.after
     name = f"`{short(change.element)}`"
     said = name if "." in change.element and change.sort in _PATHS else f"{_SORTS.get(change.sort, change.sort)} {name}"
@@ -68,6 +68,7 @@ def changed_key(change: Change) -> str:
     if key in _FLAT and _tellable(key, before, after):
         return f"{said} {_flat(key, before, after)}"
     if key == "topic" and (".serves." in change.element or ".calls." in change.element):
+        # What is called a topic in the files is the name of a service or action here.
         key = "name"
     if isinstance(before, list) or isinstance(after, list):
         return f"{said}{_sets(key, before, after)}"
@@ -122,6 +123,7 @@ def _brief(text: object) -> bool:
 
 
 def _rewritten(before: object, after: object) -> str:
+    # Lines are counted, not quoted: a sentence must stay on one line.
     if isinstance(before, str) and isinstance(after, str) and "\n" in before + after:
         old, new = Counter(before.splitlines()), Counter(after.splitlines())
         counts = ((new - old).total(), "added"), ((old - new).total(), "removed")
@@ -133,7 +135,7 @@ def _rewritten(before: object, after: object) -> str:
 
 
 def _sets(key: str, before: object, after: object) -> str:
-    """Say what a list gained and lost, with the key's own verbs where it has some."""
+    """Describe what a list gained and lost, with the key's own verbs if it has any."""
     old = before if isinstance(before, list) else []
     new = after if isinstance(after, list) else []
     name = f": {_name(key)}"
@@ -158,7 +160,7 @@ def _few(items: Sequence[str]) -> list[str]:
 
 
 def shown(value: object) -> str:
-    """Give a value as it stands in a sentence."""
+    """Format a value for a sentence."""
     if value is None:
         return "unlimited"
     if isinstance(value, (bool, int, float)):
@@ -169,11 +171,12 @@ def shown(value: object) -> str:
 
 
 def short(text: str) -> str:
-    """Give a text on one line that a sentence can hold."""
+    """Return a text on one line, at most 80 characters long, without backticks."""
+    # A backtick inside would end the code span that sentences put the text into, and let a name pose as our own words.
     line = " ".join(text.replace("`", "'").split())
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
 
 
 def listed(items: Sequence[str]) -> str:
-    """Join items as a sentence does."""
+    """Join items as a sentence does: "a, b and c"."""
     return " and ".join((", ".join(items[:-1]), items[-1])) if len(items) > 1 else "".join(items)

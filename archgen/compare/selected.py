@@ -1,4 +1,4 @@
-"""The part of a comparison that touches what a selector names, in either version."""
+"""Narrow a comparison to what touches the elements that a selector names in either version."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from archgen.model.selector import Selection
 
 
 def selected(found: Comparison, before: Selection, after: Selection) -> Comparison:
-    """Keep what touches a selected component or node. What stands outside all of them (the project, views) is left out."""
+    """Keep what touches a selected component or node. Anything outside of them (the project, views) is dropped."""
     old = {names(found, sort, one) for sort, ids in _ids(before) for one in ids}
     wanted = old | {(sort, one) for sort, ids in _ids(after) for one in ids}
     changes = tuple(change for change in found.changes if not wanted.isdisjoint(_touched(change, found)))
@@ -31,7 +31,7 @@ def selected(found: Comparison, before: Selection, after: Selection) -> Comparis
 
 
 def names(found: Comparison, sort: str, one: str) -> Key:
-    """Give the common name of an element of the first version."""
+    """Return the key of an element of the first version under its common id."""
     return sort, found.names.to(sort, one)
 
 
@@ -41,11 +41,12 @@ def _ids(selection: Selection) -> Iterator[tuple[str, frozenset[str]]]:
 
 
 def _parts(names_of: set[str]) -> set[str]:
-    """Give activities and the nodes that they belong to (`node.component`)."""
+    """Return activities together with the nodes that they belong to (`node.component`)."""
     return names_of | {name.partition(".")[0] for name in names_of}
 
 
 def _about(wanted: set[Key], listed: Mapping[Key, Element]) -> Callable[[Diagnostic], bool]:
+    # Findings name elements by the ids of their own version.
     own = {element.own for key, element in listed.items() if key in wanted}
 
     def about(finding: Diagnostic) -> bool:
@@ -56,7 +57,7 @@ def _about(wanted: set[Key], listed: Mapping[Key, Element]) -> Callable[[Diagnos
 
 
 def _touched(change: Change, found: Comparison) -> set[Key]:
-    """Give the components and nodes that a change is about, parts included, by common names."""
+    """Return the components and nodes that a change is about, parts included, by common ids."""
     touched = {key for part in change.parts for key in _touched(part, found)}
     own, told = change.element, found.told
     sort = "input" if change.sort == "connection" else change.sort
@@ -84,11 +85,11 @@ def _behind(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
 
 
 _KEYS = {"type": "type", "requirement": "requirements", "host": "host", "container": "container"}
-"""With which key an element names another one of a sort."""
+"""For each kind, the key with which other elements name an element of it."""
 
 
 def _users(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
-    """Give the components and nodes that name an element, or that it names."""
+    """Yield the components and nodes that name an element, or that it names."""
     if element.sort == "chain" and isinstance(through := element.values.get("through"), tuple):
         for point in through:
             yield from (("component", point), ("component", point.rpartition(".")[0]), ("node", point))
@@ -97,6 +98,8 @@ def _users(element: Element, listed: Mapping[Key, Element]) -> Iterator[Key]:
         value = other.values.get(key) if key else other.owner
         if other.sort != "chain" and (value == element.id or (isinstance(value, frozenset) and element.id in value)):
             if other.sort in {"host", "container"}:
+                # Through hosts and containers to the nodes on them; other kinds are not followed, which also ends the
+                # recursion.
                 yield from _users(other, listed)
             elif other.sort != element.sort:
                 yield from (

@@ -1,4 +1,4 @@
-"""Changes in words: what happened, and what it means for whoever is at the other end."""
+"""Describe changes in words: what happened, and what it means for those at the other end."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _DOES: Mapping[str, Mapping[str, str]] = {
     "link": {"connects": "connects"},
     "chain": {"through": "leads through", "deadline": "must end within"},
 }
-"""What is told of a new element of a sort: its keys, each with a verb."""
+"""For each kind, the keys reported of a new element, each with a verb."""
 _MOST = 3
-"""So many consequences are told in one sentence; all stand in the parts."""
+"""Maximal number of effects in one sentence; all of them are in the parts."""
 
 
 def whole(change: Change, element: Element, told: Told) -> str:
-    """Say that an element came or went, and what its connections meant to others."""
+    """Describe an element that was added or removed, with the effects of its connections on others."""
     verb = "is added" if change.kind == "added" else "is removed"
     sort = _WORDS.get(change.sort, change.sort)
     said = f"{sort} `{short(change.element)}`{_called(element)} {verb}{_with(change)}"
@@ -46,7 +46,7 @@ def _called(element: Element) -> str:
 
 
 def _being(element: Element) -> str:
-    """Say of a new element what tells most: a node's component and place, a type's message, how a chain leads."""
+    """Describe what matters most of a new element, such as a node's place or the way of a chain."""
     if element.sort == "policy":
         return f"; nothing may lead from `{short(str(element.values['forbid.from']))}` to `{short(str(element.values['forbid.to']))}`"
     does = [
@@ -69,7 +69,7 @@ def _some(effects: Sequence[str]) -> Sequence[str]:
 
 
 def _with(change: Change) -> str:
-    """Count what came or went with it."""
+    """Count the components and ports that were added or removed with it."""
     counts = {"component": 0, "input": 0, "output": 0}
     for part in _below(change):
         if part.sort in counts and part.kind == change.kind:
@@ -85,8 +85,9 @@ def _below(change: Change) -> Iterator[Change]:
 
 
 def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
-    """Say who lost the last reader or source, or gained the first, and which requirements nothing serves any more."""
+    """Describe who lost the last reader or source or gained the first, and which requirements are served no more."""
     inside = {(part.sort, part.element) for part in (change, *_below(change))}
+    # A connection is known by its input.
     names = {name for sort, name in inside if sort == "connection"}
     here, there = (told.old, told.new) if change.kind == "removed" else (told.new, told.old)
     if change.kind == "added" or change.sort == "input":
@@ -94,6 +95,7 @@ def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
     for reader in sorted(names):
         name = _common(reader, told)
         for source in sorted(here.sources.get(name, frozenset()) - there.sources.get(name, frozenset())):
+            # A source that came or went itself has a change of its own.
             kept = ("output", source) in told.before and ("output", source) in told.after
             if kept and not there.readers.get(source):
                 yield _end_of(source, "read", change.kind)
@@ -121,7 +123,7 @@ def _effects(change: Change, element: Element, told: Told) -> Iterator[str]:
 
 
 def _reading(names: Iterable[str], inside: Collection[Key], told: Told, kind: str) -> Iterator[str]:
-    """Say what the inputs that came or went read, from outside of what came or went with them and of what is told anyway."""
+    """Describe what added or removed inputs read from outside of the change, except what is reported anyway."""
     wires, others = (told.new, told.old) if kind == "added" else (told.old, told.new)
     ports = [_common(name, told) for name in names if ("input", name) in inside]
     read = sorted({source for port in ports for source in wires.sources.get(port, frozenset())})
@@ -134,7 +136,7 @@ def _reading(names: Iterable[str], inside: Collection[Key], told: Told, kind: st
 
 
 def _common(own: str, told: Told) -> str:
-    """Give the common name of an input that may be told by the name that it had."""
+    """Return the common id of an input that may be given by its old one."""
     if ("input", own) in told.before or ("input", own) in told.after:
         return own
     return next((name for (sort, name), e in told.before.items() if sort == "input" and e.own == own), own)
@@ -163,7 +165,7 @@ def _unserved(element: Element, told: Told) -> Iterator[str]:
 
 
 def renamed(change: Change, told: Told) -> str:
-    """Say that an element has another id or stands in another group, and which names on the robot follow it."""
+    """Describe a rename or a move, and the names on the robot that follow it."""
     sort = _WORDS.get(change.sort, change.sort)
     was = change.was or ""
     if change.kind == "moved":
@@ -179,7 +181,7 @@ def renamed(change: Change, told: Told) -> str:
 
 
 def _following(change: Change, told: Told) -> str:
-    """Say which topics, services and actions are called otherwise because nobody named them."""
+    """Describe which topics, services and actions get another name because nobody named them."""
     if change.sort not in {"group", "component", "output"}:
         return ""
     inside = (port for port in told.unnamed if port == change.element or port.startswith(f"{change.element}."))
@@ -192,7 +194,7 @@ def _following(change: Change, told: Told) -> str:
 
 
 def connection(each: Rewired, told: Told) -> str:
-    """Say what an input reads now, and what that leaves behind."""
+    """Describe what an input reads now, and what that leaves unread."""
     reader = f"`{_shown('input', each.input, told)}`"
     if told.gone("input", each.input):
         return _reader_went(each, reader, told)
@@ -204,9 +206,10 @@ def connection(each: Rewired, told: Told) -> str:
 
 
 def _reads(each: Rewired, reader: str, told: Told) -> str:
-    """Say which sources an input gained and lost."""
+    """Describe which sources an input gained and lost."""
     lost = [_shown("output", name, told) for name in sorted(each.lost)]
     gained = sorted(each.gained)
+    # A reference to what has no output yet stands for itself in the map of connections (`map_connections`).
     if lost and gained and not any(("output", name) in told.after for name in gained):
         return f"{reader} no longer reads {_ticked(lost)}: {_ticked(gained)} {'has' if len(gained) == 1 else 'have'} no output any more"
     if lost and gained:
@@ -223,7 +226,7 @@ def _reads(each: Rewired, reader: str, told: Told) -> str:
 
 
 def _reader_went(each: Rewired, reader: str, told: Told) -> str:
-    """Say what the removal of a reader means to each of its sources."""
+    """Describe what the removal of a reader means to each of its sources."""
     said = []
     for source in sorted(each.lost):
         if told.gone("output", source) or told.new.readers.get(source):
@@ -242,7 +245,7 @@ def _reader_went(each: Rewired, reader: str, told: Told) -> str:
 
 
 def port(kind: str, element: Element, told: Told) -> str:
-    """Say that a node carries a port, or no longer does."""
+    """Describe that a node carries a port, or no longer does."""
     node, _, name = element.own.partition(".")
     named = ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
     on = f" on {named}" if named else ""
@@ -256,12 +259,12 @@ def port(kind: str, element: Element, told: Told) -> str:
 
 
 def changed(change: Change, told: Told) -> str:
-    """Say what one key of an element was and is, and whom that concerns."""
+    """Describe the old and new value of a key, and whom that concerns."""
     return "; ".join(filter(None, (changed_key(change), _concerns(change, told))))
 
 
 def _concerns(change: Change, told: Told) -> str:
-    """Name who is at the other end of a change: readers, carriers, requirements that nobody serves any more."""
+    """Describe who is at the other end of a change: readers, carriers, requirements that nothing serves any more."""
     name = change.element
     match change.sort, change.key:
         case "output", "type":
@@ -282,7 +285,7 @@ def _concerns(change: Change, told: Told) -> str:
 
 
 def _ticked(names: Iterable[str]) -> str:
-    """Name some elements, and count the rest."""
+    """Return element names in backticks, the surplus counted."""
     every = [f"`{short(name)}`" for name in names]
     most = 2 * _MOST
     return listed(every) if len(every) <= most else listed([*every[: most - 1], f"{len(every) - most + 1} more"])

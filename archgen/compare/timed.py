@@ -1,4 +1,4 @@
-"""The timing of both versions, analysed only where a change can touch it."""
+"""Analyse the timing of both versions, only if a change can affect it."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _TEXT_STARTS = ("urls.", "performance.", "parameters.")
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """The analyses of both versions."""
+    """The timing analyses of both versions."""
 
     before: Analysis
     after: Analysis
 
 
 def timed(before: Architecture, after: Architecture, changes: Sequence[Change]) -> Timed | None:
-    """Analyse both versions, if there are chains to compare, or a host or a link that cannot do what is asked of it."""
+    """Analyse both versions if there are chains to compare, or an overloaded host or link; else return None."""
     if before.lost or after.lost:  # of what could not be read nobody knows how long it takes
         return None
     asked = before.chains or after.chains
@@ -43,16 +43,17 @@ def timed(before: Architecture, after: Architecture, changes: Sequence[Change]) 
 
 
 def matters(change: Change) -> bool:
-    """Say whether a change can touch a figure."""
+    """Whether a change can affect a figure of timing."""
     if change.sort in _TEXT_SORTS:
         return False
     if change.kind == "changed" and change.key:
         return change.key not in _TEXT_KEYS and not change.key.startswith(_TEXT_STARTS)
+    # Renames and moves change no figure.
     return change.kind in {"added", "removed", "changed"}
 
 
 def full(load: HostLoad | LinkLoad) -> bool:
-    """Say whether a host or a link is asked for more than it has."""
+    """Whether a host or a link is asked for more than it has."""
     if isinstance(load, LinkLoad):
         return load.share.value is not None and load.share.value >= 1
     return any(used.value is not None and used.value >= cores for _, cores, used in load.places)

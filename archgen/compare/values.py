@@ -1,4 +1,4 @@
-"""Values in normal form, and as plain data."""
+"""Bring values into normal form for comparing, and into plain data for output."""
 
 from __future__ import annotations
 
@@ -12,26 +12,27 @@ from archgen.model.quantity import Quantity
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """A parameter that is true or false; to Python these are 1 and 0."""
+    """A parameter that is true or false; to Python these would be equal to 1 and 0."""
 
     on: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Title:
-    """A title; one that nobody wrote is made from the id, and follows it."""
+    """A title; a generated one is made from the id and follows it."""
 
     text: str
     made: bool
 
 
 def title(name: str, text: str) -> Title:
-    """Give the title of an element."""
+    """Return the title of an element in normal form. A written title equal to the generated one counts as generated."""
     return Title(text, text in {made_title(name), name})
 
 
 def prose(text: str | None) -> str | None:
-    """Give a text without what its form in the file adds: line ends, and blanks at the end of lines and of the text."""
+    """Return a text without line endings of its file and trailing blanks; None for an empty one."""
+    # Short cut for most texts, one line of ASCII.
     if text is None or (text.isascii() and "\n" not in text and "\r" not in text):
         return text and (text.strip() or None)
     lines = (line.rstrip() for line in text.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
@@ -39,21 +40,22 @@ def prose(text: str | None) -> str | None:
 
 
 def words(values: Iterable[str]) -> frozenset[str]:
-    """Give a list of which the order says nothing."""
+    """Return a list whose order is irrelevant as a set."""
     return frozenset(values)
 
 
 def known(values: Mapping[str, object]) -> dict[str, object]:
-    """Leave out what nobody said."""
+    """Drop the keys that have no value."""
     return {key: value for key, value in values.items() if value is not None and value not in (frozenset(), ())}
 
 
 def leaves(prefix: str, value: object) -> Iterator[tuple[str, object]]:
-    """Give what a parameter holds, leaf by leaf."""
+    """Yield the leaves of a parameter with their paths below `prefix`."""
     if isinstance(value, Mapping) and value:
         for key, below in value.items():
             yield from leaves(f"{prefix}.{key}", below)
     elif isinstance(value, Mapping):
+        # An empty mapping is a leaf: it differs from no parameter at all.
         yield prefix, "{}"
     else:
         yield prefix, _frozen(value)
@@ -70,7 +72,7 @@ def _frozen(value: object) -> object:
 
 
 def plain(value: object) -> object:
-    """Give a value as plain data: quantities as text, sets as sorted lists."""
+    """Return a value as plain data: quantities as text, sets as sorted lists."""
     if isinstance(value, (Quantity, Title)):
         return value.text
     if isinstance(value, Fraction):

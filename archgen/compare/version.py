@@ -1,4 +1,4 @@
-"""One side of a comparison."""
+"""One version of an architecture as a comparison sees it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from archgen.model.architecture import Architecture
 
 @dataclass(frozen=True, slots=True)
 class Version:
-    """One side. `rules` are the project's settings of rules, `chapters` its texts by path in the report's `order`.
+    """One version. `rule_settings` are the project's settings of rules, `chapters` its texts by path, in the report's
+    `chapter_order`.
 
-    `unnamed` are `id` and `title` where the project does not say them: then they are made from the name of a folder or file.
+    `unnamed_keys` are `id` and `title` if the project does not write them: then they come from the name of a folder or
+    file.
     """
 
     architecture: Architecture
@@ -22,5 +24,5 @@ class Version:
     chapters: Mapping[str, str] = field(default_factory=dict)
     order: tuple[str, ...] = ()
     silenced: tuple[Diagnostic, ...] = ()
-    """What a comment or a setting keeps out of the findings."""
+    """Findings that a comment or a setting hides."""
     unnamed: frozenset[str] = frozenset()

@@ -1,4 +1,4 @@
-"""Who reads what, before and after, with one set of names; and what it means that this changed."""
+"""Who reads what in each version, under common ids, and which inputs have other sources."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Ends = Mapping[str, frozenset[str]]
 
 @dataclass(frozen=True, slots=True)
 class Wires:
-    """One version: what each input reads, and who reads each output."""
+    """One version: the sources of each input, and the readers of each output."""
 
     sources: Ends
     readers: Ends
@@ -22,7 +22,7 @@ class Wires:
 
 @dataclass(frozen=True, slots=True)
 class Rewired:
-    """An input of which the sources changed."""
+    """An input whose sources changed."""
 
     input: str
     before: frozenset[str]
@@ -30,17 +30,17 @@ class Rewired:
 
     @property
     def lost(self) -> frozenset[str]:
-        """Give the sources that it had."""
+        """Return the sources that it no longer has."""
         return self.before - self.after
 
     @property
     def gained(self) -> frozenset[str]:
-        """Give the sources that it has now."""
+        """Return the sources that are new."""
         return self.after - self.before
 
 
 def wires(found: Architecture, names: Names) -> Wires:
-    """Give the connections of a version. A reference to what has no output yet stands for itself."""
+    """Return the connections of a version. A reference to something without an output yet is kept under its own id."""
     sources: dict[str, set[str]] = defaultdict(set)
     readers: dict[str, set[str]] = defaultdict(set)
     for connection in found.connections:
@@ -59,7 +59,7 @@ def _frozen(ends: Mapping[str, set[str]]) -> Ends:
 
 
 def rewired(before: Wires, after: Wires) -> Iterator[Rewired]:
-    """Give the inputs of which the sources changed, by name."""
+    """Yield the inputs whose sources changed, sorted by id."""
     nothing = frozenset[str]()
     for name in sorted(before.sources.keys() | after.sources.keys()):
         old, new = before.sources.get(name, nothing), after.sources.get(name, nothing)

@@ -1,1 +1,1 @@
-"""Edit: change a project's files by as little text as possible, and prove that nothing else changed."""
+"""Edit a project's files by as little text as possible, and prove that nothing else changed."""

@@ -1,4 +1,4 @@
-"""Add an element to a project: find its place, make the new text, prove it. Nothing is written here."""
+"""Plan how to add an element to a project: find its place, make the new text, prove it. Nothing is written here."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MODELINE = re.compile(r"\A\s*# yaml-language-server: \$schema=(\S+)")
 
 
 class RefusedError(Exception):
-    """The element is not added. `message` says why, `by_hand` what a person may write instead; `errors` are quoted."""
+    """The element is not added. `message` says why, `by_hand` what a person may write instead; `errors` are shown."""
 
     def __init__(self, message: str, by_hand: str = "", errors: tuple[Diagnostic, ...] = ()) -> None:
         super().__init__(message)
@@ -32,7 +32,7 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One file's bytes before (None: it is new) and after, and the line at which the element stands."""
+    """One file's bytes before (None: the file is new) and after, and the line at which the element begins."""
 
     file: str
     before: bytes | None
@@ -40,16 +40,17 @@ class Edit:
     line: int
 
     def diff(self) -> Iterator[str]:
-        """Give a unified diff, as git writes it."""
+        """Yield a unified diff, as git writes it."""
         old = (self.before or b"").decode().splitlines()
         name = "/dev/null" if self.before is None else f"a/{self.file}"
         return difflib.unified_diff(old, self.after.decode().splitlines(), name, f"b/{self.file}", lineterm="")
 
 
 def add(checked: Checked, place: Place, element: Element, own: str) -> Edit:
-    """Give the edit that adds an element (`own` is its complete id). Raises RefusedError."""
+    """Return the edit that adds an element; `element_id` is its complete id. Raise EditRefusedError."""
     before, text = (None, _head(checked, place)) if place.new else _read(checked, place)
     after = _text(place, element, text)
+    # Two proofs: `adds_only_element` looks at the file alone, this one at the whole project with it.
     found = proof.consequences(checked, place.file, after.removeprefix(_BOM), own)
     if found.errors:
         message = "with it the project would have errors that it does not have now"
@@ -65,6 +66,7 @@ _BOM = codecs.BOM_UTF8.decode()
 
 
 def _read(checked: Checked, place: Place) -> tuple[bytes, str]:
+    """Read a file of the project. Raise EditRefusedError."""
     data = checked.loaded.files.fetch(place.file)
     if isinstance(data, Refusal):
         message = f"{place.file} cannot be read: {data.message}"
@@ -77,9 +79,10 @@ def _read(checked: Checked, place: Place) -> tuple[bytes, str]:
 
 
 def _head(checked: Checked, place: Place) -> str:
-    """Give the first line of a new file: the schema's, where the project's other files have one."""
+    """Return the first line of a new file: the schema comment, where the project's other files have one."""
     for file in checked.files:
         found = _MODELINE.match(checked.sources.text(file) or "")
+        # A relative path to the schema has to be rewritten for the new file's folder.
         if found and "://" not in found[1] and not found[1].startswith(("/", "\\")):
             schema = posixpath.join(posixpath.dirname(file), found[1])
             address = posixpath.relpath(schema, posixpath.dirname(place.file) or ".")
@@ -90,6 +93,7 @@ def _head(checked: Checked, place: Place) -> str:
 
 
 def _text(place: Place, element: Element, text: str) -> str:
+    """Return the text with the element inserted, the first proposal that proves right. Raise EditRefusedError."""
     mark = _BOM if text.startswith(_BOM) else ""
     plain = text.removeprefix(_BOM)
     try:
@@ -103,12 +107,13 @@ def _text(place: Place, element: Element, text: str) -> str:
 
 
 def _by_hand(place: Place, element: Element) -> str:
+    """Return what a person may write into the file instead."""
     lines = element.below(place.path).lines("    ", 2)
     return "\n".join((f"Write it by hand into {place.file}, or into a file of its own:", "", *lines))
 
 
 def _line(before: str, after: str) -> int:
-    """Give the first line that differs."""
+    """Return the number of the first line that differs and is not blank."""
     old, new = before.splitlines(), after.splitlines()
     same = next((n for n, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
     return next((n + 1 for n in range(same, len(new)) if new[n].strip()), same + 1)

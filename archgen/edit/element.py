@@ -1,4 +1,4 @@
-"""What is to be written: an element with its keys, as the lines of a block or in braces."""
+"""The element to be written, as the lines of a block or in braces."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ Value = str | tuple[str, ...] | Mapping[str, "Value"] | None
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """An id and what stands below it. `hints` say, behind a key that is still empty, what belongs there."""
+    """An id and its body. `hints` are comments behind keys that are still empty: what belongs there."""
 
     id: str
     body: Mapping[str, Value]
     hints: Mapping[str, str] = field(default_factory=dict)
 
     def below(self, keys: tuple[str, ...]) -> Element:
-        """Give the element inside of mappings that are not written yet."""
+        """Return the element nested in mappings that are not written yet."""
         found = self
         for key in reversed(keys):
             found = Element(key, {found.id: found.body}, found.hints)
@@ -27,19 +27,19 @@ class Element:
 
     @property
     def data(self) -> object:
-        """Give the body as a parser reads it back."""
+        """The body as a parser reads it back."""
         return _data(self.body)
 
     def inline(self) -> Element:
-        """Give what is written in braces: no key is empty there."""
+        """Return the element as it is written in braces, where a key cannot be left empty."""
         return Element(self.id, {key: value for key, value in self.body.items() if value is not None})
 
     def lines(self, indent: str, unit: int) -> list[str]:
-        """Write it as a block."""
+        """Write the element as the lines of a block."""
         return list(_block(self.id, self.body, indent, " " * unit, self.hints))
 
     def flow(self) -> str:
-        """Write it in braces, on one line."""
+        """Write the element in braces, on one line."""
         return f"{scalar(self.id)}: {flow(self.body)}"
 
 

@@ -1,4 +1,4 @@
-"""Put an element into a file's text as the last of its mapping; every other character stays as it is."""
+"""Insert an element into a file's text as the last of its mapping; every other character stays as it is."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _UNIT = 2
 
 
 class CannotInsertError(Exception):
-    """The text has a form into which nothing is put by machine. The text says which."""
+    """The text has a form into which nothing is inserted by machine. The message says which."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Text:
-    """A file's text as lines with their ends, and its tree."""
+    """A file's text as lines with their line endings, and its tree."""
 
     lines: tuple[str, ...]
     root: Table
@@ -37,20 +37,21 @@ class _Text:
         return sum(len(text) for text in self.lines[: line - 1]) + column - 1
 
     def begins(self, value: Value) -> str:
-        """Give the text from where a value begins, behind its anchor."""
+        """Return the text from where a value begins, behind its anchor, to the end of the line."""
         rest = self.lines[value.at.line - 1][value.at.column - 1 :] if value.at.line <= len(self.lines) else ""
         return re.sub(r"\A&\S+[ \t]*", "", rest)
 
 
 def texts(file: str, text: str, path: tuple[str, ...], element: Element) -> Iterator[str]:
-    """Give the texts with the element at a path of mappings, likeliest first: who asks proves which one is right.
+    """Yield texts with the element at a path of mappings, the likeliest first; the caller proves which one is right.
 
-    Raises CannotInsertError.
+    Raise CannotInsertError.
     """
     document, _ = yaml.parse(file, text)
     if document is None:
         msg = f"{file} cannot be parsed: `archgen check` says where"
         raise CannotInsertError(msg)
+    # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
     if _unfolded(text):
         msg = f"{file} holds line breaks that editors and parsers see differently"
         raise CannotInsertError(msg)
@@ -66,16 +67,18 @@ def texts(file: str, text: str, path: tuple[str, ...], element: Element) -> Iter
 
 
 def _unfolded(text: str) -> bool:
+    """Return whether a text has line breaks that are a carriage return only."""
     return re.search(r"\r(?!\n)", text) is not None
 
 
 def _holder(found: _Text, path: tuple[str, ...]) -> tuple[Table, tuple[str, ...]]:
-    """Follow a path as far as mappings are written; give the last of them and what is left."""
+    """Follow a path as far as its mappings are written; return the last of them and the keys that are left."""
     table = found.root
     for depth, key in enumerate(path):
         entry = table.entries.get(key)
         if entry is None or not isinstance(entry.value, Table):
             return table, path[depth:]
+        # An insertion would appear wherever the anchor is used.
         if found.begins(entry.value).startswith("*"):
             msg = f"`{key}` is written once and used here by its anchor ({entry.value.at})"
             raise CannotInsertError(msg)
@@ -84,7 +87,7 @@ def _holder(found: _Text, path: tuple[str, ...]) -> tuple[Table, tuple[str, ...]
 
 
 def _below_empty(found: _Text, holder: Table, entry: Entry, element: Element) -> Iterator[str]:
-    """Put the element below a key behind which nothing stands."""
+    """Insert the element below a key without a value."""
     line = found.lines[entry.at.end_line - 1].rstrip("\r\n")
     empty = isinstance(entry.value, Scalar) and entry.value.value is None
     if not empty or not _EMPTY.match(line[entry.at.end_column - 1 :]) or found.begins(holder).startswith("{"):
@@ -96,7 +99,7 @@ def _below_empty(found: _Text, holder: Table, entry: Entry, element: Element) ->
 
 
 def _in_block(found: _Text, table: Table, element: Element) -> Iterator[str]:
-    """Put the element behind the last one of a block."""
+    """Insert the element behind the last one of a block."""
     entries = list(table)
     if not entries:
         yield _joined(found, len(found.lines), element.lines("", _UNIT), spaced=False)
@@ -108,17 +111,19 @@ def _in_block(found: _Text, table: Table, element: Element) -> Iterator[str]:
     short = len(entries) > 1 or table is not found.root
     braces = short and found.begins(last.value).startswith("{") and _braced(found, entries)
     lines = [indent + flow.flow()] if braces else element.lines(indent, unit)
+    # A block's span may end at the beginning of the line behind it.
     end = last.value.at.end_line - (1 if last.value.at.end_column == 1 and last.value.at.end_line > last.at.line else 0)
     spaced = _spaced(found, entries)
     trimmed = end
     while trimmed > last.at.line and not found.lines[trimmed - 1].strip():
         trimmed -= 1
+    # Blank lines at the end belong to a block text (`|+`) or to the layout: the proof tells which, so both are tried.
     for place in dict.fromkeys((_end(found, trimmed, len(indent)), _end(found, end, len(indent)))):
         yield _joined(found, place, lines, spaced=spaced)
 
 
 def _braced(found: _Text, entries: list[Entry]) -> bool:
-    """Tell whether all that stands in a block is written in braces or in short form, each on one line."""
+    """Return whether everything in a block is written in braces or in short form, each on one line."""
     return all(
         not isinstance(entry.value, Table)
         or (found.begins(entry.value).startswith("{") and entry.value.at.end_line == entry.at.line)
@@ -127,7 +132,7 @@ def _braced(found: _Text, entries: list[Entry]) -> bool:
 
 
 def _in_braces(found: _Text, table: Table, element: Element) -> str:
-    """Put the element before a closing brace, on a line of its own where the others have one."""
+    """Insert the element before a closing brace, on a line of its own where the others have one."""
     whole = "".join(found.lines)
     written = element.flow()
     entries = list(table)
@@ -146,7 +151,7 @@ def _in_braces(found: _Text, table: Table, element: Element) -> str:
 
 
 def _end(found: _Text, line: int, column: int) -> int:
-    """Give the line behind which there is room: comments that are indented as far belong to what stands above."""
+    """Return the line behind which to insert: comments that are indented as far belong to what is above them."""
     end = line
     for number in range(line, len(found.lines)):
         text = found.lines[number]
@@ -160,7 +165,7 @@ def _end(found: _Text, line: int, column: int) -> int:
 
 
 def _spaced(found: _Text, entries: list[Entry]) -> bool:
-    """Tell whether blank lines stand between the elements of a block."""
+    """Return whether blank lines separate the elements of a block."""
     number = entries[-1].at.line - 1
     while number > 0 and found.lines[number - 1].lstrip().startswith("#"):
         number -= 1
@@ -168,7 +173,7 @@ def _spaced(found: _Text, entries: list[Entry]) -> bool:
 
 
 def _unit(table: Table, otherwise: int = _UNIT) -> int:
-    """Give the columns by which a file indents: those of the first mapping in it that stands below its key."""
+    """Return how many columns a file indents by: those of its first mapping that is written below its key."""
     for entry in table:
         if isinstance(entry.value, Table) and entry.value.entries:
             first = next(iter(entry.value))
@@ -178,6 +183,7 @@ def _unit(table: Table, otherwise: int = _UNIT) -> int:
 
 
 def _joined(found: _Text, place: int, lines: list[str], *, spaced: bool) -> str:
+    """Return the text with lines inserted behind a line."""
     ending = found.end_of_line
     before, after = "".join(found.lines[:place]), "".join(found.lines[place:])
     if before and before[-1] not in "\r\n":

@@ -1,4 +1,4 @@
-"""Where a new element belongs: the file in which its like stand."""
+"""Find where a new element belongs: the file that holds similar elements."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from archgen.syntax.tree import Listing, Scalar, Table, Value
 
 
 class Place(NamedTuple):
-    """A file and the mapping in it that takes the element; `new` where the file is still to be made."""
+    """A file and the path of the mapping in it that takes the element; `is_new_file`: it does not exist yet."""
 
     file: str
     path: tuple[str, ...]
@@ -23,11 +23,11 @@ class Place(NamedTuple):
 
 
 class NoPlaceError(Exception):
-    """No file of the project takes the element. The text says what to do."""
+    """No file of the project can take the element. The message says what to do."""
 
 
 def of_group(checked: Checked, name: str) -> Place:
-    """Give a new file in the folder in which groups have theirs, or the file that holds all of them."""
+    """Return a new file in the folder of the groups, or the file that holds all of them. Raise NoPlaceError."""
     held = {file: len(found.entries) for file, found in _tables(checked, "groups")}
     folders = Counter(os.path.dirname(file) for file in held if file != first_file(checked))  # noqa: PTH120 - text, with `/`
     if not folders and held:
@@ -46,14 +46,14 @@ def of_group(checked: Checked, name: str) -> Place:
 
 
 def of_component(checked: Checked, group: str) -> Place:
-    """Give the file that says most of the group."""
+    """Return the file that says most about the group."""
     path = ("groups", group, "components")
     said = {file: _weight(found.get(group)) for file, found in _tables(checked, "groups") if group in found.entries}
     return Place(max(said, key=lambda file: said[file]), path)
 
 
 def of_node(checked: Checked, components: tuple[str, ...]) -> Place:
-    """Give the file with the nodes of the same components, else of their groups, else of their like."""
+    """Return the file with nodes of the same components, else of the same groups, else with most nodes."""
     groups = {component.partition(".")[0] for component in components}
     written = [node for node in checked.architecture.nodes.values() if node.written]
     same = Counter(node.at.file for node in written if set(node.implements) & set(components))
@@ -76,7 +76,7 @@ def _tables(checked: Checked, section: str) -> Iterator[tuple[str, Table]]:
 
 
 def _weight(group: Value | None) -> tuple[int, int]:
-    """Weigh how much a slice says: first its components' keys, then its own."""
+    """Return how much a slice says about a group: first its components' keys, then its own."""
     found = group.get("components") if isinstance(group, Table) else None
     inner = [e.value for e in found] if isinstance(found, Table) else []
     keys = sum(len(value.entries) for value in inner if isinstance(value, Table))
@@ -84,7 +84,7 @@ def _weight(group: Value | None) -> tuple[int, int]:
 
 
 def _is_read(checked: Checked, file: str) -> bool:
-    """Tell whether the project reads a file of this name once it is there."""
+    """Return whether the project will read a file of this name once it exists."""
     patterns = next((d.root.get("sources") for d in checked.loaded.documents if d.file == MARKER), None)
     if not isinstance(patterns, Listing):
         return True

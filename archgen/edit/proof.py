@@ -1,4 +1,4 @@
-"""Prove an insertion: the file says what it said and the new element, and no other element of the project changed."""
+"""Prove an insertion: the file says what it said plus the new element, and no other element of the project changed."""
 
 from __future__ import annotations
 
@@ -18,19 +18,21 @@ from archgen.syntax.tree import plain
 
 @dataclass(frozen=True, slots=True)
 class Consequences:
-    """What an insertion would do beside adding its element: errors that are new, and other elements that change."""
+    """What an insertion would do besides adding its element: new errors, and other elements that change."""
 
     errors: tuple[Diagnostic, ...]
     changed: tuple[str, ...]
 
 
 def holds(before: str, after: str, path: tuple[str, ...], element: Element) -> bool:
-    """Tell whether a text says exactly what it said before and the element besides."""
+    """Return whether a text says exactly what it said before, plus the element."""
     old, _ = yaml.parse("before", before)
     new, found = yaml.parse("after", after)
+    # Notes and `swallowed-text` do not count here: the data themselves are compared below.
     if old is None or new is None or any(d.severity is not Severity.NOTE for d in found if d.rule != "swallowed-text"):
         return False
     expected = _with(plain(old.root), path, element)
+    # An element in braces has no empty keys, so either form may be read back.
     given = _with(plain(old.root), path, element.inline())
     return _ordered(plain(new.root)) in (_ordered(expected), _ordered(given))
 
@@ -43,7 +45,7 @@ def _with(data: object, path: tuple[str, ...], element: Element) -> object:
 
 
 def _ordered(data: object) -> object:
-    """Give mappings as tuples: their order counts, since elements appear in it."""
+    """Return data as tuples, so that the order of mappings counts: elements appear in it."""
     if isinstance(data, dict):
         return tuple((key, _ordered(value)) for key, value in data.items())
     if isinstance(data, list):
@@ -52,9 +54,11 @@ def _ordered(data: object) -> object:
 
 
 def consequences(checked: Checked, file: str, text: str, own: str) -> Consequences:
-    """Judge the project with another text of one file, in memory; `own` is the id of the new element."""
+    """Judge the project with one file's text replaced, in memory; `element_id` is the id of the new element."""
     after = _judged(checked, file, text)
+    # Changes the project that was passed in: errors about the new text are shown with lines of the new text.
     checked.sources.add(file, text)  # what is quoted of it now
+    # Compared without their places: the insertion moves the lines below it.
     known = {(d.rule, d.message) for d in checked.findings}
     errors = (d for d in after.findings if d.severity is Severity.ERROR and (d.rule, d.message) not in known)
     return Consequences(tuple(errors), tuple(_changed(checked.architecture, after.architecture, own)))
@@ -66,12 +70,12 @@ def _judged(checked: Checked, file: str, text: str) -> Checked:
 
 
 def first_file(checked: Checked) -> str:
-    """Name the file that was read first: archgen.yaml, or the only one."""
+    """Return the file that was read first: archgen.yaml, or the only one."""
     return checked.sources.files()[0]
 
 
 def _changed(old: Architecture, new: Architecture, own: str) -> Iterator[str]:
-    """Name the elements of the high level that are another than before; edges show where references lead."""
+    """Yield the elements of the functional level that differ from before; edges show where references lead."""
     for name, component in old.components.items():
         if new.components.get(name) != component:
             yield name

@@ -1,1 +1,1 @@
-"""Emit: writers. They take the four plain shapes of views and give files."""
+"""Writers: from the plain shapes of the views to the bytes of files."""

@@ -1,7 +1,7 @@
-"""Backends: folders that say what an output is made of. archgen ships some, and a project may bring its own.
+"""Read the manifests of backends: folders that describe an output. archgen ships some, a project may bring its own.
 
-A backend's folder holds backend.yaml (schemas/backend.schema.json), templates/ and assets/. Those of a project are
-somebody's text: they are of the emitter `text`, whose templates run in a sandbox.
+A backend's folder holds backend.yaml (schemas/backend.schema.json), templates/ and assets/. A project's own backend is
+untrusted input, so only the emitter `text` is open to it: its templates run in a sandbox.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ _DEEPEST = 20
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A file to write, or one for each item of a list: its template, and the template of its path."""
+    """A file to write, or one file per item of a list: its template, and the template of its path.
+
+    The fields are the keys of the manifest, and of the request that the template worker reads.
+    """
 
     template: str
     path: str
@@ -43,7 +46,7 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """One backend. `name` is its folder as diagnostics show it."""
+    """One backend. `name` is its folder as diagnostics show it (`backends/wiki`), `folder` its path."""
 
     id: str
     title: str
@@ -55,11 +58,11 @@ class Backend:
     folder: Path
     name: str
     own: bool = False
-    """Whether it is the project's, and no shipped one."""
+    """Whether the project brings it, rather than archgen."""
 
 
 class _ManifestError(Exception):
-    """A manifest is not as it should be; carries the diagnostics."""
+    """A manifest is not valid. Carries the diagnostics."""
 
     def __init__(self, *diagnostics: Diagnostic) -> None:
         super().__init__()
@@ -67,12 +70,16 @@ class _ManifestError(Exception):
 
 
 def shipped(name: str) -> Backend:
-    """Give a backend that comes with archgen."""
+    """Read a backend that ships with archgen, by the name of its folder."""
     return _read(resources.path("backends", name), f"backends/{name}")
 
 
 def find(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
-    """Find all backends by id: those shipped, then the project's own, which may not take a shipped one's id."""
+    """Find all backends by id: those that ship, then the project's own. Return them with the diagnostics of invalid
+    ones.
+
+    A backend of the project may not take the id of one that ships.
+    """
     found = {folder.name: shipped(folder.name) for folder in _folders(resources.path("backends"))}
     diagnostics: list[Diagnostic] = []
     for folder in _folders(project / "backends"):
@@ -92,6 +99,7 @@ def _folders(parent: Path) -> list[Path]:
 
 def _own(folder: Path, known: Mapping[str, Backend]) -> Backend:
     name = f"backends/{folder.name}"
+    # A link could lead out of the project, past what the reviewer of a change sees.
     if folder.is_symlink():
         _refuse(name, f"`{name}` is a link; a backend's folder stands in the project")
     backend = _read(folder, name)
@@ -105,7 +113,7 @@ def _own(folder: Path, known: Mapping[str, Backend]) -> Backend:
 
 
 def _read(folder: Path, name: str) -> Backend:
-    """Read and check a manifest."""
+    """Read a manifest and check it against its schema."""
     text = _text(folder / MANIFEST, name)
     data, root = _parse(text, name)
     wrong = sorted(_validator().iter_errors(data), key=lambda error: [str(part) for part in error.instance_path])
@@ -113,6 +121,7 @@ def _read(folder: Path, name: str) -> Backend:
         raise _ManifestError(
             *(Diagnostic(RULE.name, _said(error), _span(root, error.instance_path, name)) for error in wrong)
         )
+    # Outputs and `review.backends` name a backend by its id, people look for its folder: both must agree.
     if data["id"] != folder.name:
         message = f"the id is `{data['id']}`, but the folder is `{folder.name}`"
         _refuse(name, message, "give both the same name", _span(root, ["id"], name))
@@ -144,11 +153,15 @@ def _text(path: Path, name: str) -> str:
 
 
 def _parse(text: str, name: str) -> tuple[Any, Any]:
-    """Give the data, all scalars as text, and the tree that knows positions. Aliases and deep nesting are refused."""
+    """Parse YAML into data (every scalar a string) and the node tree that knows positions. Refuse aliases and deep
+    nesting.
+    """
     import yaml
 
+    # The base loaders make strings of all scalars: `no` or `1.0` in a manifest is never a boolean or a float.
     loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
     try:
+        # Checked on the event stream, before anything is built: aliases that nest make data of exponential size.
         _check_events(yaml.parse(text, Loader=loader), name)
         reader = loader(text)
         root = reader.get_single_node()
@@ -183,7 +196,7 @@ def _validator() -> Any:  # noqa: ANN401 - the library's own class
 
 
 def _said(error: Any) -> str:  # noqa: ANN401 - the library's own class
-    """Say a schema error in our words."""
+    """Describe an error of the JSON Schema library in words for the user."""
     where = ".".join(str(part) for part in error.instance_path)
     place = f"`{where}`" if where else "the manifest"
     kind = error.kind
@@ -200,7 +213,7 @@ def _said(error: Any) -> str:  # noqa: ANN401 - the library's own class
 
 
 def _span(node: Any, path: Sequence[str | int], name: str) -> Span:  # noqa: ANN401 - the library has no types
-    """Find the place of a value: its key, where it has one."""
+    """Return the span of the value at a path: that of its key where it has one."""
     place = node
     for part in path:
         if isinstance(part, int):

@@ -1,7 +1,7 @@
-"""CODEOWNERS: which files of an architecture are whose, as GitHub and GitLab read it. The last line that matches counts.
+"""Write CODEOWNERS, the file that tells GitHub and GitLab who reviews which file. The last line that matches counts.
 
 Every line names one file from the repository's root. GitHub takes neither comments behind a pattern nor `[` and `#`
-escaped in it, GitLab takes `[` for a section; `?` stands for such a character everywhere.
+escaped in it, and GitLab reads `[` as a section: `?` stands for such a character everywhere.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ HANDLE = re.compile(
     r"(?:@@?[A-Za-z0-9](?:[A-Za-z0-9_.-]*[A-Za-z0-9_])?(?:/[A-Za-z0-9](?:[A-Za-z0-9_.-]*[A-Za-z0-9_])?)*"
     r"|[A-Za-z0-9._%+-]+@[A-Za-z0-9-]+(?:\.[A-Za-z0-9-]+)+)\Z"
 )
-"""What a line may name: `@user`, `@organisation/team`, an e-mail address."""
+"""What a line may name: `@user`, `@organisation/team` or an e-mail address."""
 _UNSURE = re.compile(r"[^\w ./+@=~,:%&-]")
 _HEAD = (
     "# Who reviews which file: made by `archgen owners --format codeowners` from the owners in the architecture.\n"
@@ -26,17 +26,18 @@ _HEAD = (
 
 @dataclass(frozen=True, slots=True)
 class Codeowners:
-    """The file's text, and what could not be said in it."""
+    """The file's text, and warnings about what it cannot express."""
 
     text: str
     warnings: tuple[str, ...]
 
 
 def codeowners(found: Ownership, prefix: str = "") -> Codeowners:
-    """Write CODEOWNERS. `prefix` is the project's folder, from the repository's root."""
+    """Render CODEOWNERS. `prefix` is the project's folder relative to the repository's root."""
     lines: list[str] = []
     for file, partners in sorted(found.files.items()):
         path = pattern(f"{prefix}/{file}" if prefix else file)
+        # A dict, not a set: two partners may share a reviewer, and the order of the file must not change.
         handles = dict.fromkeys(name for partner in partners for name in partner.reviewers if HANDLE.match(name))
         silent = [partner.id for partner in partners if not any(map(HANDLE.match, partner.reviewers))]
         if silent:
@@ -56,6 +57,6 @@ def codeowners(found: Ownership, prefix: str = "") -> Codeowners:
 
 
 def pattern(path: str) -> str:
-    """Give the pattern that matches one file from the repository's root on."""
+    """Return the pattern that matches one file, from the repository's root."""
     safe = _UNSURE.sub("?", path).replace(" ", "\\ ")
     return f"/{safe}"

@@ -1,4 +1,6 @@
-"""A folder of pictures: a file for each picture and format. The links of an SVG lead to the other pictures there."""
+"""Write a folder of pictures: one file per picture and format. Links in an SVG lead to the other pictures of the
+folder.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,13 @@ from archgen.emit.picture import Picture
 from archgen.emit.site import pictures as drawing
 
 _FOLDERS = {"group": "groups", "component": "components", "view": "views", "chain": "chains", "host": "load"}
-"""Where the picture of an element lies, by the sort of element."""
+"""The folder of an element's picture, by the kind of element."""
 
 
 def write(pictures: Mapping[str, Picture], forms: Sequence[str]) -> tree.FileTree:
-    """Make the files of pictures, in the formats that were drawn."""
+    """Build the files of all pictures in these formats (`svg`, `png`, `pdf`, `dot`). Formats that were not drawn are
+    left out.
+    """
     found = ((f"{name}.{form}", _file(picture, form, pictures)) for name, picture in pictures.items() for form in forms)
     return tree.tree((path, data) for path, data in found if data is not None)
 
@@ -21,6 +25,7 @@ def write(pictures: Mapping[str, Picture], forms: Sequence[str]) -> tree.FileTre
 def _file(picture: Picture, form: str, others: Mapping[str, Picture]) -> bytes | None:
     if form == "dot":
         return picture.dot.encode()
+    # The fields of Picture are called as the formats are.
     data: bytes | None = getattr(picture, form)
     if form != "svg" or data is None:
         return data

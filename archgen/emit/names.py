@@ -1,4 +1,4 @@
-"""Names for files that every file system takes, whatever text they are made from."""
+"""Make names for files that every file system takes, from any text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Iterable
 
 LONGEST = 100
-"""Characters that one part of a path may have: a third of what file systems take, so that folders may nest."""
+"""Characters that one part of a path may have: a third of what file systems take, so that folders can nest."""
 
 _UNSAFE = re.compile(r"[^a-z0-9._-]+")
 _DASHES = re.compile(r"-+(?=[-.])")
@@ -18,14 +18,16 @@ _RESERVED = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?=\.|$)")
 def slug(text: str) -> str:
     """Make one part of a path from any text: lower case, `a-z 0-9 . _ -`, never empty, `.`, `..` or a Windows device.
 
-    Text that has no such letter at all, or is too long, is told apart by a digest.
+    Text without any such letter, or too long a text, gets a digest, so that different texts get different names.
     """
+    # NFKD splits letters from their accents, so that `é` becomes `e` instead of vanishing.
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     name = _DASHES.sub("", _UNSAFE.sub("-", plain)).strip(".-")
     if not name:
         return "x-" + _digest(text)
     if len(name) > LONGEST:
         stem, dot, ending = name.rpartition(".")
+        # The ending is kept behind the digest: programs choose what to open a file with by it.
         ending = dot + ending if stem and len(ending) < 8 else ""  # noqa: PLR2004 - an ending, not a sentence
         name = name[: LONGEST - 9 - len(ending)].rstrip(".-") + "-" + _digest(text) + ending
     reserved = _RESERVED.match(name)
@@ -33,13 +35,13 @@ def slug(text: str) -> str:
 
 
 def safe_path(path: str) -> str:
-    """Make a relative path below the output folder from any path: each part is slugged, empty and dotted ones go."""
+    """Make a relative path below the output folder from any path: each part a slug, empty and dotted parts left out."""
     parts = [slug(part) for part in path.replace("\\", "/").split("/") if part not in {"", ".", ".."}]
     return "/".join(parts) or slug(path)
 
 
 def is_safe(path: str) -> bool:
-    """Tell whether a path stays below its folder and means the same file on every system."""
+    """Return whether a path stays below its folder and means the same file on every system."""
     parts = path.split("/")
     return all(
         part not in {"", ".", ".."}
@@ -52,17 +54,17 @@ def is_safe(path: str) -> bool:
 
 
 def safe_paths(paths: Iterable[str]) -> dict[str, str]:
-    """Give each path a safe one of its own.
+    """Assign each path a safe path of its own.
 
-    Where two would be one file (on a file system that does not tell case apart, too), or a file would stand where a
-    folder must, the later gets `-2`, `-3`, ... before its ending. Order decides, so the same paths give the same names.
+    Where two would be one file (also on a file system that ignores case), or a file would need the name of a folder,
+    the later one gets `-2`, `-3`, ... before its ending. The order decides, so the same paths get the same names.
     """
     taken = _Taken(set(), set(), {})
     return {path: taken.file(safe_path(path)) for path in dict.fromkeys(paths)}
 
 
 class _Taken:
-    """Which files and folders have been given away."""
+    """Remembers which names of files and folders are taken."""
 
     __slots__ = ("files", "folders", "moved")
 
@@ -78,6 +80,7 @@ class _Taken:
         stem, ending = (stem, dot + ending) if stem else (name, "")
         found = prefix + name
         number = 2
+        # Paths are slugs, so lower case already: comparing them as they are covers file systems that ignore case.
         while found in self.files or found in self.folders:
             found = f"{prefix}{stem}-{number}{ending}"
             number += 1

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 class Picture:
     """One graph, drawn. Sizes are in points (1/72 inch).
 
-    `svg` has links, tooltips and text as text; `svg_outlines` has text as outlines (needs no font, has no links).
-    Formats that were not asked for are None. `warning` says what could not be drawn as asked.
+    `svg` has links, tooltips and text as text. `svg_outlines` has text as outlines: it needs no font, and has no links.
+    Formats that were not asked for are None. `warning` says what could not be drawn as asked. The fields are called as
+    the formats are: writers and the cache read them by name.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""Which program this is: what decides an output's bytes beside its inputs. Whoever keeps outputs names them by it."""
+"""Stamp the program itself: what decides an output's bytes beside its inputs. Every cache has this in its keys."""
 
 from __future__ import annotations
 
@@ -25,17 +25,18 @@ def writers() -> str:
 
 @cache
 def program() -> str:
-    """Stamp the whole of archgen: its code and data, what ships beside them, and all libraries."""
+    """Stamp all of archgen: its code and data, what ships beside it, and all libraries."""
     beside = (resources.path(name) for name in ("backends", "schemas", "ros_type_mapper.yaml"))
     return f"{digest((_HERE.parent, *beside))} {_libraries()}"
 
 
 def digest(tops: Iterable[Path]) -> str:
-    """Digest files and folders: names and contents, but for what Python leaves there."""
+    """Digest files and folders: names and contents, but for what Python leaves there (`__pycache__`)."""
     found = hashlib.sha256()
     for top in tops:
         for file in sorted(_files(top)):
             data = file.read_bytes()
+            # Relative, so that two installations of the same archgen share what they keep.
             name = file.relative_to(top.parent).as_posix()
             found.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
     return found.hexdigest()
@@ -45,14 +46,17 @@ def _files(top: Path) -> Iterator[Path]:
     if top.is_file():
         yield top
     for folder, inner, names in os.walk(top):
+        # In place: os.walk goes on with this list. `_data` holds copies that a wheel forces in; `resources.path` reads
+        # them.
         inner[:] = [name for name in inner if name not in {"__pycache__", "_data"}]
         yield from (Path(folder, name) for name in names)
 
 
 @cache
 def _libraries() -> str:
-    """Name the libraries with their versions, and Graphviz's own parts with their sizes and dates."""
+    """Describe the libraries: their versions, and for Graphviz's shared objects their sizes and dates."""
     versions = [f"{name} {_version(name)}" for name in _LIBRARIES]
+    # zlib decides the bytes of all that Python compresses, docx files above all.
     return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_graphviz())}"
 
 
@@ -64,7 +68,10 @@ def _version(name: str) -> str:
 
 
 def _graphviz() -> Iterator[str]:
-    """Give the shared libraries of pygraphviz: one that was built anew may hold another Graphviz under the same version."""
+    """Yield name, size and date of pygraphviz's shared libraries.
+
+    One that was built again may hold another Graphviz under the same version of pygraphviz.
+    """
     found = util.find_spec("pygraphviz")
     if found is None or found.origin is None:
         return

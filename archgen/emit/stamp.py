@@ -1,7 +1,7 @@
-"""What an earlier build left: nothing is made again where all that it depends on is the same, and it still lies there.
+"""Stamps of earlier builds: nothing is made again where all inputs are the same and the outputs are still there.
 
-A stamp is a small file in the cache, named by a digest of the inputs. It holds digests of what was written, so that files
-that were changed, moved or removed since are seen; a stamp that is damaged is no stamp.
+A stamp is a small file in the cache, named by a digest of the inputs. It holds digests of what was written, so that
+files changed, moved or removed since are noticed. A damaged stamp counts as none.
 """
 
 from __future__ import annotations
@@ -16,23 +16,24 @@ from archgen.emit import shelf, tree
 from archgen.emit.program import program
 
 _MOST = 64
-"""So many stamps are kept, each of some hundred bytes."""
+"""Stamps that are kept; each takes some hundred bytes."""
 
 
 def key(parts: Iterable[object]) -> str:
-    """Name a build by all that it depends on: this program, and values whose `repr` holds all of them."""
+    """Return the name of a build: a digest of this program and of values whose `repr` is complete."""
     text = "\n".join([program(), *(repr(part) for part in parts)])
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def fresh(folder: Path | None, name: str, target: Path, read: Callable[[str], bytes | None]) -> tuple[str, ...] | None:
-    """Give the names of what was written below a folder if all of it is as it was; None where it must be made.
+    """Return the names of the parts below a folder if they are all as written; None where they must be made.
 
-    `read` gives the files that the writers asked for while they wrote: they decide the bytes as well.
+    `read_file` returns the files that the writers asked for (pictures of chapters), which decide the outputs as well.
     """
     try:
         stamp = json.loads((folder / f"{name}.stamp").read_bytes()) if folder else {}
         asked, made = dict(stamp["asked"]), dict(stamp["made"])
+        # The few inputs first: digests of the outputs read every file of the site.
         same = all(_digest(read(path)) == held for path, held in asked.items())
         if same and made and all(_written(target / part) == held for part, held in made.items()):
             return tuple(made)
@@ -42,7 +43,10 @@ def fresh(folder: Path | None, name: str, target: Path, read: Callable[[str], by
 
 
 def keep(folder: Path | None, name: str, target: Path, made: Iterable[str], asked: Mapping[str, bytes | None]) -> None:
-    """Remember what was written just now."""
+    """Store the stamp of a build that was written just now.
+
+    `part_names` are names of parts below `target`, `asked_files` the contents of the files that the writers asked for.
+    """
     if folder is None:
         return
     with contextlib.suppress(OSError):  # a full or read-only disk costs only the time that this would have saved
@@ -53,9 +57,13 @@ def keep(folder: Path | None, name: str, target: Path, made: Iterable[str], aske
 
 
 def _written(path: Path, *, sure: bool = False) -> str | None:
-    """Digest a file, or a folder that archgen wrote, by its manifest; None for what is neither. `sure`: written just now."""
+    """Return a digest of a file, or of the manifest of a folder written by archgen; None for anything else.
+
+    `just_written` is for folders that were written just now: their files are not read again.
+    """
     if path.is_dir() and not path.is_symlink():
         return tree.manifest_digest(path, sure=sure)
+    # A link is never what archgen wrote.
     return None if path.is_symlink() else _digest(path.read_bytes())
 
 

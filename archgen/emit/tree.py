@@ -1,8 +1,8 @@
-"""The set of files that an output consists of, and how it gets onto the disk: whole, or not at all.
+"""Write the files that make up an output: all of them, or none.
 
-A folder that archgen writes holds the manifest `.archgen-files` (digest and name of each file). What is named there
-and still has its digest is archgen's own: it may be replaced, and is removed when it is no longer written. Anything
-else belongs to somebody: archgen says so and stops.
+A folder that archgen writes holds the manifest `.archgen-files` (digest and name of each file). A file that is named
+there and still has its digest is archgen's own: it may be replaced, and is removed when it is no longer written. Any
+other file belongs to somebody: archgen says so and stops.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from archgen.emit.names import is_safe
 MANIFEST = ".archgen-files"
 _HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
 _DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
-"""What file managers leave behind; nobody's work."""
+"""What file managers leave behind. It is nobody's work, so it is no obstacle."""
 
 
 class OutputError(Exception):
-    """An output cannot be written. `message` says why, `help` what to do; neither needs a traceback."""
+    """An output cannot be written. `message` says why, `help` what to do. The user sees both, without a traceback."""
 
     def __init__(self, message: str, help: str | None = None) -> None:  # noqa: A002 - as in a diagnostic
         super().__init__(message)
@@ -43,13 +43,13 @@ class FileTree:
     files: Mapping[str, bytes]
 
     def below(self, folder: str) -> FileTree:
-        """Give the same files in a folder of their own."""
+        """Return the same files below a folder."""
         return tree((f"{folder}/{path}", data) for path, data in self.files.items())
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What a write changed: files by their path."""
+    """What writing a tree changed: files by their path."""
 
     written: tuple[str, ...]
     unchanged: tuple[str, ...]
@@ -57,7 +57,11 @@ class Written:
 
 
 def tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
-    """Make a tree; paths are checked (names.safe_paths makes good ones), and come out sorted."""
+    """Make a tree of files, sorted by path.
+
+    Raise ValueError for an unsafe path and for two paths that differ in case only (`assign_safe_paths` makes good
+    ones).
+    """
     found: dict[str, bytes] = {}
     folded: set[str] = set()
     for path, data in files:
@@ -73,10 +77,11 @@ def tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
 
 
 def write(files: FileTree, folder: Path) -> Written:
-    """Write a tree into its folder. Files that are as they should be are not touched.
+    """Write a tree into its folder. Files that have their contents already are not touched.
 
-    Raises OutputError, before anything was changed, where the folder holds what archgen did not write.
+    Raise OutputError, before anything was changed, where the folder holds what archgen did not write.
     """
+    # Everything is read and compared first. Only `_replace_files` changes the disk.
     with _named_errors(folder):
         folder = folder.resolve()
         if folder.exists() and not folder.is_dir():
@@ -93,7 +98,7 @@ def write(files: FileTree, folder: Path) -> Written:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """Write one file: it is there whole or as it was. A link in its place is replaced, not followed."""
+    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed."""
     with _named_errors(path):
         if path.exists() and not path.is_file():
             msg = f"{path} is not a regular file"
@@ -101,6 +106,7 @@ def write_file(path: Path, data: bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         staged = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
         try:
+            # A file in a new folder gets the permissions that the user's umask asks for; mkstemp's own files have 0600.
             (staged / path.name).write_bytes(data)
             os.replace(staged / path.name, path)  # noqa: PTH105 - says what it does on every system
         finally:
@@ -108,9 +114,9 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def manifest_digest(folder: Path, *, sure: bool = False) -> str | None:
-    """Digest the manifest of a folder that holds what archgen wrote, all of it and nothing else; None for any other.
+    """Digest the manifest of a folder that holds exactly what archgen wrote. Return None for any other folder.
 
-    With `sure`, who asks has written the folder just now, and its files are not read again.
+    With `just_written` the caller has just written the folder, and its files are not read again.
     """
     if not sure:
         manifest, own = _read_manifest(folder), dict[str, str]()
@@ -125,7 +131,7 @@ def _replace(
 ) -> None:
     """Write what changed beside the folder, then move it in.
 
-    While files are moved the manifest names the old and the new digests, so a run that was cut off is no obstacle.
+    While files are moved, the manifest names the old and the new digests, so a run that was cut off is no obstacle.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     staged = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
@@ -133,6 +139,8 @@ def _replace(
     try:
         for path, data in changed.items():
             _write(staged / path, data)
+        # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
+        # known.
         _write(staged / MANIFEST, _manifest(final | old))
         folder.mkdir(exist_ok=True)
         os.replace(staged / MANIFEST, folder / MANIFEST)  # noqa: PTH105
@@ -153,7 +161,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _remove(folder: Path, path: str) -> None:
-    """Remove a file of our own, and the folders that are empty without it."""
+    """Remove one of archgen's files, and the folders that are empty without it."""
     (folder / path).unlink(missing_ok=True)
     for parent in (folder / path).parents:
         if parent == folder or any(parent.iterdir()):
@@ -162,11 +170,12 @@ def _remove(folder: Path, path: str) -> None:
 
 
 def _own(folder: Path, manifest: set[tuple[str, str]]) -> dict[str, str]:
-    """Give archgen's own files in the folder with their digests, or raise where there are others."""
+    """Return archgen's own files in the folder with their digests. Raise OutputError where there are others."""
     own: dict[str, str] = {}
     foreign = list(islice(_sort_out(folder, manifest, own), 4))
     if not foreign:
         return own
+    # Four were asked for, three are named: the fourth only tells that there are more.
     names = ", ".join(f"`{name}`" for name in foreign[:3]) + (" and others" if len(foreign) > 3 else "")  # noqa: PLR2004
     named = {path for _, path in manifest}
     if all(name in named for name in foreign):
@@ -177,10 +186,14 @@ def _own(folder: Path, manifest: set[tuple[str, str]]) -> dict[str, str]:
 
 
 def _sort_out(folder: Path, manifest: set[tuple[str, str]], own: dict[str, str]) -> Iterator[str]:
-    """Yield what is not ours, in order; put what is into `own`. Links are never followed."""
+    """Yield the paths of files that are not archgen's, in order, and fill `own_digests` with those that are.
+
+    `own_digests` is complete only when the generator is exhausted. Links are never followed.
+    """
     named = {path for _, path in manifest}
     for path in _walk(folder, ""):
         full = folder / path
+        # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
         if path in named and stat.S_ISREG(full.lstat().st_mode):
             digest = hashlib.sha256(full.read_bytes()).hexdigest()
             if (digest, path) in manifest:
@@ -191,7 +204,7 @@ def _sort_out(folder: Path, manifest: set[tuple[str, str]], own: dict[str, str])
 
 
 def _walk(folder: Path, prefix: str) -> Iterator[str]:
-    """Yield what is not a folder, everywhere below, as relative paths in order."""
+    """Yield everything below that is not a folder, as relative paths in order. A link counts as a file."""
     if not folder.is_dir():
         return
     with os.scandir(folder) as entries:
@@ -204,12 +217,13 @@ def _walk(folder: Path, prefix: str) -> Iterator[str]:
 
 
 def _read_manifest(folder: Path) -> set[tuple[str, str]]:
-    """Read (digest, path) pairs; lines that are none are nothing: what they would claim is then foreign."""
+    """Read the (digest, path) pairs of a manifest. Lines that are none are skipped: what they claim is then foreign."""
     place = folder / MANIFEST
     if place.is_symlink() or not place.is_file():
         return set()
     lines = place.read_text("utf-8", "replace").splitlines()
     pairs = (line.partition("  ") for line in lines if not line.startswith("#"))
+    # A manifest can be edited: a path such as `../x` would let the next run remove files outside of the folder.
     return {(digest, path) for digest, _, path in pairs if path and is_safe(path)}
 
 
@@ -220,7 +234,7 @@ def _manifest(pairs: Iterable[tuple[str, str]]) -> bytes:
 
 @contextlib.contextmanager
 def _named_errors(path: Path) -> Iterator[None]:
-    """Say in words what the operating system refused."""
+    """Turn an error of the operating system into an OutputError in words."""
     try:
         yield
     except OSError as error:

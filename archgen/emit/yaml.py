@@ -1,4 +1,6 @@
-"""Plain data as YAML that reads the same by version 1.1 and 1.2: block style, quoted where one of them would stumble."""
+"""Write plain data as YAML that versions 1.1 and 1.2 read alike: block style, quoted where one of them would misread
+it.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +13,8 @@ Place = tuple[str | int, ...]
 _PLAIN = re.compile(
     r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff#:,\[\]{}'\"]*\Z"
 )
+# What YAML 1.1 or 1.2 reads as something else than text: null, booleans, numbers, dates, sexagesimals (`12:30`), the
+# merge key `<<` and the value key `=`.
 _OTHERWISE = re.compile(
     r"(?:~|null|true|false|yes|no|on|off|y|n|[-+]?\.(?:inf|nan)|<<|=)\Z"
     r"|[-+.]?[0-9][0-9_]*(?:[.:eExXobB+\-][0-9a-fA-F_.:eE+\-TtZz ]*)?\Z",
@@ -22,7 +26,7 @@ _UNSAFE_BLOCK = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\u2028\u2029\uf
 def write(data: Mapping[str, object], comments: Mapping[Place, str] | None = None) -> str:
     """Write a mapping of mappings, lists, text, numbers, booleans and None.
 
-    `comments` puts `# text` behind the line on which the element at a place (keys and list positions) begins.
+    `comments` puts `# text` behind the line on which the element at a path (keys and list positions) begins.
     """
     return "\n".join(_mapping(data, "", (), comments or {})) + "\n" if data else "{}\n"
 
@@ -53,7 +57,7 @@ def _entry(head: str, value: object, indent: str, here: Place, comments: Mapping
 
 
 def _item(value: object, indent: str, here: Place, comments: Mapping[Place, str]) -> Iterator[str]:
-    """Write a list's item; a mapping in it begins on a line of its own, so that every place has a line."""
+    """Yield the lines of a list's item. A mapping in it begins on its own line, so that every element has a line."""
     if isinstance(value, (Mapping, list, tuple)) and value:
         yield from _entry(f"{indent}-", value, indent, here, comments)
     else:
@@ -62,7 +66,7 @@ def _item(value: object, indent: str, here: Place, comments: Mapping[Place, str]
 
 
 def scalar(value: object) -> str:
-    """Write one scalar, or an empty mapping or list, on one line."""
+    """Format one scalar, or an empty mapping or list, on one line."""
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, (Mapping, list, tuple)):
@@ -75,7 +79,7 @@ def scalar(value: object) -> str:
 
 
 def flow(value: object) -> str:
-    """Write a value on one line: mappings in braces, lists in brackets."""
+    """Format a value on one line: mappings in braces, lists in brackets."""
     if isinstance(value, Mapping) and value:
         return "{" + ", ".join(f"{scalar(key)}: {flow(inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, (list, tuple)) and value:
@@ -84,7 +88,7 @@ def flow(value: object) -> str:
 
 
 def paragraph(head: str, text: str, indent: str, width: int) -> Iterator[str]:
-    """Write long text: folded (`>-`) where it is words with single blanks between, else as `write` does."""
+    """Yield the lines of a long text: folded (`>-`) where single blanks separate its words, else as `write_yaml`."""
     if text == " ".join(text.split()) and not _UNSAFE_BLOCK.search(text):
         yield f"{head} >-"
         for line in textwrap.wrap(text, width - len(indent), break_long_words=False, break_on_hyphens=False):
@@ -107,7 +111,8 @@ def _text(text: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Quote; what YAML cannot hold (lone surrogates) becomes the replacement character."""
+    """Quote a text. What YAML cannot hold (lone surrogates) becomes `?`."""
+    # A JSON string is a double-quoted scalar of YAML, but for the characters in the table: YAML wants them escaped.
     return json.dumps(text.encode("utf-8", "replace").decode("utf-8"), ensure_ascii=False).translate(_ESCAPES)
 
 
@@ -115,7 +120,8 @@ _ESCAPES = {c: f"\\u{c:04x}" for c in (*range(0x7F, 0xA1), 0x2028, 0x2029, 0xFEF
 
 
 def _block(text: str) -> bool:
-    """Say whether a literal block holds this text exactly."""
+    """Return whether a literal block (`|`) holds this text exactly."""
+    # A leading blank would be taken for indentation, and two line feeds at the end need `+`: such texts are quoted.
     if "\n" not in text or text[0] in " \n" or _UNSAFE_BLOCK.search(text) or text.endswith("\n\n"):
         return False
     return all(line == line.rstrip() for line in text.split("\n"))

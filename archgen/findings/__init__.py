@@ -1,4 +1,4 @@
-"""Findings: diagnostics as text, JSON and more; the rules' pages."""
+"""What is done with findings after the analyses: silence, drop, compare with a baseline; the rules' pages."""
 
 from __future__ import annotations
 

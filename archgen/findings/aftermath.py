@@ -1,4 +1,4 @@
-"""Leave out what an error in reading explains: what is not understood is not read, and would then seem to be missing."""
+"""Drop findings that a read error explains: what could not be understood was not read, and then seems to be missing."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _LACKS = frozenset(
         "unmapped-type",
     }
 )
-"""Rules that say what an element lacks (or that rest on a default or a `status: planned`): nothing is said of one in which
-something could not be read.
+"""Rules that report what an element lacks (or that depend on a default or a `status: planned`): dropped for an element
+in which something could not be read.
 """
 _UNUSED = frozenset(
     {
@@ -38,16 +38,17 @@ _UNUSED = frozenset(
         "unused-type",
     }
 )
-"""Rules that say that nobody uses something: nothing is said of what is named where something could not be read."""
+"""Rules that report that something is not used: dropped for names that occur where something could not be read."""
 _WORD = re.compile(r"[^\s.,:#\"'{}\[\]]+")
 _FURTHEST = 200
-"""Lines below an error that are looked at: an element's worth."""
+"""The lines below an error that are looked at: about one element's worth."""
 
 
 def quiet(found: Iterable[Diagnostic], errors: Iterable[Diagnostic], sources: Sources) -> Iterator[Diagnostic]:
-    """Give the findings of analyses that the errors of reading do not explain. Mended errors bring the others back."""
+    """Yield the findings that read errors do not explain. The others return once the errors are fixed."""
     errors = tuple(errors)
     damaged = {error.element for error in errors if error.element}
+    # Where reading failed there is no tree to look at: words of the text stand in for it.
     words = {word for error in errors for word in _words_at(error.span, sources)}
     for diagnostic in found:
         lacks = diagnostic.rule in _LACKS and diagnostic.element in damaged
@@ -57,7 +58,7 @@ def quiet(found: Iterable[Diagnostic], errors: Iterable[Diagnostic], sources: So
 
 
 def _words_at(span: Span, sources: Sources) -> Iterator[str]:
-    """Give the words of the line with the error, and of those below that are indented more."""
+    """Yield the words of the line with the error, and of the lines below it that are indented more."""
     first = sources.line(span.file, span.line) or ""
     yield from _WORD.findall(first)
     depth = len(first) - len(first.lstrip())
@@ -69,7 +70,7 @@ def _words_at(span: Span, sources: Sources) -> Iterator[str]:
 
 
 def _names(diagnostic: Diagnostic, sources: Sources) -> Iterator[str]:
-    """Give what a finding is about: the word that it points at, and the last part of its element's id."""
+    """Yield what a finding is about: the word that it points at, and the last part of its element's id."""
     span = diagnostic.span
     yield (sources.line(span.file, span.line) or "")[span.column - 1 : span.end_column - 1]
     yield (diagnostic.element or "").rpartition(".")[2]

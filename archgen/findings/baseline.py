@@ -1,4 +1,4 @@
-"""A baseline: which findings it knows, which of its own are cured, and how it is written."""
+"""A baseline: which findings it knows, which of its entries are cured, and how it is written."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _HEADER = """\
 def divide(
     findings: Iterable[Diagnostic], known: Iterable[Known], rules: Mapping[str, Rule]
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...], tuple[Known, ...]]:
-    """Give the findings that are new, those that are known, and what is cured, with how many of it.
+    """Return the findings that are new, those that are known, and the entries that are cured, with how many of each.
 
-    Errors of reading and linking are always new: what is behind them, nobody knows.
+    Read and link errors are always new: nobody knows what is behind them.
     """
     known = tuple(known)
     left = Counter[object]()
@@ -33,7 +33,9 @@ def divide(
         left[entry.identity] += entry.times
     new, old = [], []
     for finding in findings:
+        # Identity leaves out lines and parts of the message (docs/decisions/0005-known-findings.md).
         key = identity(finding)
+        # Counted, not just looked up: a second finding alike is new.
         if left[key] > 0 and not rules[finding.rule].fixed:
             left[key] -= 1
             old.append(finding)
@@ -49,7 +51,8 @@ def divide(
 
 
 def write(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -> str:
-    """Write the baseline that knows these findings, sorted, without what no baseline may know."""
+    """Return the text of a baseline that knows these findings, sorted, without those that no baseline may know."""
+    # Sorted by content and not by place: moving lines does not change the file.
     counts = Counter((d.rule, d.element or "", d.message) for d in findings if not rules[d.rule].fixed)
     if not counts:
         return f"{_HEADER}archgen_baseline: 1\nfindings: []\n"
@@ -58,7 +61,7 @@ def write(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -> str:
 
 
 def _entry(rule: str, element: str, message: str, count: int) -> Iterator[str]:
-    """Give the lines of one entry; what says nothing is left out, so that a diff shows what matters."""
+    """Yield the lines of one entry; empty keys are left out, so that a diff shows what matters."""
     yield f"  - rule: {yaml.scalar(rule)}"
     if element:
         yield f"    element: {yaml.scalar(element)}"

@@ -1,4 +1,4 @@
-"""A comment with a limit: what does not fit is counted, and the reader is told how to see it."""
+"""A comment of limited size: what does not fit is counted, and the reader is told how to see it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 MOST = 65_536 - 200
-"""What GitHub allows in one comment (GitLab allows more), but for a mark by which the comment is found again."""
+"""GitHub's limit for one comment (GitLab's is higher), minus room for the mark by which the comment is found again."""
 _RESERVE = 600
-"""For what closes the comment, and says that something is left out."""
+"""Room for what closes the comment, and says that something is left out."""
 
 
 @dataclass(slots=True)
 class Comment:
-    """Blocks of Markdown, a blank line between them. `command` shows everything; it is a code span of 300 characters at most."""
+    """Blocks of Markdown separated by blank lines. `command` shows everything; it is a code span of at most 300
+    characters.
+    """
 
     most: int
     command: str
@@ -22,11 +24,11 @@ class Comment:
     cut: bool = False
 
     def fits(self, text: str, reserve: int = _RESERVE) -> bool:
-        """Say whether a block still finds its place."""
+        """Whether there is room for a block."""
         return self.used + size(text) + 2 <= self.most - reserve
 
     def add(self, text: str) -> None:
-        """Add a block, if it fits."""
+        """Add a block if it fits, else mark the comment as cut."""
         if not self.fits(text):
             self.cut = True
             return
@@ -36,8 +38,8 @@ class Comment:
     def items(
         self, title: str, items: Sequence[str], summary: str = "", shown: int | None = None, less: int = 0
     ) -> None:
-        """Add a list below a title. `shown` items stand open, the others folded below the summary (in which `{}` is their
-        number); `less` more are only counted.
+        """Add a list below a title. `shown` items are open, the others are folded below the summary, in which `{}`
+        becomes their number; `less` more are only counted.
         """
         shown = len(items) if shown is None else shown
         head, rest = items[:shown], items[shown:]
@@ -50,6 +52,7 @@ class Comment:
             self._list(f"<details><summary>{said}</summary>", rest, "</details>", less)
 
     def _list(self, opening: str, items: Sequence[str], closing: str, less: int) -> None:
+        # 100 characters are for "- and N more" and the blank lines in between.
         room = self.most - self.used - _RESERVE - size(opening) - size(closing) - size(self.command) - 100
         kept = []
         for item in items:
@@ -62,7 +65,7 @@ class Comment:
         self.add("\n\n".join(part for part in (opening, "\n".join((*kept, *more)), closing) if part))
 
     def table(self, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Add a table, as many of its rows as fit; cells are safe already."""
+        """Add a table with as many rows as fit; cells are escaped already."""
         lines = [_row(heads), _row(["---"] * len(heads))]
         room = self.most - self.used - _RESERVE - size("\n".join(lines)) - size(self.command) - 100
         kept = []
@@ -76,7 +79,7 @@ class Comment:
             self.add(f"and {len(rows) - len(kept)} more: {self.command}")
 
     def text(self) -> str:
-        """Give the comment."""
+        """Return the comment."""
         cut = [f"More does not fit into a comment: {self.command}"] if self.cut else []
         return "\n\n".join((*self.blocks, *cut)) + "\n"
 
@@ -86,5 +89,5 @@ def _row(cells: Sequence[str]) -> str:
 
 
 def size(text: str) -> int:
-    """Count characters as the hosts do that count most: those outside the basic plane are two."""
+    """Count characters like the strictest host: those outside the basic multilingual plane are two."""
     return len(text) + sum(character > "\uffff" for character in text)

@@ -17,12 +17,12 @@ Broken = tuple[Sequence[Diagnostic], Sequence[Diagnostic]]
 
 
 def render(found: Comparison, broken: Broken) -> str:
-    """Give a comparison as one JSON document; `broken` are the errors of reading either version."""
+    """Return a comparison as one JSON document; `broken` are the errors of reading either version."""
     return json_text(document(found, broken))
 
 
 def document(found: Comparison, broken: Broken) -> dict[str, Any]:
-    """Give a comparison as plain data."""
+    """Return a comparison as plain data."""
     return {
         "version": VERSION,
         "changes": [change(each) for each in found.changes],
@@ -43,7 +43,7 @@ def document(found: Comparison, broken: Broken) -> dict[str, Any]:
 
 
 def change(each: Change) -> dict[str, Any]:
-    """Give one change with its parts."""
+    """Return one change with its parts as plain data."""
     return {
         "kind": each.kind,
         "sort": each.sort,
@@ -53,6 +53,7 @@ def change(each: Change) -> dict[str, Any]:
         "before": each.before,
         "after": each.after,
         "confidence": each.confidence,
+        # The keys are the format, not the names of attributes: they stay when those change.
         "breaks": list(each.broken),
         "because": [{"partner": one.partner, "why": one.why} for one in each.breaks],
         "accepted": each.accepted,

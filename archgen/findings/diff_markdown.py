@@ -1,7 +1,7 @@
 """A comparison as the comment on a pull request, for a reviewer who sees nothing else.
 
-Short things first, long lists folded, and never more than a comment may hold: what is left out is counted, with the
-command that shows it. Whatever stands in names, titles and messages stays text: see `emit/text/inert.py`.
+Short things come first, long lists are folded, and the length never exceeds what a comment may have: what is left out
+is counted, with the command that shows it. Names, titles and messages remain text: see `emit/text/inert.py`.
 """
 
 from __future__ import annotations
@@ -24,20 +24,21 @@ from archgen.views.shapes import Graph, Inlines
 from archgen.views.words import plural
 
 _LONGEST, _TITLE = 700, 100
-"""So many characters of one sentence and of one title are shown."""
+"""Maximal number of characters of a sentence, and of a title."""
 _OPEN, _OPEN_IN_ALL = 8, 24
-"""So many changes of one part, and of all of them, stand open; the others are folded."""
+"""How many changes of one group, and of all of them, are not folded."""
 _ERRORS = 5
 _COMMAND = 250
+# Escaped: at the beginning of an item "+" would start a list, and "~" a strike-through.
 _SIGNS = {**telling.SIGNS, "added": "\\+", "changed": "\\~"}
 
 Broken = tuple[Sequence[Diagnostic], Sequence[Diagnostic]]
-"""The errors of reading either side."""
+"""The errors of reading either version."""
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What the two sides are called, and the command that compares them in a terminal."""
+    """The names of both versions, and the command that compares them in a terminal."""
 
     before: str
     after: str
@@ -51,7 +52,7 @@ def render(
     *,
     most: int = MOST,
 ) -> str:
-    """Write the comment; `broken` are the errors of reading either side, `most` is how many characters it may have."""
+    """Write the comment, at most `most` characters long; `broken` are the errors of reading either version."""
     comment = Comment(most, _command(names))
     comment.add(_heading(found, broken))
     comment.add(f"{_code(names.before)} → {_code(names.after)}{_counts(found)}")
@@ -63,17 +64,18 @@ def render(
     _changes(comment, found)
     _chains(comment, found)
     _findings(comment, found, frozenset(broken[1]))
+    # Last, so that the picture never takes the room of the text.
     _picture(comment, found)
     return comment.text()
 
 
 def _command(names: Names) -> str:
-    """Give the command as code; names that are very long are left to the reader."""
+    """Return the command as code, shortened to `archgen diff` if the names are very long."""
     return _code(names.command if len(names.command) <= _COMMAND else "archgen diff")
 
 
 def _heading(found: Comparison, broken: Broken) -> str:
-    """Say how many changes there are, and whom they break and concern."""
+    """Return the heading: how many changes there are, and whom they break and concern."""
     unsure = " in what could be read" if any(broken) else ""
     if found.narrowed and not found.changes:
         return f"### No change breaks another partner{unsure}"
@@ -98,7 +100,7 @@ def _partners(names: Sequence[str]) -> str:
 
 
 def _counts(found: Comparison) -> str:
-    """Count changes by kind, new findings by severity."""
+    """Count changes by kind, and new findings by severity."""
     said = [telling.by_kind(found.changes)] if found.changes else []
     severities = Counter(str(each.severity or Severity.ERROR) for each in found.new)
     new = ", ".join(plural(severities[name], name) for name in ("error", "warning", "note") if severities[name])
@@ -143,6 +145,7 @@ def _changes(comment: Comment, found: Comparison) -> None:
         comment.add("#### Changes")
     left = _OPEN_IN_ALL
     for part in telling.parts(weighty, found):
+        # Nine items are shown rather than eight and a fold with one.
         shown = min(len(part.changes), _OPEN if len(part.changes) > _OPEN + 1 else _OPEN + 1, max(left, 0))
         left -= shown
         comment.items(
@@ -185,7 +188,7 @@ def _chains(comment: Comment, found: Comparison) -> None:
 
 
 def _findings(comment: Comment, found: Comparison, told: Collection[Diagnostic]) -> None:
-    """Add what archgen finds now, the gravest first and notes folded, but for errors that were told already."""
+    """Add the new findings, gravest first and notes folded, without the errors in `told`, which were shown already."""
     order = list(Severity)
     new = sorted(
         (each for each in found.new if each not in told), key=lambda each: -order.index(each.severity or Severity.ERROR)
@@ -210,7 +213,7 @@ def _finding(each: Diagnostic) -> str:
 
 
 def _picture(comment: Comment, found: Comparison) -> None:
-    """Add the first picture that is not too large; components come before nodes."""
+    """Add the first picture that has anything to show; components come before nodes."""
     drawn = pictures.pictures(found, pictures.SMALL)
     graph = next((graph for graph in drawn if graph.arrows or any(box.change for box in graph.boxes)), None)
     if graph is None:
@@ -231,7 +234,7 @@ def _mermaid(graph: Graph) -> str:
 
 
 def _sentence(text: str) -> str:
-    """Write a sentence of ours, with names from the project in it; what stands in backticks is code."""
+    """Return a sentence of ours, with names from the project in it, as Markdown; what is in backticks is code."""
     return _inlines(telling.runs(_cut(visible(" ".join(text.split())), _LONGEST)))
 
 
@@ -244,7 +247,7 @@ def _inlines(runs: Inlines) -> str:
 
 
 def _kept(text: str) -> str:
-    """Escape a piece of a sentence, blanks at its ends kept."""
+    """Escape a piece of a sentence, keeping the blanks at its ends."""
     lead, trail = (" " if text[:1] == " " else ""), (" " if text[-1:] == " " and text.strip() else "")
     return f"{lead}{plain(text)}{trail}" if text.strip() else " "
 

@@ -1,4 +1,4 @@
-"""A comparison for people: changes by group, then chains, findings, and who should look at it."""
+"""A comparison for the terminal: changes by group, then chains, findings, and who should look at it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COLOURS = {"added": "32", "removed": "31", "changed": "33", "renamed": "36", "m
 
 
 def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
-    """Give the lines of a comparison."""
+    """Yield the lines of a comparison."""
     if found.narrowed:
         yield from breaking(found, colour=colour)
         yield from diff_verdict.lines(found)
@@ -37,11 +37,12 @@ def render(found: Comparison, *, colour: bool = False) -> Iterator[str]:
 
 
 def breaking(found: Comparison, *, colour: bool) -> Iterator[str]:
-    """Give the changes that break a partner, with the reasons."""
+    """Yield the changes that break a partner, with the reasons."""
     breaking = [change for change in found.changes if change.breaks]
     if not breaking:
         return
     yield _paint("Breaking changes", "1", colour=colour)
+    # One cause often breaks several changes: its reason is written once, then "as above".
     said = set[str]()
     for change in breaking:
         yield from _change(change, colour=colour)

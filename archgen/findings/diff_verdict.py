@@ -1,4 +1,4 @@
-"""What a project makes of the changes that break a partner: how many, what its policy says, which agreements are idle."""
+"""The verdict on breaking changes: how many, what the project's policy says, which accepted entries are idle."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from archgen.suggest import did_you_mean
 
 
 def lines(found: Comparison) -> Iterator[str]:
-    """Give the verdict, one sentence a line, as plain text."""
+    """Yield the verdict as plain text, one sentence a line."""
     yield visible(verdict(found))
     yield from map(visible, _cure(found))
     for entry in found.idle:
@@ -20,7 +20,7 @@ def lines(found: Comparison) -> Iterator[str]:
 
 
 def verdict(found: Comparison) -> str:
-    """Say how many changes break whom, and whether the project refuses them."""
+    """Describe how many changes break whom, and whether the project refuses them."""
     if found.breaking is Severity.OFF:
         return "`review.breaking` is off: this project does not ask what breaks another partner"
     broken = [change for change in found.changes if change.breaks]
@@ -38,7 +38,7 @@ def verdict(found: Comparison) -> str:
 
 
 def _cure(found: Comparison) -> Iterator[str]:
-    """Say what to write to accept the first change that is refused."""
+    """Describe what to write to accept the first change that is refused."""
     refused = [change for change in found.changes if change.breaks and change.accepted is None]
     if found.failing and refused:
         element = refused[0].element
@@ -49,6 +49,7 @@ def _idle(found: Comparison, entry: Accepted) -> str:
     place = f" ({entry.at})" if entry.at.file else ""
     key = f" with the key `{entry.key}`" if entry.key else ""
     said = f"note: accepted entry `{entry.element}`{key}{place} names no breaking change here"
+    # Ids of both versions: an entry may name an element that was removed.
     known = {e.own for listed in (found.told.before, found.told.after) for e in listed.values()}
     if entry.element in known:
         return said

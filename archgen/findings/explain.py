@@ -1,4 +1,6 @@
-"""A rule's page, for the terminal and as Markdown: what it says, why, an example that breaks it and one that does not."""
+"""A rule's page, for the terminal and as Markdown: what it reports, why, and an example that is reported and one that
+is not.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ class Page(NamedTuple):
 
 
 def page(rule: Rule) -> Page:
-    """Take a rule's page apart."""
+    """Split a rule's page into its parts."""
+    # The pattern has a group, so that names and texts of the sections alternate in the result.
     summary, *rest = _SECTION.split(rule.doc)
     parts = dict(zip(rest[::2], rest[1::2], strict=True))
     return Page(
@@ -36,7 +39,7 @@ def page(rule: Rule) -> Page:
 
 
 def terminal(rule: Rule, *, colour: bool = False) -> str:
-    """Give a rule's page as text for a terminal."""
+    """Return a rule's page as text for a terminal."""
     parts = page(rule)
     bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
     prose = (textwrap.fill(paragraph, 100) for paragraph in (parts.summary, *_paragraphs(parts.why)))
@@ -48,7 +51,7 @@ def terminal(rule: Rule, *, colour: bool = False) -> str:
 
 
 def markdown(rule: Rule) -> str:
-    """Give a rule's page as Markdown."""
+    """Return a rule's page as Markdown."""
     parts = page(rule)
     blocks = [f"# {rule.name}", parts.summary, f"*{_standing(rule)[0].upper()}{_standing(rule)[1:]}.*"]
     blocks += ["## Why", *_paragraphs(parts.why)] if parts.why else []
@@ -63,7 +66,7 @@ def markdown(rule: Rule) -> str:
 
 
 def index(rules: Mapping[str, Rule]) -> str:
-    """Give the list of all rules' pages as Markdown."""
+    """Return the list of all rules' pages as Markdown."""
     lines = [
         f"| [{rule.name}]({rule.name}.md) | {_standing(rule)} | {_cell(page(rule).summary)} |"
         for rule in rules.values()
@@ -77,14 +80,14 @@ def _standing(rule: Rule) -> str:
 
 
 def _example(text: str) -> str:
-    """Take the indentation out of an example."""
+    """Remove the indentation of an example."""
     lines = text.strip("\n").rstrip().splitlines()
     indent = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
     return "\n".join(line[indent:] for line in lines)
 
 
 def _paragraphs(text: str) -> Iterable[str]:
-    """Fold each paragraph into one line: the reader's screen decides where it breaks."""
+    """Join each paragraph into one line: the reader's screen decides where it breaks."""
     return (" ".join(paragraph.split()) for paragraph in re.split(r"\n\s*\n", text) if paragraph.strip())
 
 

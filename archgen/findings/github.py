@@ -1,4 +1,4 @@
-"""Findings on a pull request: workflow commands that GitHub shows beside the lines they speak of."""
+"""Findings on a pull request: workflow commands that GitHub shows beside the lines concerned."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE
 
 
 def render(diagnostics: Iterable[Diagnostic], *, folder: str = "") -> Iterator[str]:
-    """Give a command for each settled finding. `folder` is the project's, relative to the repository's root."""
+    """Yield a command for each settled finding. `folder` is the project's, relative to the repository's root."""
     for diagnostic in diagnostics:
         properties = {**_place(diagnostic, folder), "title": diagnostic.rule}
         listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
@@ -25,7 +25,7 @@ def render(diagnostics: Iterable[Diagnostic], *, folder: str = "") -> Iterator[s
 
 
 def _place(diagnostic: Diagnostic, folder: str) -> dict[str, str | int]:
-    """Give file and lines; GitHub takes columns only where the span stands on one line."""
+    """Return file and lines; GitHub accepts columns only for a span on one line."""
     span = diagnostic.span
     file = in_repository(span.file, folder)
     if file is None:
@@ -40,11 +40,12 @@ def _text(diagnostic: Diagnostic) -> str:
     lines = [diagnostic.message]
     lines += [f"{label.span}: {label.text}" for label in diagnostic.labels if label.span.file]
     lines += [f"help: {diagnostic.help}"] if diagnostic.help else []
+    # GitHub's escape for a line end.
     return "%0A".join(_data(line) for line in lines)
 
 
 def _data(text: str) -> str:
-    """Escape what a command carries. Line ends are made visible, as all that a terminal would obey."""
+    """Escape text for a command. Line ends are made visible, like everything that a terminal would obey."""
     return visible(text).replace("%", "%25")
 
 

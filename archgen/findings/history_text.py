@@ -1,4 +1,4 @@
-"""A project's history for the terminal, as CSV and as plain data."""
+"""A project's history for the terminal, as CSV, and as plain data."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LONG = ("commit", "day", "scope", "id", "title", "components", *STEPS, "errors"
 
 
 def text(history: History) -> str:
-    """Write a line for each point, newest last, then what became of each group and partner."""
+    """Return a line for each point, newest last, then how each group and partner changed."""
     if not history.points:
         return "no commit holds this project yet\n"
     rows = [_row(point, history) for point in history.points]
@@ -35,6 +35,7 @@ def _parts(history: History) -> str:
     first, last = history.points[0], history.points[-1]
     before = {(row.scope, row.id): row for row in first.rows}
     rows = []
+    # The first row is the whole project, which the table above shows.
     for row in last.rows[1:]:
         was = before.get((row.scope, row.id))
         pairs = [(str(was.components) if was else "0", str(row.components))]
@@ -49,7 +50,7 @@ def _parts(history: History) -> str:
 
 
 def csv(history: History) -> str:
-    """Write a line for each point and each of the whole, the groups and the partners."""
+    """Return a line for each point and, in it, each of the whole, the groups and the partners."""
     rows = [
         (
             *(point.commit, point.day, row.scope, row.id, row.title, str(row.components)),
@@ -63,6 +64,6 @@ def csv(history: History) -> str:
 
 
 def document(history: History) -> dict[str, Any]:
-    """Give the history as plain data: `schemas/history.schema.json`."""
+    """Return the history as plain data (`schemas/history.schema.json`)."""
     points = [asdict(point) for point in history.points]
     return {"version": VERSION, "by": history.by, "complete": history.whole, "points": points}

@@ -17,12 +17,12 @@ VERSION = 1
 
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:
-    """Give settled findings as one JSON document, in their order, with a line end behind it."""
+    """Return settled findings as one JSON document, in their order, with a line end behind it."""
     return json_text(document(diagnostics))
 
 
 def document(diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
-    """Give settled findings as plain data."""
+    """Return settled findings as plain data."""
     diagnostics = tuple(diagnostics)
     return {
         "version": VERSION,
@@ -32,7 +32,7 @@ def document(diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
 
 
 def record(diagnostic: Diagnostic) -> dict[str, Any]:
-    """Give one settled finding as plain data. What it does not have is null, a place that nobody wrote too."""
+    """Return one settled finding as plain data. What it does not have is null, like the span of what nobody wrote."""
     return {
         "rule": diagnostic.rule,
         "severity": str(diagnostic.severity),

@@ -1,8 +1,8 @@
 """Findings as test results, for servers that show tests: JUnit's XML, as Jenkins and GitLab read it.
 
-A suite is a file, a case is a finding; a file without findings has one case that passes, since servers take a suite without
-cases for a failure. What does not fail the check is a case that passes and says what was found. Names hold no lines: a
-server tells by them what is new and what was mended.
+A suite is a file, a case is a finding; a file without findings has one case that passes, since servers take a suite
+without cases for a failure. What does not fail the check is a case that passes and says what was found. Names hold no
+lines: servers use them to tell what is new and what was fixed.
 """
 
 from __future__ import annotations
@@ -24,17 +24,18 @@ if TYPE_CHECKING:
 
 _NO_FILE = "the project"
 _LONGEST = 250
-"""Characters of a case's name. The whole message stands below it."""
+"""The most characters of a case's name. The whole message is in its body."""
 _NONCHARACTERS = {0xFFFE: "\ufffd", 0xFFFF: "\ufffd"}
 """Characters that print (as nothing) and that XML cannot hold."""
 
 
 def render(diagnostics: Iterable[Diagnostic], sources: Sources, files: Iterable[str], *, strict: bool) -> Iterator[str]:
-    """Give the lines of the document: a suite for each file, in order; with `strict`, warnings fail too."""
+    """Yield the lines of the document: a suite for each file, in order; with `strict`, warnings fail too."""
     found: dict[str, tuple[Diagnostic, ...]] = dict.fromkeys(files, ()) | {
         file: tuple(group)
         for file, group in groupby(sorted(diagnostics, key=lambda d: d.span.file), lambda d: d.span.file)
     }
+    # The same severities that make `archgen check` fail.
     failing = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
     total = sum(max(1, len(group)) for group in found.values())
     failed = sum(d.severity in failing for group in found.values() for d in group)
@@ -69,7 +70,7 @@ def _title(diagnostic: Diagnostic) -> str:
 
 
 def _case(diagnostic: Diagnostic, sources: Sources, *, fails: bool) -> Iterator[str]:
-    """Give the finding as a terminal shows it, lines and marks too."""
+    """Yield the finding as a terminal shows it, with lines and marks."""
     said = "\n".join(_text(line) for line in render_one(diagnostic, sources))
     if fails:
         message = _attribute(diagnostic.message)
@@ -83,6 +84,6 @@ def _attribute(text: str) -> str:
 
 
 def _text(text: str) -> str:
-    """Escape; what XML cannot hold, and what hides or reorders text, is shown by a visible character."""
+    """Escape text for XML; what XML cannot hold, and what hides or reorders text, becomes a visible character."""
     shown = visible(text).translate(_NONCHARACTERS)
     return shown.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -12,7 +12,7 @@ Rows = Sequence[Sequence[str]]
 
 
 def text(columns: Sequence[str], rows: Rows) -> str:
-    """Align columns for the terminal; control characters are taken out."""
+    """Return columns aligned for the terminal; control characters are made visible."""
     cleaned = [[visible(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
     widths = [max(len(row[place]) for row in cleaned) for place in range(len(columns))]
     return "".join(
@@ -22,7 +22,7 @@ def text(columns: Sequence[str], rows: Rows) -> str:
 
 
 def csv(columns: Sequence[str], rows: Rows) -> str:
-    """Write RFC 4180. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
+    """Return RFC 4180. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
 
     It may be printed in a terminal or in a workflow: what either would obey is made visible.
     """
@@ -34,10 +34,12 @@ def csv(columns: Sequence[str], rows: Rows) -> str:
 
 
 def _harmless(cell: str) -> str:
+    # Line by line: a cell may hold line ends, and each line of it may look like a command.
     shown = "\n".join(plain_line(visible(line)) for line in cell.split("\n"))
+    # The characters that OWASP names for CSV injection.
     return f"'{shown}" if cell.lstrip()[:1] in {"=", "+", "-", "@"} or cell[:1] in {"\t", "\r", "\n"} else shown
 
 
 def json(columns: Sequence[str], rows: Rows) -> str:
-    """Write a list of objects."""
+    """Return a list of objects."""
     return json_text([dict(zip(columns, row, strict=True)) for row in rows])

@@ -1,4 +1,4 @@
-"""Where a file lies in the repository: servers name files from its root, archgen from the project's folder."""
+"""The place of a file in the repository: servers name files from its root, archgen from the project's folder."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import posixpath
 
 
 def in_repository(file: str, folder: str) -> str | None:
-    """Give a file's path from the root; None where it has none, or leads out. `folder` is the project's."""
+    """Return a file's path from the repository's root; None without one, or where it leads out. `folder` is the
+    project's.
+    """
     path = posixpath.normpath(posixpath.join(folder.strip("/"), file))
     return None if not file or path.startswith(("../", "/")) else path

@@ -1,4 +1,4 @@
-"""All rules by name, and what settings and comments say of rules that there are not."""
+"""The table of all rules by name, and findings about settings that name rules which do not exist."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def by_name(rules: Iterable[Rule]) -> Mapping[str, Rule]:
-    """Key the rules by name, in alphabetical order. Two of one name are a bug."""
+    """Return the rules by name, in alphabetical order. Raise ValueError for two of one name, which is a bug."""
     found: dict[str, Rule] = {}
     for rule in sorted(rules, key=lambda rule: rule.name):
         if rule.name in found:
@@ -59,7 +59,7 @@ Good:
 
 
 def judge_settings(settings: Iterable[tuple[str, Span]], rules: Mapping[str, Rule]) -> Iterator[Diagnostic]:
-    """Judge the names below `rules:`, each with the place of its key."""
+    """Check the names below `rules:`, each with the span of its key."""
     for name, at in settings:
         rule = rules.get(name)
         if rule is None:

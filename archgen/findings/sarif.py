@@ -1,7 +1,7 @@
 """Findings as SARIF 2.1.0, for GitHub's code scanning and other viewers.
 
 Only what counts is written: GitHub shows findings that a comment or a baseline silences as open, whatever SARIF's
-`suppressions` and `baselineState` say of them, so those are left out.
+`suppressions` and `baselineState` say about them, so those are left out.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ _ROOT = "%SRCROOT%"
 _FINGERPRINT = "archgenIdentity/v1"
 _BRACKET, _ESCAPED = re.compile(r"([\[\]\\])"), r"\\\1"
 _SHOWN, _TAKEN, _BYTES = 5_000, 25_000, 10_000_000
-"""Of a run GitHub shows so many results and takes so many; of a file it takes so many bytes, packed with gzip."""
+"""GitHub's limits: results of a run that it shows, results that it accepts, and bytes of a file, packed with gzip."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """What was looked at: the project's id, the file that findings without a place point at, the project's folder from the
-    repository's root, and archgen's version. `compared` says that findings known from before were left out.
+    """What was checked: the project's id, the file that findings without a place point at, the project's folder from
+    the repository's root, and archgen's version. `is_compared` says that findings known from before were left out.
     """
 
     project: str
@@ -46,7 +46,7 @@ class Scan:
 
 
 def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: Scan) -> str:
-    """Give settled findings as a SARIF document."""
+    """Return settled findings as a SARIF document."""
     found = tuple(diagnostics)
     used = {name: place for place, name in enumerate(sorted({diagnostic.rule for diagnostic in found}))}
     driver = {"name": "archgen", "informationUri": _HOME, "version": scan.version, "semanticVersion": scan.version}
@@ -54,12 +54,14 @@ def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: S
         "tool": {"driver": driver | {"rules": [_rule(rules[name]) for name in used]}},
         "automationDetails": {"id": f"archgen/{scan.project}/"},
         "invocations": [{"executionSuccessful": True}],
+        # archgen counts columns in characters, not in UTF-16 code units.
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The repository's root."}}},
         "results": [
             {"ruleId": diagnostic.rule, "ruleIndex": used[diagnostic.rule]}
             | _result(diagnostic, scan)
             | {"partialFingerprints": {_FINGERPRINT: identity.fingerprint(number)}}
+            # GitHub matches alerts between runs by the fingerprint, so a finding that only moved stays the same alert.
             for diagnostic, identity, number in numbered(found)
         ],
     }
@@ -67,12 +69,13 @@ def render(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: S
 
 
 def limits(document: str, results: int) -> Iterator[str]:
-    """Say where GitHub would refuse a document, or show a part of it."""
+    """Yield sentences where GitHub would refuse a document, or show only a part of it."""
     if results > _TAKEN:
         yield f"GitHub takes at most {_TAKEN:,} results and would refuse these {results:,}: nothing was left out here"
     elif results > _SHOWN:
         yield f"GitHub shows the {_SHOWN:,} gravest of these {results:,} results"
     data = document.encode("utf-8", "surrogatepass")
+    # Only a large file is packed to be measured.
     packed = len(gzip.compress(data, 6)) if len(data) > _BYTES else 0
     if packed > _BYTES:
         yield f"GitHub takes files of at most 10 MB packed with gzip, and would refuse this one of {packed / 1e6:.1f} MB"
@@ -103,6 +106,7 @@ def _problem(severity: object) -> str:
 
 def _result(diagnostic: Diagnostic, scan: Scan) -> dict[str, Any]:
     labels = [(label, place) for label in diagnostic.labels if (place := _place(label.span, scan.folder))]
+    # GitHub needs a location for each result.
     place = _place(diagnostic.span, scan.folder) or _place(Span.of_file(scan.file), scan.folder)
     location: dict[str, Any] = {"physicalLocation": place} if place else {}
     if diagnostic.element:
@@ -120,7 +124,7 @@ def _result(diagnostic: Diagnostic, scan: Scan) -> dict[str, Any]:
 
 
 def _message(diagnostic: Diagnostic, labels: Iterable[tuple[Label, object]]) -> str:
-    """Say what is wrong and what to do; related places are links to them, which is how GitHub shows them."""
+    """Return what is wrong and what to do; related places are links to them, which is how GitHub shows them."""
     lines = [_plain(diagnostic.message)]
     lines += [
         f"[{_BRACKET.sub(_ESCAPED, visible(label.text or str(label.span)))}]({number})"
@@ -131,7 +135,7 @@ def _message(diagnostic: Diagnostic, labels: Iterable[tuple[Label, object]]) -> 
 
 
 def _plain(text: str) -> str:
-    """Give text in which nothing is hidden, and nothing becomes a link."""
+    """Return text in which nothing is hidden and nothing becomes a link."""
     shown = visible(text)
     return shown.replace("[", r"\[") if "](" in shown else shown
 

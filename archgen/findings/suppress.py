@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 
 class Ignore(Protocol):
-    """A comment `# archgen: ignore[rule, other] why`, and the rules that it names; `at` is its place."""
+    """A comment `# archgen: ignore[rule, other] why`. A protocol: the comments themselves come from the syntax."""
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """Give the names between the brackets."""
+        """The names between the brackets."""
 
     @property
     def why(self) -> str:
-        """Give what stands behind them."""
+        """What follows the brackets."""
 
     @property
     def at(self) -> Span:
-        """Give the comment's place."""
+        """The comment's span."""
 
 
 Lines = frozenset[tuple[str, int]]
@@ -77,8 +77,8 @@ def suppress(
 ) -> Iterator[Diagnostic]:
     """Leave out what comments silence, and add what is wrong with the comments.
 
-    It runs before findings are settled, so that a comment for a rule that is switched off counts as used. Where reading
-    or linking found errors, nobody knows what else would have been found: then no comment is called unused.
+    This runs before findings are settled, so that a comment for a rule that is switched off counts as used. After read
+    or link errors nobody knows what else would have been found: then no comment is called unused.
     """
     ignores = tuple(ignores)
     here: dict[tuple[str, str, int], list[Ignore]] = defaultdict(list)
@@ -87,20 +87,24 @@ def suppress(
             here[name, ignore.at.file, ignore.at.line].append(ignore)
     used: set[tuple[Span, str]] = set()
     broken = False
+    # One pass: it yields what is left, and notes which comments silenced something.
     for diagnostic in diagnostics:
         rule = rules[diagnostic.rule]
         broken = broken or (rule.fixed and (diagnostic.severity or rule.severity) is Severity.ERROR)
+        # A comment counts at the line of the finding, and at the first line of its element.
         lines = {(diagnostic.span.file, diagnostic.span.line), *first_lines.get(diagnostic.element or "", ())}
         found = (
             [i for file, line in lines for i in here.get((diagnostic.rule, file, line), ())] if not rule.fixed else []
         )
         used.update((ignore.at, diagnostic.rule) for ignore in found)
+        # A fixed rule is never silenced, and its comment is reported below.
         if not found:
             yield diagnostic
     for ignore in ignores:
         if not ignore.rules:
             cure = "name the rule in brackets: `# archgen: ignore[unread-output] why`"
             yield Diagnostic("unused-ignore", "this comment names no rule", ignore.at, help=cure)
+        # Every finding has passed by now: only here is it known which comments were used.
         for name in dict.fromkeys(ignore.rules):
             yield from _judge(ignore, name, rules, used=broken or (ignore.at, name) in used)
 
@@ -120,7 +124,9 @@ def _judge(ignore: Ignore, name: str, rules: Mapping[str, Rule], *, used: bool) 
 
 
 def first_lines(architecture: Architecture) -> Mapping[str, Lines]:
-    """Give the line in which each element begins, by the id that findings name; elements of several kinds may share one."""
+    """Return the lines where each element begins, by the id that findings name; elements of several kinds may share one
+    id.
+    """
     a = architecture
     found: dict[str, set[tuple[str, int]]] = defaultdict(set)
     everything = (

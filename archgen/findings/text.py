@@ -1,4 +1,4 @@
-"""Findings for people: each with the lines that it speaks of, marked, and a summary at the end."""
+"""Findings for people: each with the lines concerned, marked, and a summary at the end."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from archgen.source import Sources, Span
 
 WIDTH = 120
-"""Columns of an excerpt where nobody says how many the terminal has."""
+"""The columns of an excerpt where the terminal's width is not known."""
 _COLOURS = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
 _PLURALS = {Severity.ERROR: "errors", Severity.WARNING: "warnings", Severity.NOTE: "notes"}
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
-    """Tell whether to write colours: on a terminal, unless NO_COLOR is set; anywhere if FORCE_COLOR is."""
+    """Return whether to use colours: on a terminal, unless NO_COLOR is set; anywhere if FORCE_COLOR is."""
     if environment.get("NO_COLOR"):
         return False
     if environment.get("FORCE_COLOR", "") not in {"", "0"}:
@@ -38,7 +38,7 @@ def severity_counts(diagnostics: Iterable[Diagnostic]) -> Mapping[Severity, int]
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """Say how many findings there are: `2 errors, 1 warning`."""
+    """Return how many findings there are: `2 errors, 1 warning`."""
     counts = severity_counts(diagnostics)
     words = [f"{n} {severity if n == 1 else _PLURALS[severity]}" for severity, n in counts.items() if n]
     return ", ".join(words) if words else "no findings"
@@ -47,7 +47,7 @@ def summary(diagnostics: Iterable[Diagnostic]) -> str:
 def render(
     diagnostics: Iterable[Diagnostic], sources: Sources, *, colour: bool = False, width: int = WIDTH
 ) -> Iterator[str]:
-    """Give the lines of all findings (settled, in their order), a blank line behind each, and the summary."""
+    """Yield the lines of all findings (settled, in their order), a blank line after each, and the summary."""
     diagnostics = tuple(diagnostics)
     for diagnostic in diagnostics:
         yield from render_one(diagnostic, sources, colour=colour, width=width)
@@ -56,7 +56,7 @@ def render(
 
 
 def render_one(diagnostic: Diagnostic, sources: Sources, *, colour: bool = False, width: int = WIDTH) -> Iterator[str]:
-    """Give the lines of one finding."""
+    """Yield the lines of one finding."""
     severity = diagnostic.severity or Severity.ERROR
     strong = _COLOURS[severity]
     name = _paint(f"{severity}[{diagnostic.rule}]", strong, colour=colour)
@@ -65,12 +65,15 @@ def render_one(diagnostic: Diagnostic, sources: Sources, *, colour: bool = False
     gutter = max((len(str(span.line)) for span, _ in blocks), default=0)
     for number, (span, labels) in enumerate(blocks):
         yield f"  {_paint('-->', '34', colour=colour)} {_place(span)}"
+        # Only the first block holds the primary span.
         signs = [] if number or not diagnostic.span.file else [_mark(span, "^", "")]
         signs += [_mark(label.span, "-", label.text) for label in labels]
+        # A finding about a whole file quotes no line of it.
         line = None if _whole_file(span) else sources.line(span.file, span.line)
         if line is None:
             yield from (f"   {' ' * gutter} | {visible(label.text)}" for label in labels if label.text)
             continue
+        # 6: the blanks and the bar around the line number.
         for text, mark in quote(line, signs, max(width - gutter - 6, 20)):
             margin = f"{span.line:>{gutter}}" if mark is None else " " * gutter
             shown = text if mark is None else _paint(text, strong if mark.sign == "^" else "34", colour=colour)
@@ -80,7 +83,7 @@ def render_one(diagnostic: Diagnostic, sources: Sources, *, colour: bool = False
 
 
 def _blocks(diagnostic: Diagnostic) -> list[tuple[Span, list[Label]]]:
-    """Give the places to quote: the primary one first, with the labels that stand on its line, then the others."""
+    """Return the places to quote, each with the labels on its line: the primary one first, then the others."""
     blocks: list[tuple[Span, list[Label]]] = []
     if diagnostic.span.file:
         blocks.append((diagnostic.span, []))
@@ -98,7 +101,7 @@ def _blocks(diagnostic: Diagnostic) -> list[tuple[Span, list[Label]]]:
 
 
 def _mark(span: Span, sign: str, text: str) -> Mark:
-    """Mark a span in its first line; one that goes on below is marked to the line's end."""
+    """Return the mark of a span in its first line; one that continues below is marked to the line's end."""
     end = span.end_column - 1 if span.end_line <= span.line else 10**9
     return Mark(span.column - 1, end, sign, text)
 

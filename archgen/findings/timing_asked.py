@@ -1,4 +1,4 @@
-"""Answers about timing that somebody asked for: why, what if, what decides a chain, designed against measured."""
+"""Answers to single questions about timing: why, what if, what decides a chain, designed against measured."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ Plain = dict[str, Any]
 
 
 def why(lines: Iterable[Line]) -> Iterator[str]:
-    """Lay a chain of reasoning out, each step below what it supports, with its place."""
+    """Yield the lines of a chain of reasoning, each step below what it supports, with its place."""
     for line in lines:
         place = f"   {line.at}" if line.at.file else ""
         yield visible(f"{'  ' * line.depth}{line.text}{place}")
 
 
 def why_json(element: str, lines: Iterable[Line]) -> Plain:
-    """Give a chain of reasoning as plain data."""
+    """Return a chain of reasoning as plain data."""
     steps = [{"depth": line.depth, "text": line.text, "at": str(line.at) if line.at.file else None} for line in lines]
     return {"version": timing_json.VERSION, "why": element, "steps": steps}
 
@@ -36,7 +36,7 @@ def why_json(element: str, lines: Iterable[Line]) -> Plain:
 def changes(
     present: tuple[Analysis, Chains], changed: tuple[Analysis, Chains], written: Iterable[str]
 ) -> Iterator[str]:
-    """Show what some figures would change: chains whole, hosts and elements where they differ."""
+    """Yield what some changed figures would change: all chains, and the hosts and elements that differ."""
     (before, chains), (after, others) = present, changed
     yield f"With {', '.join(visible(text) for text in written)}:"
     yield ""
@@ -91,6 +91,7 @@ def _beside(now: Value, then: Value, write: Callable[[Fraction], str] = wording.
 
 
 def _difference(now: Value, then: Value) -> str:
+    # The difference of two incomplete sums says nothing about the difference of the true values.
     if now.value is None or then.value is None or not (now.complete and then.complete) or now.value == then.value:
         return ""
     sign = "+" if then.value > now.value else "-"
@@ -98,7 +99,7 @@ def _difference(now: Value, then: Value) -> str:
 
 
 def sensitivity(chain: ChainResult, found: Sensitivity) -> Iterator[str]:
-    """Rank what decides a chain."""
+    """Yield a ranking of what decides a chain."""
     yield f"{chain.id}: {figure(chain.bound)}"
     yield ""
     if found.gains:
@@ -127,7 +128,7 @@ def _at(at: object) -> str:
 
 
 def sensitivity_json(chain: ChainResult, found: Sensitivity) -> Plain:
-    """Give the ranking as plain data."""
+    """Return the ranking as plain data; gains in ms."""
     return {
         "version": timing_json.VERSION,
         "sensitivity": chain.id,
@@ -144,7 +145,7 @@ def sensitivity_json(chain: ChainResult, found: Sensitivity) -> Plain:
 
 
 def measured(compared: Iterable[Comparison]) -> Iterator[str]:
-    """Show designed beside measured, and name the outliers."""
+    """Yield designed beside measured figures, and the outliers by name."""
     rows = list(compared)
     if rows:
         yield from table([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)])
@@ -166,7 +167,7 @@ def _measured_row(row: Comparison) -> Row:
 
 
 def measured_json(compared: Iterable[Comparison]) -> Plain:
-    """Give the comparison as plain data: rates in Hz, durations in ms."""
+    """Return the comparison as plain data: rates in Hz, durations in ms."""
     return {
         "version": timing_json.VERSION,
         "measured": [

@@ -1,6 +1,6 @@
 """Timing for programs: the JSON format, version 1, as `schemas/timing.schema.json` describes it.
 
-Times are in milliseconds, rates in Hz, sizes in B, traffic in B/s, shares without unit.
+Durations are in milliseconds, rates in Hz, sizes in B, traffic in B/s, shares without unit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Plain = dict[str, Any]
 
 
 def document(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Plain:
-    """Give everything as plain data."""
+    """Return everything as plain data."""
     return {
         "version": VERSION,
         "elements": {name: _element(analysis, name) for name in analysis.system.activities},
@@ -88,7 +88,7 @@ def _element(analysis: Analysis, name: str) -> Plain:
 
 
 def chain(result: ChainResult) -> Plain:
-    """Give a chain's figures."""
+    """Return a chain's figures."""
     return {
         "through": list(result.through),
         "bound": time(result.bound),
@@ -102,7 +102,7 @@ def chain(result: ChainResult) -> Plain:
 
 
 def ways(source: str, target: str, count: int, worst: Iterable[Found], best: Iterable[Found]) -> Plain:
-    """Give the ways between two elements: their number, the worst ones, and the quickest best case."""
+    """Return the ways between two elements: their number, the worst ones, and the quickest best cases."""
     return {
         "version": VERSION,
         "from": source,
@@ -118,7 +118,7 @@ def _way(way: Found) -> Plain:
 
 
 def term(each: Term) -> Plain:
-    """Give one term of a sum."""
+    """Return one term of a sum."""
     return {
         "element": each.activity,
         "sampling": time(each.sampling),
@@ -130,7 +130,7 @@ def term(each: Term) -> Plain:
 
 
 def ends(arc: Arc) -> dict[str, str]:
-    """Name both ends of an arc: the activity, and the port's own name (a whole topic's name where it is internal)."""
+    """Return both ends of an arc: the activity and the port's own name (a topic's full name where it is internal)."""
     return {"from": f"{arc.source}.{_own(arc.output)}", "to": f"{arc.target}.{_own(arc.input)}"}
 
 
@@ -139,7 +139,7 @@ def _own(key: str) -> str:
 
 
 def quantity(value: Value) -> Plain:
-    """Give a figure as it is; one that lacks something says on which side of it the true one lies."""
+    """Return a value as it is; an incomplete one says on which side of it the true value lies."""
     bound = {} if value.complete or value.value is None else {"side": "at most" if known(value) else "at least"}
     return {
         "value": None if value.value is None else float(value.value),
@@ -151,5 +151,5 @@ def quantity(value: Value) -> Plain:
 
 
 def time(value: Value) -> Plain:
-    """Give a duration in milliseconds."""
+    """Return a duration, converted from ns to milliseconds."""
     return {**quantity(value), "value": None if value.value is None else float(value.value / _MS)}

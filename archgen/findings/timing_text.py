@@ -1,4 +1,4 @@
-"""Timing for people: a summary that can be read in the terminal, chains term by term, ways between two elements."""
+"""Timing for people: a summary for the terminal, chains term by term, ways between two elements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Row = Sequence[str]
 
 
 def summary(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[Round]) -> Iterator[str]:
-    """Give the whole picture: chains first, then hosts, links, elements, loops."""
+    """Yield the whole picture: chains first, then hosts, links, services, elements, loops."""
     yield from _section("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
     yield from _section("Hosts", _host_rows(analysis))
     yield from _section("Links", _link_rows(analysis))
@@ -52,10 +52,11 @@ def _host_rows(analysis: Analysis) -> Iterator[Row]:
 
 
 def _bounds(load: HostLoad) -> str:
-    """Say where the bounds of Liu and Layland lie, on one core."""
+    """Return the utilisation bounds of Liu and Layland, on one core."""
     by_rate, by_deadline = load.rate_monotonic_bound.value, load.earliest_deadline_bound.value
     if by_rate is None or by_deadline is None or len(load.parts) < 2:  # noqa: PLR2004 - one alone needs no order
         return ""
+    # Rounded down: a displayed bound that is a little too high would promise too much.
     rounded_down = Fraction(by_rate * 1000 // 1, 1000)
     return f"priorities by rate are sure to do up to {wording.share(rounded_down)}, deadlines up to {wording.share(by_deadline)}"
 
@@ -98,7 +99,7 @@ def _faults(analysis: Analysis) -> Iterator[str]:
 
 
 def chain(result: ChainResult, age: Value, published: tuple[Fraction, Fraction] | None = None) -> Iterator[str]:
-    """Give a chain term by term, with the reason and the place of each; `age` is its largest data age."""
+    """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
     if result.terms:
         yield from table(_term_rows(result.terms))
@@ -131,7 +132,7 @@ def _term_rows(terms: Iterable[Term]) -> Iterator[Row]:
 
 
 def ways(source: str, target: str, count: int, worst: Iterable[Found], best: Iterable[Found]) -> Iterator[str]:
-    """Give the ways between two elements."""
+    """Yield the ways between two elements."""
     yield f"{source} to {target}: {count} way{'s' if count != 1 else ''}"
     if not count:
         yield "  nothing that leaves the first reaches the second; ask the other way round?"
@@ -143,7 +144,7 @@ def ways(source: str, target: str, count: int, worst: Iterable[Found], best: Ite
 
 
 def gaps(result: ChainResult) -> str:
-    """Say what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
+    """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
     if result.bound.complete:
         return ""
     said = []
@@ -154,10 +155,12 @@ def gaps(result: ChainResult) -> str:
         ("latency", [term.link for term in result.terms]),
     ):
         lacking = dict.fromkeys(name for value in values for name in value.missing if not value.complete)
+        # An unknown latency makes the waiting time unknown as well: it is named once, as a latency.
         names = tuple(name for name in lacking if what != "period or rate" or name not in links)
         if names:
             said.append(f"{what} of {wording.listed(names)} unknown")
     named = {name for term in result.terms for v in (term.sampling, term.response, term.link) for name in v.missing}
+    # The bound is the maximum over all ways, the terms are those of one of them.
     elsewhere = tuple(name for name in result.bound.missing if name not in named)
     if elsewhere and result.terms:
         said.append(f"on other ways, figures of {wording.listed(elsewhere)} unknown")
@@ -173,12 +176,12 @@ def _basis(result: ChainResult) -> str:
 
 
 def without(value: Value) -> str:
-    """Say which elements' figures a value lacks."""
+    """Return which elements' figures a value lacks."""
     return f"unknown: {wording.listed(value.missing)}" if value.missing and not value.complete else ""
 
 
 def figure(value: Value | None, write: Callable[[Fraction], str] = wording.duration) -> str:
-    """Write a figure: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
+    """Format a value: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
     if value is None:
         return ""
     if value.value is None:
@@ -189,7 +192,8 @@ def figure(value: Value | None, write: Callable[[Fraction], str] = wording.durat
 
 
 def table(rows: Iterable[Row]) -> Iterator[str]:
-    """Set rows in columns as wide as what stands in them; the last column of a row needs no width."""
+    """Yield rows in aligned columns; the last cell of a row needs no width."""
+    # Made visible before it is measured: replacements may have another width.
     made = [[visible(cell) for cell in row] for row in rows]
     columns = max((len(row) for row in made), default=0)
     widths = [max((width(row[at]) for row in made if at < len(row) - 1), default=0) for at in range(columns)]

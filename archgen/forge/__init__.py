@@ -1,4 +1,6 @@
-"""Where pull requests live: put one comment on a pull request of GitHub or a merge request of GitLab, and keep it current."""
+"""Where pull requests live: put one comment on a pull request of GitHub or a merge request of GitLab, and keep it
+current.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ __all__ = ["ForgeError", "Posted", "comment"]
 
 
 def comment(text: str, key: str, environment: Mapping[str, str] = os.environ) -> Posted:
-    """Put a text on the pull request that a CI job runs for, in place of the one that was put there under this key.
+    """Put a text on the pull request that a CI job runs for, replacing the one that was put there under this key.
 
     The job's environment says where: GitHub's or GitLab's own variables, and a token that may write comments. Raises
     `ForgeError` where there is no pull request or the forge refuses.

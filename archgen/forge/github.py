@@ -21,6 +21,7 @@ def request(environment: Mapping[str, str]) -> Request:
     if not token:
         msg = "GITHUB_TOKEN is not set: pass `${{ github.token }}` to this step"
         raise ForgeError(msg)
+    # It becomes a part of the URL: nothing but a name may get there.
     if not re.fullmatch(r"[\w.-]+/[\w.-]+", repository):
         msg = "GITHUB_REPOSITORY names no repository"
         raise ForgeError(msg)
@@ -42,7 +43,7 @@ def _number(environment: Mapping[str, str]) -> int:
 
 
 def _author(api: Api) -> object:
-    """Name whose comments are ours: the token's user; a job's own token has none, and writes as the bot of Actions."""
+    """Return whose comments are ours: the token's user, or the bot of Actions for a job's own token."""
     try:
         return api.ask("GET", "/user")["login"]
     except ForgeError as error:

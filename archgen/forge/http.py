@@ -1,4 +1,4 @@
-"""Ask a forge's API: JSON over HTTPS, to the one host that the job names, with a time limit and no redirects."""
+"""Call a forge's API: JSON over HTTPS, to the one host that the job names, with a time limit and no redirects."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
 
 class ForgeError(Exception):
-    """The forge did not do what was asked. The text says why; `status` is HTTP's, 0 where there was no answer."""
+    """The forge did not do what was asked. The message says why; `status` is HTTP's, 0 where there was no answer."""
 
     def __init__(self, message: str, status: int = 0) -> None:
         super().__init__(message)
@@ -25,7 +25,7 @@ class ForgeError(Exception):
 
 
 class _Stay(HTTPRedirectHandler):
-    """A token is for one host: an answer that leads elsewhere is an error."""
+    """Refuses redirects: a token is for one host, so an answer that leads elsewhere is an error."""
 
     def redirect_request(self, *_: Any, **__: Any) -> None:  # noqa: ANN401 - whatever urllib passes
         """Follow nothing."""
@@ -33,7 +33,7 @@ class _Stay(HTTPRedirectHandler):
 
 @dataclass(frozen=True, slots=True)
 class Api:
-    """A forge's API: its address and what proves who asks."""
+    """A forge's API: its address, and the headers that authenticate."""
 
     url: str
     headers: Mapping[str, str]
@@ -46,7 +46,7 @@ class Api:
             raise ForgeError(msg)
 
     def ask(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401 - JSON
-        """Send one request and give its answer as plain data."""
+        """Send one request and return its answer as plain data. Raise ForgeError."""
         data = json.dumps(body).encode() if body is not None else None
         headers = {"Accept": "application/json", "Content-Type": "application/json", "User-Agent": "archgen"}
         request = Request(f"{self.url}{path}", data, {**headers, **self.headers}, method=method)  # noqa: S310 - see above

@@ -1,4 +1,4 @@
-"""One comment for each key: found again by a mark in its first line, changed where it is there, made where it is not."""
+"""One comment for each key: found by a mark in its first line, updated if it exists, created if not."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _KEY = re.compile(r"[A-Za-z0-9_./-]+")
 class Request:
     """A pull request as its API sees it: where its comments are listed, where one is changed, and who writes ours.
 
-    `author` is a pair of paths into a comment's data, and the value that stands there if it is ours.
+    `author_path` is two keys that lead to a comment's author, and the value found there if the comment is ours.
     """
 
     api: Api
@@ -30,7 +30,7 @@ class Request:
 
 
 def put(request: Request, text: str, key: str) -> Posted:
-    """Change our comment of this key, or make it."""
+    """Update our comment of this key, or create it. Raise ForgeError."""
     if not _KEY.fullmatch(key):
         msg = f"the key {key!r} may hold letters, digits, `_`, `.`, `/` and `-` only"
         raise ForgeError(msg)
@@ -43,6 +43,7 @@ def put(request: Request, text: str, key: str) -> Posted:
         written = comment.get("body")
         if not isinstance(written, str) or written.split("\n", 1)[0].rstrip("\r") != mark:
             continue
+        # Forges may change line ends and blanks; an unchanged comment is not written again.
         if written.replace("\r\n", "\n").strip() == body.strip():
             return "unchanged"
         request.api.ask(request.change, f"{request.one}/{int(comment['id'])}", {"body": body})
@@ -52,7 +53,7 @@ def put(request: Request, text: str, key: str) -> Posted:
 
 
 def _ours(request: Request) -> Iterator[dict[str, Any]]:
-    """Give the comments that we wrote; a stranger who copies the mark does not get his own comment changed."""
+    """Yield the comments that we wrote; the comment of a stranger who copies the mark is never changed."""
     outer, inner, wanted = request.author
     page = 1
     while True:
@@ -63,6 +64,7 @@ def _ours(request: Request) -> Iterator[dict[str, Any]]:
         for comment in found:
             if isinstance(comment, dict) and (comment.get(outer) or {}).get(inner) == wanted:
                 yield comment
+        # A short page is the last one; the Link header is not needed.
         if len(found) < _PAGE:
             return
         page += 1

@@ -1,7 +1,7 @@
 """git, read only and at arm's length: which repository, which commit, what its trees and blobs hold.
 
-Objects are all that is read: never the index, never through a filter, hook, textconv, pager, monitor or remote. So a
-repository whose configuration or attributes name a program is read without running it.
+Only objects are read: never the index, and never through a filter, hook, textconv, pager, monitor or remote. A
+repository whose configuration or attributes name a program is therefore read without running it.
 """
 
 from archgen.git.base import Base, base, fork

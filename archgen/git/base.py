@@ -1,4 +1,4 @@
-"""Where a branch left its main line: what a diff compares with where nobody says otherwise."""
+"""Find where a branch left its main line: what a diff compares with by default."""
 
 from __future__ import annotations
 
@@ -9,25 +9,27 @@ from archgen.git.errors import GitError, ShallowError
 from archgen.git.repository import UNSHALLOW, Repository, look_up, resolve
 
 _MAIN_LINES = ("main", "master", "origin/main", "origin/master")
-"""Tried in this order, after what the remote says its main line is."""
+"""Tried in this order, after the branch that the remote names."""
 
 
 class Base(NamedTuple):
-    """A commit, and how to name it to a person."""
+    """A commit and a description of it for people."""
 
     commit: str
     name: str
 
 
 def base(found: Repository, setting: str | None = None) -> Base:
-    """Give the commit at which HEAD left the main line; HEAD itself where it is on it, or where there is no other line.
+    """Return the commit at which HEAD left the main line; HEAD itself on the main line, or where there is no other
+    line.
 
-    `setting` is the main line that the project names. Raises `NoCommitsError`, `UnknownRevisionError` where there is no such
-    branch, `ShallowError` where the clone does not reach that far back, `GitError` for unrelated lines.
+    `setting` is the main line that the project names. Raises `NoCommitsError`, `UnknownRevisionError` where there is no
+    such branch, `ShallowError` where the clone does not reach back that far, `GitError` for unrelated lines.
     """
     head = resolve(found, "HEAD")
     main = _main_line(found, setting)
     branch = call(found.top, "symbolic-ref", "--quiet", "--short", "HEAD").text.strip()
+    # On the main line itself the work tree is compared with the last commit.
     if branch and main in {branch, f"origin/{branch}"}:
         return Base(head, "HEAD")
     if not main and found.shallow:
@@ -38,7 +40,7 @@ def base(found: Repository, setting: str | None = None) -> Base:
 
 
 def fork(found: Repository, left: str, right: str) -> Base:
-    """Give the newest commit that two revisions have in common."""
+    """Return the newest commit that two revisions have in common. Raise ShallowError or GitError."""
     done = call(found.top, "merge-base", "--end-of-options", resolve(found, left), resolve(found, right))
     commit = done.text.split("\n")[0]
     if commit:
@@ -51,7 +53,7 @@ def fork(found: Repository, left: str, right: str) -> Base:
 
 
 def _main_line(found: Repository, setting: str | None) -> str:
-    """Name the main line, empty where none is known."""
+    """Return the name of the main line, empty where none is known."""
     if setting:
         named = next((name for name in (setting, f"origin/{setting}") if look_up(found, name)), "")
         return named if named or found.shallow else resolve(found, setting)

@@ -21,7 +21,7 @@ _MISSING = 127
 
 
 class Done(NamedTuple):
-    """What a call gave: its exit status (127 where git could not be run), its output, what it said."""
+    """The result of a call: exit status (127 where git could not be run), output, and the text of its errors."""
 
     status: int
     out: bytes
@@ -29,12 +29,13 @@ class Done(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Give the output as text, bytes that are no UTF-8 as Python's file names hold them."""
+        """The output as text; bytes that are not UTF-8 become surrogates, as in Python's file names."""
         return self.out.decode("utf-8", "surrogateescape")
 
 
 def call(folder: Path, *arguments: str, stdin: bytes = b"") -> Done:
-    """Run one command of git in a folder."""
+    """Run one git command in a folder."""
+    # Imported only when git is called: it would add to the start-up time of every command.
     import subprocess
 
     try:
@@ -55,17 +56,17 @@ def call(folder: Path, *arguments: str, stdin: bytes = b"") -> Done:
 
 
 def environment(outer: Mapping[str, str]) -> dict[str, str]:
-    """Keep what git needs to run; leave out what could point it elsewhere or make it run a program.
-
-    A setting of the repository for one protocol wins over `protocol.allow`; GIT_ALLOW_PROTOCOL wins over all of them.
-    """
+    """Return the variables that git needs, without those that could point it elsewhere or make it run a program."""
     kept = {key: value for key, value in outer.items() if not key.startswith("GIT_")}
     return kept | {
+        # A setting of the repository for one protocol wins over `protocol.allow`; this variable wins over all of them.
         "GIT_ALLOW_PROTOCOL": "",
         "GIT_GRAFT_FILE": os.devnull,
         "GIT_LITERAL_PATHSPECS": "1",
+        # In a partial clone reading an object could otherwise fetch it from the remote.
         "GIT_NO_LAZY_FETCH": "1",
         "GIT_OPTIONAL_LOCKS": "0",
         "GIT_TERMINAL_PROMPT": "0",
+        # Messages are compared with English texts (`_explain_refusal`).
         "LC_ALL": "C",
     }

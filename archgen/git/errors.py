@@ -1,10 +1,10 @@
-"""What can be wrong with a repository or a revision. The texts are written for users and say what to do."""
+"""What can be wrong with a repository or a revision. The messages are written for users and say what to do."""
 
 from __future__ import annotations
 
 
 class GitError(Exception):
-    """git cannot give what was asked for."""
+    """git cannot deliver what was asked for."""
 
 
 class NoRepositoryError(GitError):
@@ -12,11 +12,11 @@ class NoRepositoryError(GitError):
 
 
 class NoCommitsError(GitError):
-    """Nothing was committed yet."""
+    """Nothing has been committed yet."""
 
 
 class UnknownRevisionError(GitError):
-    """No commit is called so."""
+    """No commit has this name."""
 
 
 class ShallowError(GitError):

@@ -1,4 +1,4 @@
-"""The line of commits that led to one, and the ids of what they hold."""
+"""List the line of commits that led to one, and look up the ids of objects in them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from archgen.git.repository import Repository, resolve
 
 
 def first_parents(found: Repository, revision: str) -> tuple[tuple[str, str], ...]:
-    """Give hash and day (of the committer's clock) of a commit and its first parents, oldest first.
+    """Return (hash, day by the committer's clock) of a commit and its first parents, oldest first.
 
-    Raises what `resolve` raises. A shallow clone's line is as long as what it holds.
+    Raises what `resolve_revision` raises. The line of a shallow clone ends where the clone does.
     """
     commit = resolve(found, revision)
     done = call(found.top, "log", "--first-parent", "--reverse", "--format=%H %cs", "--end-of-options", commit)
@@ -20,7 +20,8 @@ def first_parents(found: Repository, revision: str) -> tuple[tuple[str, str], ..
 
 
 def ids(found: Repository, names: Iterable[str]) -> tuple[str, ...]:
-    """Give the ids of objects by their names (`COMMIT:path`), empty where there is no such object."""
+    """Return the ids of objects by their names (`COMMIT:path`), empty where there is no such object."""
+    # One name a line: a path with a line break would shift all answers behind it.
     asked = [name if "\n" not in name else "" for name in names]
     lines = "".join(f"{name}\n" for name in asked).encode("utf-8", "surrogateescape")
     done = call(found.top, "cat-file", "--batch-check=%(objectname)", stdin=lines)

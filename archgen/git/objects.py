@@ -1,4 +1,4 @@
-"""Read trees and blobs. Two processes of `git cat-file` serve any number of blobs: one tells sizes, one gives contents."""
+"""Read trees and blobs. Two `git cat-file` processes serve any number of blobs: one returns sizes, one contents."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ LINK = "120000"
 SUBMODULE = "160000"
 _SMALL = 65_536
 _MOST_HELD = 4096
-"""Small files are held, so many of them: most are the same in most commits."""
+"""The most small files that are cached: most are the same in most commits."""
 
 
 class Blob(NamedTuple):
-    """What a tree holds at a path: a file, a symbolic link (`mode` is LINK) or a submodule's commit (SUBMODULE)."""
+    """An entry of a tree: a file, a symbolic link (`mode` is LINK_MODE) or a submodule's commit (SUBMODULE_MODE)."""
 
     mode: str
     id: str
@@ -30,14 +30,14 @@ class Objects:
     """The objects of one repository."""
 
     def __init__(self, repository: Repository) -> None:
-        """Start nothing yet."""
+        """Start no process yet."""
         self.repository = repository
         self._sizes = _Batch(repository, "--batch-check")
         self._contents = _Batch(repository, "--batch")
         self._held: dict[str, bytes] = {}
 
     def tree(self, commit: str, prefix: str = "") -> dict[str, Blob] | None:
-        """Give all that lies below a folder of a commit, by path; None where there is no such folder."""
+        """Return everything below a folder of a commit, by path; None where there is no such folder."""
         done = call(self.repository.top, "ls-tree", "-r", "-z", "--full-tree", f"{commit}:{prefix}")
         if done.status:
             return None
@@ -45,14 +45,14 @@ class Objects:
         return {path: Blob(words[:6], words.rpartition(" ")[2]) for words, _, path in rows}
 
     def size(self, blob: str) -> int | None:
-        """Give a blob's size, None where this clone does not have it."""
+        """Return a blob's size in bytes, None where this clone does not have it."""
         if blob in self._held:
             return len(self._held[blob])
         words = self._sizes.ask(blob)
         return int(words[2]) if words else None
 
     def content(self, blob: str) -> bytes | None:
-        """Give a blob's content, None where this clone does not have it. Ask for its size first."""
+        """Return a blob's content, None where this clone does not have it. Ask for its size first."""
         held = self._held.get(blob)
         if held is not None:
             return held
@@ -66,7 +66,7 @@ class Objects:
 
 
 class _Batch:
-    """A process of `git cat-file` that answers one question after the other. It ends with its owner."""
+    """A `git cat-file` process that answers one question after the other. It ends with its owner."""
 
     def __init__(self, repository: Repository, mode: str) -> None:
         self._repository = repository
@@ -74,7 +74,7 @@ class _Batch:
         self._process: subprocess.Popen[bytes] | None = None
 
     def ask(self, blob: str) -> list[str] | None:
-        """Give the three words of the answer's first line, None where there is no such object."""
+        """Return the three words of the answer's first line, None where there is no such blob."""
         source, sink = self._pipes()
         try:
             sink.write(blob.encode() + b"\n")
@@ -87,6 +87,7 @@ class _Batch:
         return words if len(words) == 3 and words[1] == "blob" else None  # noqa: PLR2004 - id, kind, size
 
     def read(self, size: int) -> bytes:
+        """Read a content of `size` bytes and the line end behind it."""
         source, _ = self._pipes()
         return source.read(size + 1)[:size]
 
@@ -107,6 +108,7 @@ class _Batch:
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
+        # Ends the process together with this object, at the latest with the interpreter.
         weakref.finalize(self, _end, process)
         return process
 

@@ -15,8 +15,10 @@ UNSHALLOW = "fetch what is missing with `git fetch --unshallow` (in a workflow: 
 
 @dataclass(frozen=True, slots=True)
 class Repository:
-    """A repository. `top` is the root of its work tree (a bare repository's own folder); `prefix` is the path from there
-    to the folder that was asked for, with `/`, empty for the root. A shallow one lacks the older commits.
+    """A repository.
+
+    `top` is the root of its work tree (a bare repository's own folder); `prefix` is the path from there to the
+    requested folder, with `/`, empty for the root. A shallow one lacks the older commits.
     """
 
     top: Path
@@ -26,16 +28,17 @@ class Repository:
 
     @property
     def folder(self) -> Path:
-        """Give the folder that was asked for; there need not be one on disk."""
+        """The requested folder; it need not exist on disk."""
         return self.top / self.prefix
 
 
 def repository(path: Path) -> Repository:
-    """Find the repository around a folder, which may be gone from the disk or stand in a bare repository only.
+    """Find the repository around a folder, which may be gone from the disk or exist in a bare repository only.
 
     Raises `NoRepositoryError`.
     """
     here = Path(os.path.realpath(path))
+    # git is called in the nearest folder that exists; what is missing is added to the prefix below.
     while not here.is_dir() and here != here.parent:
         here = here.parent
     rest = os.path.relpath(os.path.realpath(path), here).replace(os.sep, "/").removeprefix(".")
@@ -60,6 +63,7 @@ def _git_folder(here: Path) -> Path:
 
 
 def _refused(path: Path, said: str) -> str:
+    """Return a message for users from git's own."""
     first = said.removeprefix("fatal: ").split("\n")[0]
     if first.startswith("not a git repository"):
         return f"{path} is not in a git repository: name two folders or files to compare, or run `git init` first"
@@ -69,7 +73,7 @@ def _refused(path: Path, said: str) -> str:
 
 
 def resolve(found: Repository, revision: str) -> str:
-    """Give the full hash of the commit that a revision names (branch, tag, hash, `HEAD~3`, ...).
+    """Return the full hash of the commit that a revision names (branch, tag, hash, `HEAD~3`, ...).
 
     Raises `NoCommitsError`, `ShallowError` or `UnknownRevisionError`.
     """
@@ -90,8 +94,9 @@ def resolve(found: Repository, revision: str) -> str:
 
 
 def look_up(found: Repository, revision: str) -> str:
-    """Give the full hash of a commit, empty where there is none."""
+    """Return the full hash of a commit, empty where there is none."""
     if not revision or "\0" in revision:
         return ""
+    # `--end-of-options`: a revision that users type may begin with a hyphen.
     done = call(found.top, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
     return "" if done.status else done.text.strip()

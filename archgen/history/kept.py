@@ -1,6 +1,7 @@
-"""Points that were counted before, by the id of the project's tree: what is the same tree has the same counts.
+"""Cache counted points by the id of the project's tree: the same tree has the same counts.
 
-One file for each state of archgen and place of a project; one that cannot be read is as good as none.
+There is one file for each version of archgen's code and place of a project; a file that cannot be read counts as
+missing.
 """
 
 from __future__ import annotations
@@ -16,20 +17,21 @@ from archgen.emit import shelf
 from archgen.emit.program import program
 
 _MOST = 8
-"""So many files are kept."""
+"""The most files that are kept."""
 Kept = dict[str, dict[str, Any]]
 
 
 def file(folder: Path | None, place: str) -> Path | None:
-    """Name the file that holds the points of a project, None where nothing can be kept."""
+    """Return the path of the cache file for a project, None without a cache folder."""
     if folder is None:
         return None
+    # The code is part of the name: a changed rule may count other findings in the same tree.
     digest = hashlib.sha256(f"{program()}\n{place}".encode("utf-8", "surrogateescape"))
     return folder / f"{digest.hexdigest()[:40]}.history"
 
 
 def load(path: Path | None) -> Kept:
-    """Read what is kept, by the id of a tree."""
+    """Read the cached points, by the id of a tree."""
     try:
         found = json.loads(path.read_bytes()) if path else {}
     except (OSError, ValueError):
@@ -40,7 +42,7 @@ def load(path: Path | None) -> Kept:
 
 
 def store(path: Path | None, points: Mapping[str, Mapping[str, Any]]) -> None:
-    """Keep points in place of what was there; the oldest files beyond a few are removed."""
+    """Replace the cached points; the oldest files beyond a few are removed."""
     if path is None:
         return
     with contextlib.suppress(OSError):  # a full or read-only disk costs only the time that this would have saved

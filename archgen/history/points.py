@@ -17,7 +17,7 @@ _COUNTED = ("components", "described", "typed", "mapped", "timed", "traced")
 
 
 def point(checked: Checked, commit: str, day: str) -> Point:
-    """Count what there is in a project."""
+    """Count a project."""
     a = checked.architecture
     counts = _by_scope(checked)
     return Point(
@@ -41,12 +41,12 @@ def point(checked: Checked, commit: str, day: str) -> Point:
 
 
 def plain(one: Point) -> dict[str, Any]:
-    """Give a point as plain data."""
+    """Return a point as plain data."""
     return asdict(one)
 
 
 def read(data: Mapping[str, Any]) -> Point:
-    """Make a point of plain data. Raises KeyError and TypeError for what is none."""
+    """Return a point from plain data. Raise KeyError or TypeError for anything else."""
     rows = tuple(Row(**{**row, "findings": Findings(**row["findings"])}) for row in data["rows"])
     return Point(**{**data, "rows": rows})
 
@@ -56,7 +56,7 @@ def _findings(counts: Counter[Severity]) -> Findings:
 
 
 def _by_scope(checked: Checked) -> dict[tuple[str, str], Counter[Severity]]:
-    """Count findings: each once for the whole, for its group, and for each partner who owns what it is about."""
+    """Count findings by severity: each once for the whole, for its group, and for each partner who owns its element."""
     where = _scopes(checked.architecture)
     found: dict[tuple[str, str], Counter[Severity]] = {}
     for finding in checked.findings:
@@ -70,7 +70,7 @@ Scopes = Mapping[str, frozenset[tuple[str, str]]]
 
 
 def _element(name: str | None, where: Scopes) -> str:
-    """Give the element that a finding is about, or the one that it is a part of."""
+    """Return the element that a finding is about, or the nearest element that it is a part of."""
     name = name or ""
     while name and name not in where:
         name = name.rpartition(".")[0]
@@ -78,15 +78,18 @@ def _element(name: str | None, where: Scopes) -> str:
 
 
 def _scopes(architecture: Architecture) -> dict[str, frozenset[tuple[str, str]]]:
-    """Give the groups and partners that each group, component and node belongs to."""
+    """Return the groups and partners that each group, component and node belongs to."""
     found: dict[str, frozenset[tuple[str, str]]] = {}
     for group in architecture.groups.values():
         mine = {("group", group.id)}
         found[group.id] = frozenset(mine | {("partner", owner) for owner in group.owners})
         for component in group.components.values():
+            # {("partner", owner) for owner in component.owners or ("",)}) | The partner "" collects the components that
+            # nobody owns.
             found[component.id] = frozenset(mine | {("partner", owner) for owner in component.owners or ("",)})
     for node in architecture.nodes.values():
         below = frozenset[tuple[str, str]]().union(*(found.get(name, frozenset()) for name in node.implements))
+        # A node without an owner belongs to those of the components that it implements.
         owned = {("partner", owner) for owner in node.owners} or {one for one in below if one[0] == "partner"}
         found.setdefault(node.id, frozenset({one for one in below if one[0] == "group"} | owned))
     return found

@@ -1,4 +1,6 @@
-"""Count commits in this process, or in one for each core where there are many; each keeps the slices that it understood."""
+"""Count commits in this process, or in one process for each core if there are many; each caches the slices it has
+parsed.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ from archgen.project.slices import Slices
 
 Progress = Callable[[int, int], None]
 _FEW = 8
-"""So many are counted sooner than another process starts."""
+"""So many commits are counted sooner than another process starts."""
+# The names in this string are this module's own path and function: a rename must change them as well.
 _START = "import sys; sys.path.append({root!r}); from archgen.history.workers import main; main()"
 
 
@@ -40,6 +43,7 @@ def count(path: Path | None, commits: Sequence[Commit], progress: Progress | Non
     size = -(-len(commits) // processes)
     parts = [commits[start : start + size] for start in range(0, len(commits), size)]
     results: list[list[Point]] = [[] for _ in parts]
+    # Threads only wait for the processes' output; this thread counts the first batch itself.
     threads = [
         threading.Thread(target=_elsewhere, args=(path, part, into, told))
         for part, into in zip(parts[1:], results[1:], strict=True)
@@ -75,6 +79,8 @@ def _points(path: Path | None, commits: Sequence[Commit]) -> Iterator[Point]:
 
 
 def _elsewhere(path: Path | None, commits: Sequence[Commit], into: list[Point], told: Callable[[Point], None]) -> None:
+    # The folder that holds the package `archgen`: two levels above this file's own.
+    """Count commits in another process; `batch_points` holds whatever it delivered, even if it was killed."""
     root = str(Path(__file__).resolve().parents[2])
     command = (sys.executable, "-P", "-c", _START.format(root=root))
     asked = {"path": None if path is None else str(path), "commits": [[one.id, one.day, one.tree] for one in commits]}
@@ -89,7 +95,8 @@ def _elsewhere(path: Path | None, commits: Sequence[Commit], into: list[Point], 
 
 
 def main() -> None:
-    """Be a worker: read what to count from standard input, write a line of JSON for each commit."""
+    """Run as a worker: read what to count from standard input, write a line of JSON for each commit."""
+    # The process lives for one batch only.
     gc.disable()
     asked = json.loads(sys.stdin.buffer.read())
     path = None if asked["path"] is None else Path(asked["path"])

@@ -1,4 +1,4 @@
-"""Importers: other formats become plain data of the language. So far: tables, as spreadsheets export them."""
+"""Importers turn other formats into plain data of the language. So far: tables, as spreadsheets export them."""
 
 from archgen.importers.cells import MAX_BYTES
 from archgen.importers.table import Imported, read

@@ -1,4 +1,4 @@
-"""The cells of a table with their places: bytes are decoded as spreadsheets save them, separators found, quotes undone."""
+"""Read the cells of a table with their spans: decode bytes as spreadsheets save them, split rows, undo quotes."""
 
 from __future__ import annotations
 
@@ -12,41 +12,44 @@ from archgen.source import Span
 
 MAX_BYTES = 8 * 1024 * 1024
 MAX_CELLS = 300_000
-"""How many cells with something in them a table may have. 10,000 components with their connections have fewer."""
+"""The most non-empty cells that a table may have. 10,000 components with their connections have fewer."""
 MAX_COLUMNS = 200
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+# Possessive: where the quotation mark is never closed, matching fails without backtracking.
 _QUOTED = re.compile(r'"(?:[^"]|"")*+"')
+# Spreadsheets and web pages leave no-break, zero-width and byte order characters in cells.
 _ODD_BLANKS = str.maketrans({"\xa0": " ", "\u202f": " ", "\u200b": None, "\ufeff": None})
 _NOTHING = frozenset(
     {"", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "tbd", "tbc", "tba", "todo", "...", "\u2026"}
 )
-"""What stands in a cell that says nothing yet."""
+"""What a cell holds that says nothing yet."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell that says something. `text` has no blanks around it."""
+    """A cell with content. `text` has no blanks around it."""
 
     text: str
     at: Span
 
     @property
     def line(self) -> str:
-        """Give the text on one line, single blanks between its words."""
+        """The text on one line, with single blanks between its words."""
         return " ".join(self.text.split())
 
 
 Row = Mapping[int, Cell]
-"""The cells of a row that say something, by their column (from 0)."""
+"""The cells of a row that have content, by column (from 0)."""
 
 
 def decode(file: str, data: bytes) -> tuple[str, tuple[Diagnostic, ...]]:
-    """Give a table's text. Where it cannot be one the text is empty and a diagnostic says why."""
+    """Return a table's text and diagnostics; the text is empty where the bytes cannot be a table."""
     whole = Span.of_file(file)
     if len(data) > MAX_BYTES:
         message = f"the table is larger than {MAX_BYTES // 1024 // 1024} MiB"
         return "", (_error("too-large", message, whole, "split it; `--from` may be given several times"),)
+    # The first bytes of .xlsx (a zip file) and of .xls (a compound file).
     if data.startswith(_WORKBOOKS):
         return "", (_error("syntax-error", "this is a workbook, not a CSV file", whole, "save it as `CSV UTF-8`"),)
     text, found = _decoded(data, whole)
@@ -56,6 +59,7 @@ def decode(file: str, data: bytes) -> tuple[str, tuple[Diagnostic, ...]]:
 
 
 def _decoded(data: bytes, whole: Span) -> tuple[str, tuple[Diagnostic, ...]]:
+    """Decode by the byte order mark, else as UTF-8, else as Windows-1252."""
     for mark, name in _MARKS:
         if data.startswith(mark):
             text = data[len(mark) :].decode(name, "replace")
@@ -63,6 +67,7 @@ def _decoded(data: bytes, whole: Span) -> tuple[str, tuple[Diagnostic, ...]]:
     try:
         return data.decode(), ()
     except UnicodeDecodeError:
+        # Excel's plain `CSV` is saved in the code page of the machine, which in western Europe is this one.
         message = "the table is not UTF-8 and was read as Windows-1252"
         help_line = "look at the letters with accents; if they are wrong, save the table as `CSV UTF-8`"
         note = Diagnostic("syntax-error", message, whole, Severity.NOTE, help=help_line)
@@ -71,6 +76,7 @@ def _decoded(data: bytes, whole: Span) -> tuple[str, tuple[Diagnostic, ...]]:
 
 
 def _replaced(text: str, name: str, whole: Span) -> tuple[Diagnostic, ...]:
+    """Report bytes that could not be decoded."""
     if "\ufffd" not in text:
         return ()
     message = f"some bytes are no {name}: \ufffd stands in their place"
@@ -78,13 +84,17 @@ def _replaced(text: str, name: str, whole: Span) -> tuple[Diagnostic, ...]:
 
 
 def separator(text: str) -> tuple[str, str]:
-    """Give the separator that Excel's first line `sep=;` names (or nothing), and the text with that line blanked."""
+    """Read the separator from Excel's first line `sep=;`. Return it (or an empty string) and the text with that line
+    blanked.
+    """
     found = re.match(r"sep=(.)(?=\r?\n)", text, re.IGNORECASE)
+    # Blanked, not removed: lines and columns in messages must fit the file.
     return (found[1], " " * found.end() + text[found.end() :]) if found else ("", text)
 
 
 def rows(file: str, text: str, mark: str, found: list[Diagnostic]) -> Iterator[Row]:
-    """Give the rows that say something. Raises TooLargeError."""
+    """Yield the rows that have content. Raise TableTooLargeError."""
+    # The module csv is not used since it does not tell where a cell begins.
     unquoted = re.compile(f"[^{re.escape(mark)}\\r\\n]*+")
     place, line, begun, column, count = 0, 1, 0, 0, 0
     row: dict[int, Cell] = {}
@@ -116,7 +126,9 @@ def rows(file: str, text: str, mark: str, found: list[Diagnostic]) -> Iterator[R
 
 
 def _quoted(text: str, place: int, at: Span, found: list[Diagnostic]) -> str:
-    """Give the part of a cell that stands in quotation marks, with them; nothing where they are never closed."""
+    """Return the quoted part of a cell with its quotation marks; an empty string where there is none or it never
+    closes.
+    """
     if text[place] != '"':
         return ""
     quoted = _QUOTED.match(text, place)
@@ -128,15 +140,16 @@ def _quoted(text: str, place: int, at: Span, found: list[Diagnostic]) -> str:
 
 
 def _said(text: str) -> str:
-    """Give what a cell says: blanks and the apostrophe taken off that keeps a spreadsheet from seeing a formula."""
+    """Return a cell's content without blanks around it, empty where it says nothing yet."""
     found = text.translate(_ODD_BLANKS).strip()
+    # The apostrophe keeps a spreadsheet from taking the text for a formula; `archgen list` writes it as well.
     if found[:1] == "'" and found[1:].lstrip()[:1] in {"=", "+", "-", "@"}:
         found = found[1:].strip()
     return "" if found.lower() in _NOTHING else found
 
 
 class TooLargeError(Exception):
-    """A table has more cells or columns than can be meant."""
+    """A table has more cells or columns than anybody can mean. `diagnostic` says which limit was exceeded."""
 
     def __init__(self, at: Span, *, columns: bool) -> None:
         super().__init__()

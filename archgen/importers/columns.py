@@ -1,4 +1,4 @@
-"""What the headings of a table mean, in the spellings that teams use."""
+"""The meaning of a table's column headings, in the spellings that teams use."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ _SPELLINGS = {
     "status": "status; node status",
 }
 MEANING = {spelling.strip(): key for key, several in _SPELLINGS.items() for spelling in several.split(";")}
-"""Key by heading, folded."""
+"""The key by folded heading."""
 _ANCHORS = frozenset({"component", "title", "id", "from", "to", "node", "group", "input", "output"})
-"""A row of headings has one of these: without them nothing can be taken."""
+"""A row of headings has one of these: without them nothing can be imported."""
 _UNIT = re.compile(r"[(\[]\s*([A-Za-z/]+)\s*[)\]]\s*\Z")
 _DETAIL = re.compile(r"[(\[].*\Z")
 
@@ -67,13 +67,15 @@ LISTED: Mapping[tuple[str, ...], tuple[str, Mapping[str, str]]] = {
     ("id", "title", "use_cases", "served_by", "place"): ("requirement", {"id": "requirement", "title": "title"}),
     ("type", "message", "size", "remarks"): ("type", {"type": "type", "message": "message"}),
 }
-"""The tables that `archgen list` writes: what a row is, and what its columns mean. The other columns follow from the rest."""
+"""The tables that `archgen list` writes: what a row is, and what its columns mean. The other columns can be derived."""
 
 
 @dataclass(frozen=True, slots=True)
 class Headings:
-    """A row of headings. `keys` are the meanings by column, `units` those that stand in brackets; `kind` is set where
-    `archgen list` wrote the table: its ids are complete paths.
+    """A row of headings.
+
+    `key_by_column` are the meanings, `unit_by_key` the units in brackets. `kind` is set where `archgen list` wrote the
+    table: its ids are complete paths.
     """
 
     keys: Mapping[int, str]
@@ -86,13 +88,15 @@ class Headings:
 
 
 def headings(row: Row) -> Headings | None:
-    """Read a row as headings; None where it is none."""
+    """Read a row as headings; None where it is not one."""
     listed = LISTED.get(tuple(cell.text for _, cell in sorted(row.items()))) if 0 in row else None
     if listed:
         kind, meanings = listed
         return Headings({n: meanings[c.text] for n, c in row.items() if c.text in meanings}, {}, {}, kind)
     keys = {column: meaning for column, cell in row.items() if (meaning := _meaning(cell))}
+    # The first of two columns with one meaning counts; the second is reported as unknown.
     keys = {column: key for column, key in keys.items() if key not in [k for c, k in keys.items() if c < column]}
+    # At least half of the cells must be headings: a row of data may hold a word like `input` or `output` by chance.
     if len(keys) < 2 or not _ANCHORS & set(keys.values()) or 2 * len(keys) < len(row):  # noqa: PLR2004 - two make a table
         return None
     units = {keys[column]: found[1] for column, cell in row.items() if column in keys and (found := _unit(cell))}
@@ -100,17 +104,19 @@ def headings(row: Row) -> Headings | None:
 
 
 def again(row: Row) -> Headings | None:
-    """Read a row below others as new headings: all of it must be headings."""
+    """Read a row below other headings as new headings: every cell of it must be a known heading."""
     found = headings(row)
     return found if found and (found.kind or not found.unknown) else None
 
 
 def _meaning(cell: Cell) -> str | None:
+    """Return the key that a heading means, with or without what it has in brackets."""
     folded = _folded(cell.line)
     return MEANING.get(folded) or MEANING.get(_folded(_DETAIL.sub("", cell.line)))
 
 
 def _folded(text: str) -> str:
+    """Fold a heading's case, punctuation and camel case into lower-case words."""
     return " ".join(re.findall(r"[a-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text).casefold()))
 
 
@@ -119,8 +125,9 @@ def _unit(cell: Cell) -> re.Match[str] | None:
 
 
 def _sorted_out(keys: Mapping[int, str]) -> dict[int, str]:
-    """Say what names a component where no column is called so: a name, a title, an id."""
+    """Choose what names a component where no column is called so: a name, a title or an id."""
     held = set(keys.values())
+    # In a table of components a column `Description` usually says what each of them does.
     if "functionality" not in held and not {"from", "to"} <= held:
         keys = {column: "functionality" if key == "description" else key for column, key in keys.items()}
     if "component" in held or {"from", "to"} <= held:

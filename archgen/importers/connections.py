@@ -1,4 +1,4 @@
-"""Take rows that connect: from a component's output to a component's input."""
+"""Import rows that connect a component's output to a component's input."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from archgen.model import ids
 
 
 class End(NamedTuple):
-    """One end of a connection: a component, and the name of its port where the cell says it (`component.output`)."""
+    """One end of a connection: a component, and the name of its port if the cell has one (`component.output`)."""
 
     component: Component
     port: str
@@ -26,7 +26,7 @@ class Flow(NamedTuple):
 
 
 def connect(draft: Draft, row: Record) -> None:
-    """Take one connection."""
+    """Import one connection."""
     if row.kind != "connection":
         return
     if row.exact:
@@ -43,6 +43,7 @@ def connect(draft: Draft, row: Record) -> None:
     _say_open(draft, row, source, target)
     told = _type(draft, row)
     name = _output(draft, row, source, told) if source else ""
+    # `import_node_row` comes later, and needs the component and output that this row is about.
     row.component = source.component if source else None
     row.cells["output"] = Cell(name, row.first.at)
     if target:
@@ -57,18 +58,20 @@ def connect(draft: Draft, row: Record) -> None:
 
 
 def _say_open(draft: Draft, row: Record, source: End | None, target: End | None) -> None:
+    """Report a connection without a source."""
     if source is None and target is not None:
         message = f"nothing says where this comes from: the input of `{target.component.name}` has no source yet"
         draft.say("missing-key", message, row.first.at, "fill in the component that gives it")
 
 
 def _end(draft: Draft, row: Record, cell: Cell, group_key: str) -> End | None:
-    """Find the component that a cell names; one that no row declares is made, and that is said."""
+    """Find the component that a cell names; add one that no row declares, and report it."""
     outer = row.get(group_key) or (row.get("group") if group_key == "from_group" else None)
     name = cell.line
     named = draft.named(name)
     if row.get(group_key):
         return End(draft.component(draft.group(row.cells[group_key].line, cell.at), name, cell.at), "")
+    # A component of the row's own group comes before namesakes in other groups.
     inside = [one for one in named if outer and one.group == draft.group(outer.line, outer.at).id] or named
     if len(inside) == 1:
         return End(inside[0], "")
@@ -84,6 +87,7 @@ def _end(draft: Draft, row: Record, cell: Cell, group_key: str) -> End | None:
 
 
 def _new(draft: Draft, cell: Cell, outer: Cell | None) -> Component:
+    """Add a component that no row declares."""
     guess = draft.guess(cell.line)
     group = draft.group(outer.line if outer else UNSORTED, cell.at)
     made = draft.component(group, cell.line, cell.at)
@@ -94,13 +98,14 @@ def _new(draft: Draft, cell: Cell, outer: Cell | None) -> Component:
 
 
 def _type(draft: Draft, row: Record) -> str | None:
+    """Read the row's type, or else its message."""
     cell, message = row.get("type"), row.get("message")
     told = values.type_name(draft, cell) if cell else None
     return told or (values.message(draft, message) if message else None)
 
 
 def _output(draft: Draft, row: Record, source: End, told: str | None) -> str:
-    """Give the output's id: as the row names it, as its type is called, or the only one that there is."""
+    """Return the output's id: as the row names it, as its type is called, or the only one of the component."""
     held = source.component.outputs
     cell = row.get("output")
     name = cell.line if cell else source.port
@@ -115,6 +120,7 @@ def _output(draft: Draft, row: Record, source: End, told: str | None) -> str:
 
 
 def _feed(draft: Draft, row: Record, ends: tuple[End | None, End], flow: Flow) -> None:
+    """Connect a component's input to its source, and describe it."""
     (source, target), name, told = ends, flow.output, flow.type
     cell = row.get("input")
     wanted = cell.line if cell else target.port
@@ -123,6 +129,8 @@ def _feed(draft: Draft, row: Record, ends: tuple[End | None, End], flow: Flow) -
         made = source.component.id if source else "input"
     path = _path(source, name) if source else ()
     held = target.component.inputs.get(made)
+    # Without a name of its own the input is called like the output. A second source of the same type feeds the same
+    # input; one of another type must not, and gets an input named after its component.
     if held and not wanted and held.sources and path and path not in held.sources and _types(draft, held, told):
         made = ids.free(
             f"{made}_{source.component.id}"[: ids.LONGEST].strip("_") if source else made, set(target.component.inputs)
@@ -145,7 +153,7 @@ def _feed(draft: Draft, row: Record, ends: tuple[End | None, End], flow: Flow) -
 
 
 def _types(draft: Draft, held: Input, told: str | None) -> bool:
-    """Tell whether an input already takes another type than this."""
+    """Return whether an input already takes a type other than this one."""
     known = {
         draft.groups[path[0]].components[path[1]].outputs.get(path[2])
         for path in held.sources
@@ -155,11 +163,13 @@ def _types(draft: Draft, held: Input, told: str | None) -> bool:
 
 
 def _path(source: End, name: str) -> tuple[str, ...]:
+    """Return the path of an output, or of its component where the output is not known."""
     one = source.component
     return (one.group, one.id, name) if name else (one.group, one.id)
 
 
 def _rate(draft: Draft, component: Component, cell: Cell, unit: str) -> None:
+    """Set a component's rate; a different one from an earlier row stays."""
     told = values.timing(draft, cell, unit)
     if told is not None and component.keys.setdefault("timing", told) != told:
         message = f"`{component.name}` has another rate already: this was not taken"
@@ -169,7 +179,7 @@ def _rate(draft: Draft, component: Component, cell: Cell, unit: str) -> None:
 
 
 def _connect_paths(draft: Draft, row: Record) -> None:
-    """Take a connection that `archgen list` wrote: complete paths at both ends."""
+    """Import a connection that `archgen list` wrote: complete paths at both ends."""
     source, target = row.get("from"), row.get("to")
     if source is None or target is None:
         return

@@ -1,4 +1,4 @@
-"""Take what rows say of groups, components and requirements themselves."""
+"""Import what rows say about groups, components and requirements themselves."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ _ROLES = {"source": "source", "sensor": "source", "filter": "filter", "processin
 
 
 def declare(draft: Draft, row: Record) -> None:
-    """Take what a row says of groups and components themselves."""
+    """Import what a row says about groups, components or requirements; report a row that names none."""
     at = row.first.at
+    # Formulas go first: every later step then sees an empty cell in their place.
     for key in list(row.cells):
         if values.formula(draft, row.cells[key]):
             del row.cells[key]
@@ -91,12 +92,12 @@ def _component(draft: Draft, row: Record) -> None:
 
 
 def _prose(cell: Cell | None) -> str | None:
-    """Give a text of several lines, no blanks at their ends."""
+    """Return a text of several lines without blanks at the ends of its lines."""
     return "\n".join(line.rstrip() for line in cell.text.splitlines()) if cell else None
 
 
 def _keep(draft: Draft, component: Component, key: str, found: object, cell: Cell | None) -> None:
-    """Set a key; what another row has said otherwise stays."""
+    """Set a key; a different value from an earlier row stays."""
     if found is None or cell is None:
         return
     if component.keys.setdefault(key, found) != found:
@@ -120,7 +121,7 @@ def _role(draft: Draft, component: Component, cell: Cell | None) -> None:
 
 
 def _owner(draft: Draft, cell: Cell | None) -> str | tuple[str, ...] | None:
-    """Read a partner, or several."""
+    """Read one partner or several."""
     if cell is None:
         return None
     names = [name.strip() for name in re.split(r"[,;/&+\n]| and ", cell.text) if name.strip()]

@@ -1,4 +1,4 @@
-"""The project that a table describes, as far as it has been read: elements by id, found by the names that people write."""
+"""The project that a table describes, as far as it has been read: elements are found by id and by name."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from archgen.source import Span
 from archgen.suggest import closest
 
 UNSORTED = "unsorted"
-"""The group of components of which no row names one."""
+"""The group of components for which no row names one."""
 _GUESSES = 20
 _PARTS = re.compile(r"\s*(?:::|->|[./:>\\|])\s*")
 
 
 @dataclass(slots=True)
 class Input:
-    """An input: where it comes from (paths), what it expects, what is said of it."""
+    """An input: its sources (paths), its expected type, its description."""
 
     sources: list[tuple[str, ...]] = field(default_factory=list)
     type: str | None = None
@@ -39,7 +39,7 @@ class Component:
     inputs: dict[str, Input] = field(default_factory=dict)
     outputs: dict[str, str | None] = field(default_factory=dict)
     none: set[str] = field(default_factory=set)
-    """`inputs` or `outputs` where the table says that there are none."""
+    """`inputs` or `outputs`, where the table says that there are none."""
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class Group:
 
 @dataclass(slots=True)
 class Draft:
-    """Everything read so far, and what is to be said about it."""
+    """Everything read so far, and the diagnostics about it."""
 
     groups: dict[str, Group] = field(default_factory=dict)
     nodes: dict[str, dict[str, object]] = field(default_factory=dict)
@@ -68,9 +68,9 @@ class Draft:
     wrong: set[str] = field(default_factory=set)
     """Messages that do not exist."""
     complete: bool = False
-    """All rows that declare components were read: a name that is not known is a slip."""
+    """Whether all rows that declare components were read: an unknown name is then a slip."""
     node_of: dict[str, str] = field(default_factory=dict)
-    """The first node of each component."""
+    """The first node of each component, by the component's path."""
     _guesses: int = 0
     _givers: dict[str, dict[tuple[str, str, str], None]] = field(default_factory=dict)
     _ids: dict[str, str] = field(default_factory=dict)
@@ -78,15 +78,15 @@ class Draft:
     _by_id: dict[str, list[Component]] = field(default_factory=dict)
 
     def say(self, rule: str, message: str, at: Span, help_line: str, *labels: Label) -> None:
-        """Note what was not taken, or was taken otherwise than written."""
+        """Add a warning about something that was not imported, or imported otherwise than written."""
         self.diagnostics.append(Diagnostic(rule, message, at, Severity.WARNING, labels, help_line))
 
     def note(self, message: str, at: Span, help_line: str, *labels: Label) -> None:
-        """Note what was decided."""
+        """Add a note about a decision."""
         self.diagnostics.append(Diagnostic("wrong-value", message, at, Severity.NOTE, labels, help_line))
 
     def group(self, name: str, at: Span) -> Group:
-        """Give the group of a name, a new one where there is none."""
+        """Return the group of a name, a new one where there is none."""
         found = next((self.groups[i] for i in (self._ids.get(f"group {fold(name)}"), name) if i in self.groups), None)
         if found is None:
             found = Group(self._id("group", name, at, set(self.groups)), name, at)
@@ -95,7 +95,9 @@ class Draft:
         return found
 
     def component(self, group: Group, name: str, at: Span, wanted: str = "") -> Component:
-        """Give a group's component of a name, a new one where there is none. `wanted` is the id that a row gives it."""
+        """Return a group's component of a name, a new one where there is none. `wanted_id` is the id that a row gives
+        it.
+        """
         found = next((c for c in self.named(name) if c.group == group.id), None) or group.components.get(wanted or name)
         if found is None:
             made = self._id("component", wanted or name, at, set(group.components))
@@ -105,33 +107,34 @@ class Draft:
         return found
 
     def named(self, name: str) -> list[Component]:
-        """Give all components of a name, or else of an id."""
+        """Return all components of a name, or else of an id."""
         return self._names.get(fold(name)) or self._by_id.get(name, [])
 
     def partner(self, name: str) -> str:
-        """Give the id of a partner."""
+        """Return the id of a partner, a new one where there is none."""
         made = self._ids.setdefault(f"partner {fold(name)}", ids.made(name.casefold(), "partner"))
         self.partners.setdefault(made, name)
         return made
 
     def components(self) -> Iterator[Component]:
-        """Give all components."""
+        """Yield all components."""
         for group in self.groups.values():
             yield from group.components.values()
 
     def give(self, component: Component, name: str, told: str | None) -> None:
-        """Let a component have an output of a type (None: not known yet)."""
+        """Add an output with a type (None: not known yet) to a component, or set the type of one that it has."""
         component.outputs[name] = told
         path = (component.group, component.id, name)
+        # Found by its name and by its type: tables list inputs by either.
         for word in {fold(name), fold(told or name)}:
             self._givers.setdefault(word, {})[path] = None
 
     def givers(self, wanted: str) -> list[tuple[str, str, str]]:
-        """Give the paths of the outputs that are called so, or carry a type that is."""
+        """Return the paths of the outputs that have this name, or carry a type of this name."""
         return list(self._givers.get(fold(wanted), ()))
 
     def parts(self, text: str) -> tuple[Component, str] | None:
-        """Read `group.component`, `Group / Component`, `component.output`: the component, and the port's name."""
+        """Resolve `group.component`, `Group / Component` or `component.output` to a component and a port's name."""
         words = [word for word in _PARTS.split(text) if word]
         for first in range(len(words)):
             group = self.groups.get(self._ids.get(f"group {fold(words[first])}", words[first]))
@@ -141,12 +144,16 @@ class Draft:
                 if found:
                     return found, " ".join(inner[1:])
             named = self.named(words[first])
+            # Only the first word may stand for a component without its group: `robot.arm` is not the component `arm`.
             if len(named) == 1 and first == 0:
                 return named[0], " ".join(inner)
         return None
 
     def guess(self, name: str) -> str:
-        """Guess which component a name means, as a help line; where nearly every name is new, guessing ends."""
+        """Suggest the component that an unknown name may mean, as the beginning of a help line; empty where there is
+        none.
+        """
+        # Each suggestion compares with all names. Where nearly every name is new, guesses are useless and slow.
         self._guesses += 1
         if self._guesses > _GUESSES:
             return ""
@@ -155,6 +162,7 @@ class Draft:
         return f"did you mean `{known[near]}`? " if near and near != fold(name) else ""
 
     def _id(self, sort: str, name: str, at: Span, taken: set[str]) -> str:
+        """Return a free id for a name; a note says where it differs from what the name would give."""
         made = ids.made(name, sort)
         free = ids.free(made, taken)
         if free != made:

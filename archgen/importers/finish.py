@@ -1,4 +1,6 @@
-"""From the draft to data of the language: short forms, shortest references, and nothing that would be an error."""
+"""Turn the imported project into data of the language: short forms, shortest references, and nothing that would be an
+error.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,15 @@ from archgen.model.names import made_title
 
 
 def data(draft: Draft, distro: str | None) -> dict[str, Any]:
-    """Give the sections that a table says something of; empty where there is no component."""
+    """Return the sections that a table says something about; empty where there is no component."""
     groups = {name: group for name, group in draft.groups.items() if group.components}
     _say_left_out(draft, groups)
     if not groups:
         return {}
+    # Changes outputs and `wrong_messages`, so it must come before anything is written.
     _see_messages(draft, distro)
     counted = Counter(component.id for component in draft.components())
+    # A reference may leave out its group only where no other component, and no group, has that id.
     short = {name for name, count in counted.items() if count == 1 and name not in draft.groups}
     found: dict[str, Any] = {
         "groups": {name: _group(group, short) for name, group in groups.items()},
@@ -31,6 +35,7 @@ def data(draft: Draft, distro: str | None) -> dict[str, Any]:
 
 
 def _say_left_out(draft: Draft, groups: dict[str, Group]) -> None:
+    """Report groups without components, and how many components no group was named for."""
     for name, group in draft.groups.items():
         if name not in groups:
             draft.say(
@@ -47,6 +52,7 @@ def _say_left_out(draft: Draft, groups: dict[str, Group]) -> None:
 def _group(group: Group, short: set[str]) -> dict[str, Any]:
     made: dict[str, Any] = {"title": "To be sorted" if group.id == UNSORTED else group.name, **group.keys}
     owners = {component.keys.get("owner") for component in group.components.values()}
+    # An owner that all components share is written once, at the group.
     shared = next(iter(owners)) if len(owners) == 1 else None
     if shared and "owner" not in made:
         made["owner"] = shared
@@ -87,7 +93,7 @@ def _input(port: Input, reader: Component, short: set[str]) -> Any:  # noqa: ANN
 
 
 def _reference(path: tuple[str, ...], reader: Component, short: set[str]) -> str:
-    """Write a reference as short as it cannot be misread."""
+    """Write a reference as short as it can be without being ambiguous."""
     if len(path) == 3 and path[1] in short and path[1] != reader.id:  # noqa: PLR2004 - group, component, output
         return ".".join(path[1:])
     return ".".join(path)
@@ -100,12 +106,12 @@ def _node(node: dict[str, object]) -> dict[str, object]:
 
 
 def _types(draft: Draft) -> dict[str, str | None]:
-    """Give the types; one whose message does not exist has none yet."""
+    """Return the message of each type; None where the message does not exist."""
     return {name: message if message not in draft.wrong else None for name, message in draft.types.items()}
 
 
 def _see_messages(draft: Draft, distro: str | None) -> None:
-    """Say which messages do not exist: written down they would be errors."""
+    """Report messages that do not exist, and mark them: written down they would be errors."""
     known, _ = interfaces.load(distro)
     written = {message for message in draft.types.values() if message}
     written |= {told for one in draft.components() for told in one.outputs.values() if told and full_message(told)}

@@ -1,4 +1,4 @@
-"""Take what rows say of the ROS side: nodes, topics, messages of types."""
+"""Import what rows say about the ROS side: nodes, topics, and the messages of types."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _STATUSES = frozenset({"planned", "existing", "adapted"})
 
 
 def take(draft: Draft, row: Record) -> None:
-    """Take a row's nodes, topic and messages."""
+    """Import a row's node, topic and message."""
     _message(draft, row)
     if row.exact and row.kind == "node":
         _listed(draft, row)
@@ -44,6 +44,7 @@ def take(draft: Draft, row: Record) -> None:
 
 
 def _keep(draft: Draft, node: dict[str, object], key: str, value: str, cell: Cell) -> None:
+    """Set a node's key; a different value from an earlier row stays."""
     if node.setdefault(key, value) != value:
         draft.say(
             "conflicting-values", f"the node has another {key} already: this was not taken", cell.at, "say it once"
@@ -51,7 +52,7 @@ def _keep(draft: Draft, node: dict[str, object], key: str, value: str, cell: Cel
 
 
 def _listed(draft: Draft, row: Record) -> None:
-    """Take a node that `archgen list` wrote; one without a place was derived, and will be again."""
+    """Import a node that `archgen list` wrote; one without a place was derived, and will be derived again."""
     cell, implements = row.cells["node"], row.get("component")
     if row.get("place") is None or implements is None:
         return
@@ -61,7 +62,7 @@ def _listed(draft: Draft, row: Record) -> None:
 
 
 def _node(draft: Draft, row: Record, component: Component) -> dict[str, object]:
-    """Give the node of a row: the one that it names, the component's, or one called like the component."""
+    """Return the node of a row: the one it names, the component's first, or a new one called like the component."""
     path = f"{component.group}.{component.id}"
     cell = row.get("node")
     if cell is None:
@@ -84,6 +85,7 @@ def _implements(node: dict[str, object]) -> list[str]:
 
 
 def _topic(draft: Draft, row: Record, component: Component, node: dict[str, object]) -> None:
+    """Import a topic for the row's output, or for the component's only one."""
     cell = row.cells["topic"]
     output = row.get("output") if row.kind == "connection" else None
     names = [output.line] if output and output.line else list(component.outputs)
@@ -96,6 +98,7 @@ def _topic(draft: Draft, row: Record, component: Component, node: dict[str, obje
         return
     told = component.outputs.get(names[0])
     kind = (draft.types.get(told or "") or told or "").split("/")[1:2]
+    # The middle of `package/srv/Name` says whether this is a service or an action.
     section = "serves" if kind in (["srv"], ["action"]) else "publishes"
     held = node.setdefault(section, {})
     if isinstance(held, dict) and held.setdefault(names[0], name) != name:
@@ -104,7 +107,7 @@ def _topic(draft: Draft, row: Record, component: Component, node: dict[str, obje
 
 
 def _message(draft: Draft, row: Record) -> None:
-    """Take the message that carries a type."""
+    """Import the message that carries a type."""
     cell, told = row.get("message"), row.get("type")
     if cell is None or told is None or cell.line in {"?", "physical"}:
         return

@@ -1,4 +1,4 @@
-"""Take lists of inputs and outputs in a component's row, and find out who gives what."""
+"""Import the lists of inputs and outputs in a component's row, and find out where each input comes from."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _NONE = frozenset({"none", "nothing", "no", "no inputs", "no outputs"})
 
 
 def outputs(draft: Draft, row: Record) -> None:
-    """Take the list of outputs in a component's row."""
+    """Import the list of outputs in a component's row."""
     cell, component = row.get("output"), row.component
     if row.kind != "component" or row.exact or cell is None or component is None:
         return
@@ -32,7 +32,7 @@ def outputs(draft: Draft, row: Record) -> None:
 
 
 def output(draft: Draft, component: Component, name: str, told: str | None, cell: Cell) -> str:
-    """Give the id of a component's output; another type on the same id makes another output."""
+    """Add an output to a component and return its id; another type on the same id makes another output."""
     held = component.outputs.get(name)
     if name not in component.outputs or held is None:
         draft.give(component, name, told)
@@ -48,7 +48,7 @@ def output(draft: Draft, component: Component, name: str, told: str | None, cell
 
 
 def inputs(draft: Draft, row: Record) -> None:
-    """Take the list of inputs in a component's row: each from the one who gives it, where it can be told."""
+    """Import the list of inputs in a component's row, each with its source where that is clear."""
     cell, component = row.get("input"), row.component
     if row.kind != "component" or row.exact or cell is None or component is None:
         return
@@ -61,6 +61,7 @@ def inputs(draft: Draft, row: Record) -> None:
 
 
 def _input(draft: Draft, component: Component, name: str, text: str, cell: Cell) -> None:
+    """Import one input: `WHAT`, `NAME: WHAT`, `WHAT from COMPONENT`, `WHAT <- COMPONENT` or `WHAT @ COMPONENT`."""
     wanted, giver = text, ""
     said = re.match(r"(.+?)(?:\s+from\s+|\s*<-\s*|\s*\u2190\s*|\s*@\s*)(.+)\Z|(.+?)\s*\((?:from\s+)(.+)\)\Z", text)
     if said:
@@ -89,11 +90,12 @@ def _input(draft: Draft, component: Component, name: str, text: str, cell: Cell)
 
 
 def _givers(draft: Draft, reader: Component, wanted: str, giver: str) -> list[tuple[str, ...]]:
-    """Give the paths that an input may mean."""
+    """Return the paths that an input may mean."""
     if giver:
         dotted = draft.parts(giver)
         found = draft.named(giver) or ([dotted[0]] if dotted else [])
         return [_output_of(draft, one, wanted) for one in found]
+    # A component by that name comes before outputs and types: people list what feeds an input by its component.
     named = [one for one in draft.named(wanted) if one is not reader]
     if named:
         return [(one.group, one.id) for one in named]
@@ -104,6 +106,7 @@ def _givers(draft: Draft, reader: Component, wanted: str, giver: str) -> list[tu
 
 
 def _output_of(draft: Draft, one: Component, wanted: str) -> tuple[str, ...]:
+    """Return the path of a component's output by its name or type; add the output where there is none."""
     name = next((n for n, told in one.outputs.items() if fold(wanted) in {fold(n), fold(told or "")}), None)
     if name is None:
         name = ids.made(wanted, "output")

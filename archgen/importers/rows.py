@@ -1,4 +1,4 @@
-"""Rows by the meaning of their columns: what a row is about, and what it goes on with where cells were merged."""
+"""Interpret rows by the meaning of their columns: what a row is about, and what merged cells leave out."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ _KIND = {fold(word): kind for kind, several in _KINDS.items() for word in severa
 
 @dataclass(slots=True)
 class Record:
-    """A row by the meaning of its columns. `kind` is said by the row or by what it holds; `exact` where ids are paths."""
+    """A row by the meaning of its columns. `kind` comes from the row or is guessed; with `has_exact_ids`, ids are
+    paths.
+    """
 
     kind: str
     cells: dict[str, Cell]
@@ -32,17 +34,21 @@ class Record:
     component: Component | None = None
 
     def get(self, key: str) -> Cell | None:
-        """Give the cell below a heading."""
+        """Return the cell below a heading."""
         return self.cells.get(key)
 
     @property
     def first(self) -> Cell:
-        """Give a cell to point at."""
+        """A cell to point at."""
         return next(iter(self.cells.values()))
 
 
 def record(heads: Headings, row: Row, above: dict[str, Any]) -> Record | None:
-    """Read a row below headings. Merged cells leave all but the first empty: group, component and `from` stay as above."""
+    """Read a row below headings; None where nothing in it can be imported.
+
+    Merged cells leave all but the first empty: group, component and `from` are taken from above. `cells_above` is
+    updated.
+    """
     found = {key: row[column] for column, key in sorted(heads.keys.items()) if column in row}
     if not found:
         return None
@@ -54,6 +60,8 @@ def record(heads: Headings, row: Row, above: dict[str, Any]) -> Record | None:
 
 
 def _fill(heads: Headings, found: dict[str, Cell], above: dict[str, Cell]) -> None:
+    # Below another group the component above no longer applies.
+    """Fill the cells that merged cells left empty."""
     if "group" in found and above.get("group") != found["group"]:
         for key in ("component", "from"):
             above.pop(key, None)
@@ -65,7 +73,7 @@ def _fill(heads: Headings, found: dict[str, Cell], above: dict[str, Cell]) -> No
 
 
 def _goes_on(key: str, found: Mapping[str, Cell]) -> bool:
-    """Tell whether a row without this cell continues the one above."""
+    """Return whether a row without this cell continues the one above."""
     if key == "group":
         return "component" in found or "input" in found or "output" in found or "title" in found
     if key == "component":
@@ -74,6 +82,8 @@ def _goes_on(key: str, found: Mapping[str, Cell]) -> bool:
 
 
 def _guess(heads: Headings, found: Mapping[str, Cell]) -> str:
+    """Guess what a row is about from the cells that it has; empty where that is not clear."""
+    # The order matters: a row that connects may name a component, a group and a type as well.
     if "from" in found or "to" in found:
         return "connection"
     if "component" in found:

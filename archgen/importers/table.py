@@ -1,7 +1,7 @@
-"""Tables of components and connections become plain data of the language.
+"""Import tables of components and connections as plain data of the language.
 
-Two shapes are read, in one table or in several: a row for each component (its group, what it does, what it takes and
-gives), and a row for each connection (from, to, what flows). A table below another has headings of its own.
+Two shapes are read, in one table or in several: a row for each component (its group, what it does, its inputs and
+outputs), and a row for each connection (from, to, what flows). A table below another one has headings of its own.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from archgen.source import Sources, Span
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What was read: `data` by the language's sections (empty where nothing could be taken), and what is to be said."""
+    """What was imported: `data` by the language's sections (empty where nothing could be imported), and diagnostics."""
 
     data: Mapping[str, Any]
     diagnostics: tuple[Diagnostic, ...]
@@ -31,7 +31,7 @@ class Imported:
 
 
 def read(files: Sequence[tuple[str, bytes]], distro: str | None) -> Imported:
-    """Read tables, given by name and bytes. Messages are looked up for the distribution."""
+    """Import tables given as (name, bytes). Messages are looked up for the distribution."""
     draft, sources = Draft(), Sources()
     records: list[Record] = []
     for name, data in files:
@@ -48,14 +48,16 @@ def read(files: Sequence[tuple[str, bytes]], distro: str | None) -> Imported:
         help_line = "a row names a component, or connects two"
         empty = Diagnostic("missing-key", "no row names a component", whole, Severity.ERROR, help=help_line)
         draft.diagnostics.append(empty)
+    # In the order in which the files were given, then by place: the passes found them in another order.
     ordered = sorted(draft.diagnostics, key=lambda d: ([n for n, _ in files].index(d.span.file), d.key[1:]))
     return Imported(made, tuple(ordered), sources)
 
 
 def _take(draft: Draft, records: Sequence[Record]) -> None:
-    """Take what declares elements first, so that connections may name them wherever they stand."""
+    """Import records in passes: declarations first, so that connections may name elements declared below them."""
     for record in records:
         declare.declare(draft, record)
+    # A table of connections alone declares no component: then each name is new, and none is a slip.
     draft.complete = any(draft.components())
     for record in records:
         ports.outputs(draft, record)
@@ -68,7 +70,7 @@ def _take(draft: Draft, records: Sequence[Record]) -> None:
 
 
 def _records(draft: Draft, name: str, text: str) -> list[Record]:
-    """Give the rows below headings."""
+    """Return the rows below headings."""
     given, text = cells.separator(text)
     try:
         found: list[Diagnostic] = []
@@ -87,7 +89,10 @@ def _records(draft: Draft, name: str, text: str) -> list[Record]:
 
 
 def _mark(name: str, text: str) -> str:
-    """Find the separator: with which most headings are recognised in the first rows that have any, else most cells."""
+    """Guess the separator: the one with which most headings are recognised in the first rows, else the one with most
+    cells.
+    """
+    # The first 50 rows decide, and they may be long: a cut keeps four trial parses cheap.
     start = text[:100_000]
 
     def weight(mark: str) -> tuple[int, int]:
@@ -101,10 +106,12 @@ def _mark(name: str, text: str) -> str:
 
 
 def _below_headings(draft: Draft, table: Sequence[Row]) -> Iterator[Record]:
+    """Yield the records below each row of headings, and report what is lost."""
     heads: Headings | None = None
     above: dict[str, Any] = {}
     lost: dict[int, int] = {}
     for row in table:
+        # Later headings must be complete, else a row of data could be taken for headings.
         new = columns.headings(row) if heads is None else columns.again(row)
         if new:
             _say_unknown(draft, heads, lost)
@@ -139,7 +146,7 @@ def _say_row(draft: Draft, row: Row, why: str) -> None:
 
 
 def _say_unknown(draft: Draft, heads: Headings | None, lost: Mapping[int, int]) -> None:
-    """Say once for each column what was not taken of it."""
+    """Report once for each column that its cells were not imported."""
     for column, cell in heads.unknown.items() if heads else ():
         count = lost.get(column, 0)
         if count:

@@ -1,4 +1,4 @@
-"""Read single cells: rates, messages, topics, lists, requirements. What cannot be read is said and left out."""
+"""Read single cells: rates, messages, topics, lists, requirements. What cannot be read is reported and left out."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LONGEST_TYPE = 200
 
 
 def formula(draft: Draft, cell: Cell | None) -> bool:
-    """Say where a cell holds a formula instead of what it comes to."""
+    """Return whether a cell holds a formula instead of its result, and report it."""
     if cell is None or not cell.text.startswith("="):
         return False
     draft.say(
@@ -30,12 +30,13 @@ def formula(draft: Draft, cell: Cell | None) -> bool:
 
 
 def timing(draft: Draft, cell: Cell, unit: str) -> dict[str, str] | None:
-    """Read a rate or a period: `10`, `10 Hz`, `0,5 Hz`, `100 ms`."""
+    """Read a rate or a period: `10`, `10 Hz`, `0,5 Hz`, `100 ms`. `unit` is the one of the column."""
     found = _RATE.match(cell.line)
     written = _UNITS.get((found[2] or unit).lower()) if found else None
     if found and written:
         text = f"{found[1].replace(',', '.')} {written}"
         key, dimension = ("rate", "frequency") if written.endswith("Hz") else ("period", "duration")
+        # 0 parses as a quantity, but is not a rate.
         if parse(text, dimension) and re.search("[1-9]", text):
             return {key: text}
     message = f"`{_short(cell.line)}` is no rate and no period, and was not taken"
@@ -44,7 +45,7 @@ def timing(draft: Draft, cell: Cell, unit: str) -> dict[str, str] | None:
 
 
 def message(draft: Draft, cell: Cell) -> str | None:
-    """Read the name of a message: `sensor_msgs/LaserScan`, `sensor_msgs::msg::LaserScan`, `sensor_msgs.msg.LaserScan`."""
+    """Read a message: `sensor_msgs/LaserScan`, `sensor_msgs::msg::LaserScan`, `sensor_msgs.msg.LaserScan`."""
     name = full_message(re.sub(r"::|\.", "/", cell.line))
     if name is not None:
         draft.places.setdefault(name, cell.at)
@@ -85,8 +86,9 @@ def package(draft: Draft, cell: Cell) -> str | None:
 
 
 def several(cell: Cell) -> list[str]:
-    """Take a list in one cell apart: at line ends and semicolons, else at commas outside of brackets."""
+    """Split a list in one cell at line ends and semicolons, else at commas outside of brackets."""
     if re.search(r"[\n\r;]", cell.text):
+        # Where a list is split at line ends or semicolons, a comma is a part of an item.
         parts = re.split(r"[\n\r;]+", cell.text)
     else:
         parts = re.split(r",(?![^(\[]*[)\]])", cell.text)

@@ -1,4 +1,4 @@
-"""Link: slices are merged, elements declared, references resolved; the architecture comes out."""
+"""Link: merge the slices, declare the elements, resolve the references, and return the architecture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The project's own chapters: which, in what order, their text, and the pictures that they show."""
+"""Read the report's chapters: which ones, in what order, the text of the project's own, and the pictures in them."""
 
 from __future__ import annotations
 
@@ -54,18 +54,21 @@ Good:
 
 @dataclass(frozen=True, slots=True)
 class Chapters:
-    """The order of all chapters, and the texts of those that the project wrote, by path."""
+    """The chapters of the report: the order of all, and those that the project wrote, by path.
+
+    Frozen, but `picture_cache` is filled as pictures are read.
+    """
 
     files: Files
     order: tuple[str, ...] = GENERATED
     texts: Mapping[str, Chapter] = field(default_factory=dict)
     packed: Mapping[str, bytes] = field(default_factory=dict)
-    """Pictures that a packed project holds itself."""
+    """Pictures that a packed project holds itself, by path; they win over files."""
     asked: dict[str, bytes | None] = field(default_factory=dict, compare=False, repr=False)
-    """What was read so far: each picture is read once, and all outputs see the same bytes."""
+    """Pictures read so far, None for one that is absent: each is read once, so that all outputs have the same bytes."""
 
     def picture(self, path: str) -> bytes | None:
-        """Read a picture that a chapter shows, by its path in the project; None where there is none inside it."""
+        """Read a picture by its path in the project; None if there is no such file inside the project."""
         clean = posixpath.normpath(path)
         if clean not in self.asked:
             self.asked[clean] = self._picture(clean)
@@ -79,13 +82,13 @@ class Chapters:
         return read_bytes(self.files, clean)
 
     def pictures(self) -> dict[str, bytes]:
-        """Read all pictures that the chapters show, by path."""
+        """Read all pictures that the chapters show; return their bytes by path."""
         found = {}
         for chapter in self.texts.values():
             for name in shown(chapter.text):
                 clean = posixpath.normpath(posixpath.join(chapter.folder, name))
                 stem = clean.removesuffix(".svg")
-                # A PNG beside an SVG is what programs show that know no SVG.
+                # Programs that cannot show SVG use a PNG of the same name instead.
                 for path in (clean, f"{stem}.png") if stem != clean else (clean,):
                     data = self.picture(path)
                     if data is not None:
@@ -94,10 +97,11 @@ class Chapters:
 
 
 def shown(markdown: str) -> Iterator[str]:
-    """Give the addresses of the pictures in a text that lie in the project, percent signs decoded."""
+    """Yield the paths of the pictures in a Markdown text, percent-decoded, without those with a scheme (`https:`)."""
     from markdown_it import MarkdownIt
 
     for block in MarkdownIt("commonmark", {"html": False}).parse(markdown):
+        # Pictures are inline tokens, which markdown-it keeps one level below the blocks.
         for token in block.children or ():
             address = str(token.attrs.get("src", "")) if token.type == "image" else ""
             if address and ":" not in address.split("/", 1)[0]:
@@ -105,7 +109,7 @@ def shown(markdown: str) -> Iterator[str]:
 
 
 def chapters(merged: Table, files: Files) -> tuple[Chapters, tuple[Diagnostic, ...]]:
-    """Find and read the chapters that the project asks for."""
+    """Read the chapters that the merged project asks for; without `report.chapters` those that archgen writes."""
     report = merged.get("report")
     if not isinstance(report, Table):
         return Chapters(files), ()
@@ -118,6 +122,7 @@ def chapters(merged: Table, files: Files) -> tuple[Chapters, tuple[Diagnostic, .
         if name in order:
             continue
         if name not in GENERATED:
+            # A packed project holds its chapters' text under `report.texts` and needs no files.
             text, problem = (packed[name], None) if name in packed else _read(files, name, entry.at)
             if problem:
                 diagnostics.append(problem)
@@ -139,7 +144,7 @@ def _pictures(value: object) -> Iterator[tuple[str, bytes]]:
         try:
             yield path, base64.b64decode(text, validate=True)
         except binascii.Error:
-            continue  # the chapter says that its picture cannot be read
+            continue  # reported where the chapter shows the picture
 
 
 def _read(files: Files, name: str, at: Span) -> tuple[str, Diagnostic | None]:

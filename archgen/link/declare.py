@@ -1,4 +1,4 @@
-"""From the merged table to the architecture: everything declared, every reference followed."""
+"""Turn the merged project into the architecture: declare every element, resolve every reference."""
 
 from __future__ import annotations
 
@@ -30,11 +30,14 @@ def link(  # noqa: PLR0913 - all by name
     lost: frozenset[str] = frozenset(),
     partial: bool = False,
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
-    """Make the architecture of a project's merged slices. What could not be resolved is left out, and told.
+    """Return the architecture of a project's merged slices. What cannot be resolved is left out and reported.
 
-    `lost` are the keys of what could not be read: what they may declare is not called unknown. With `partial` that was a
-    whole file or section.
+    `default_id` and `default_title` are used where the project states none. `lost_keys` are the keys of what could not
+    be read: what they may declare is not reported as unknown. `is_partial` is whether a whole file or section was lost.
     """
+    # The order matters. Ids come first (the outline), then types, because which outputs carry messages decides what a
+    # reference to a whole component brings. Containers and the components of the nodes must be known before the nodes,
+    # which inherit hosts, owners and timing from them. Every step appends to the same list of diagnostics.
     found: list[Diagnostic] = []
     parts = outline(table)
     types = declare_types(table, parts.types_used(), shipped, found)
@@ -74,7 +77,7 @@ def link(  # noqa: PLR0913 - all by name
         interfaces=interfaces,
         partial=partial,
         lost=lost,
-        suspects=frozenset(references.suspects),  # last: complete only now
+        suspects=frozenset(references.suspects),  # last: the arguments above still resolve references
     )
     return architecture, tuple(found)
 

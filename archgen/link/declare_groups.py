@@ -1,4 +1,4 @@
-"""Groups and components as model objects."""
+"""Declare groups and components as model objects."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ROLES = frozenset({"source", "filter", "sink", "reactive"})
 
 @dataclass(slots=True)
 class HighLevel:
-    """Groups with their components, made one after the other."""
+    """Declares the groups with their components, one after the other; the results are in `groups` and `components`."""
 
     outline: Outline
     references: References
@@ -27,12 +27,13 @@ class HighLevel:
     components: dict[str, Component] = field(default_factory=dict)
 
     def declare(self) -> None:
-        """Declare every group."""
+        """Declare every group with its components, and wire their inputs."""
         for name, entry in self.outline.groups.items():
             self.groups[name] = self._group(name, entry)
 
     def _group(self, name: str, entry: Entry) -> Group:
         below = reading.body(entry)
+        # Owners are inherited: a component without owners has those of its group, a node those of its components.
         owners = self.references.owners(below, name, ())
         components = {part.key: self._component(name, part, owners) for part in reading.table(below, "components")}
         self.components.update((component.id, component) for component in components.values())
@@ -67,6 +68,7 @@ class HighLevel:
             requirements_known=below.get("requirements") is not None,
             performance=tuple(_performance(below)),
             inputs={name: self.wiring.input(complete, port) for name, port in inputs.items()},
+            # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=below.get("inputs") is not None,
             outputs=self.outline.outputs[complete],
             outputs_known=below.get("outputs") is not None,
@@ -88,7 +90,7 @@ def _role(below: Table) -> Role | None:
 
 
 def _requirements(below: Table) -> Iterator[RequirementUse]:
-    """Give the entries of `requirements`: one with a blank is free text, one without is an id."""
+    """Yield the entries of `requirements`: one that contains a blank is free text, any other is an id."""
     for written in reading.scalars(below, "requirements"):
         text = written.text.strip()
         yield RequirementUse(text, not any(letter.isspace() for letter in text), written.at)

@@ -1,4 +1,4 @@
-"""ROS nodes: what was written about them, with the components and ports that they name."""
+"""Declare ROS nodes: what was written about them, with the components and ports that they name."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from archgen.model.qos import profile
 from archgen.syntax.tree import Entry, Table, plain
 
 USES: tuple[Use, ...] = ("publishes", "subscribes", "serves", "calls")
+# What a node publishes or serves is an output of its component, what it subscribes to or calls is an input.
 _SIDES: Mapping[Use, str] = {"publishes": "output", "serves": "output", "subscribes": "input", "calls": "input"}
 _KINDS = frozenset({"node", "lifecycle", "composable", "driver", "nodelet"})
 _DURATIONS = ("deadline", "lifespan", "lease_duration")
@@ -26,7 +27,7 @@ _DURATIONS = ("deadline", "lifespan", "lease_duration")
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What a node may name."""
+    """What the declaration of a node needs: the elements that it may name, and where findings go."""
 
     outline: Outline
     references: References
@@ -36,7 +37,7 @@ class Surroundings:
 
 
 def implemented(root: Table, references: References) -> dict[str, tuple[str, ...]]:
-    """Resolve what each node implements."""
+    """Resolve what each node implements: component ids by node, without those that cannot be resolved."""
     found: dict[str, tuple[str, ...]] = {}
     for name, _, below in reading.elements(root, "nodes"):
         targets = [references.follow(w, ("component",), name) for w in reading.scalars(below, "implements")]
@@ -45,7 +46,7 @@ def implemented(root: Table, references: References) -> dict[str, tuple[str, ...
 
 
 def declare_nodes(root: Table, around: Surroundings, implements: Mapping[str, tuple[str, ...]]) -> dict[str, Node]:
-    """Declare every node that is written."""
+    """Declare every node that is written, by id. Nodes that archgen derives are added later, by `transform`."""
     return {name: _node(name, entry, around, implements[name]) for name, entry, _ in reading.elements(root, "nodes")}
 
 
@@ -56,6 +57,7 @@ def _node(name: str, entry: Entry, around: Surroundings, implements: tuple[str, 
     host = references.plain(reading.scalar(below, "host"), "host", name)
     if host and container and around.containers[container].host not in {None, host}:
         references.found.append(_elsewhere(below, name, around.containers[container]))
+    # Several components may have several owners: the node then belongs to all of them, in the order of `implements`.
     inherited = (owner for component in implements for owner in around.components[component].owners)
     owners = references.owners(below, name, inherited)
     ports = _ports(name, below, around, implements)
@@ -100,7 +102,7 @@ def _elsewhere(below: Table, node: str, container: Container) -> Diagnostic:
 
 
 def _namespace(written: str | None) -> str:
-    """Make a namespace absolute, as ROS does."""
+    """Return a namespace with its leading slash; a node without one is in the root namespace, `/`."""
     return "/" + (written or "").removeprefix("/")
 
 
@@ -110,11 +112,13 @@ def _status(below: Table) -> NodeStatus | None:
 
 
 def _parameters(below: Table) -> Mapping[str, object]:
+    # The only part of the language where values keep the type that YAML gives them.
     found = plain(reading.table(below, "parameters"))
     return found if isinstance(found, dict) else {}
 
 
 def _ports(name: str, below: Table, around: Surroundings, implements: tuple[str, ...]) -> Ports:
+    # Not `not implements`: a node whose `implements` could not be resolved has no ports, one without it has free ones.
     free = below.get("implements") is None
     return Ports(around.references, name, implements, around.outline.ports, free=free)
 
@@ -147,7 +151,7 @@ def _use(use: Use, port: str | None, entry: Entry, parts: Table, *, internal: bo
 
 
 def _qos(use: Use, parts: Table) -> Qos | None:
-    """Lay the values that are written over those of the profile."""
+    """Return the values of the profile with the written ones over them; None where no `qos` is written."""
     below = reading.table(parts, "qos")
     if not below.entries:
         return None

@@ -1,4 +1,4 @@
-"""What stands around groups and nodes: partners, requirements, hosts, links, chains, views, policies, reviews, the project."""
+"""Declare all sections but groups, nodes and types: project, partners, requirements, hosts, chains, views and so on."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _WAY = ("node", "component", "output")
 
 
 def project(root: Table, default_id: str, default_title: str) -> ProjectInfo:
-    """Say what the project says of itself."""
+    """Declare the project itself, with defaults for its id and title."""
     below = reading.table(root, "project")
     entry = root.entries.get("project")
     return ProjectInfo(
@@ -24,6 +24,7 @@ def project(root: Table, default_id: str, default_title: str) -> ProjectInfo:
         title=reading.text(below, "title") or default_title,
         version=reading.text(below, "version"),
         description=reading.text(below, "description"),
+        # Without the section the field keeps its default, which this module would otherwise have to repeat.
         **({"at": entry.at} if entry else {}),
     )
 
@@ -44,7 +45,7 @@ def partners(root: Table) -> dict[str, Partner]:
 
 
 def use_cases(root: Table) -> dict[str, UseCase]:
-    """Declare the use cases. Their ids are their titles where none is written."""
+    """Declare the use cases. One without a title has its id as title: `UC-4` cannot be turned into words."""
     return {
         name: UseCase(name, reading.text(below, "title") or name, reading.text(below, "description"), entry.at)
         for name, entry, below in reading.elements(root, "use_cases")
@@ -52,7 +53,7 @@ def use_cases(root: Table) -> dict[str, UseCase]:
 
 
 def requirements(root: Table, references: References) -> dict[str, Requirement]:
-    """Declare the requirements."""
+    """Declare the requirements, with the use cases that are declared."""
     return {
         name: Requirement(
             id=name,
@@ -68,7 +69,7 @@ def requirements(root: Table, references: References) -> dict[str, Requirement]:
 
 
 def _known(below: Table, key: str, kind: str, references: References, element: str) -> Iterator[str]:
-    """Give the plain ids of a list that are declared, each once."""
+    """Return the plain ids in a list that are declared, each once; the others are reported."""
     named = (references.plain(written, kind, element) for written in reading.scalars(below, key))
     return iter(dict.fromkeys(name for name in named if name))
 
@@ -120,7 +121,7 @@ def links(root: Table, references: References) -> dict[str, Link]:
 
 
 def chains(root: Table, references: References) -> dict[str, Chain]:
-    """Declare the chains of effect."""
+    """Declare the chains; a waypoint that cannot be resolved is kept in `unresolved`: the chain then counts as open."""
     found: dict[str, Chain] = {}
     for name, entry, below in reading.elements(root, "chains"):
         sense.no_entry(below, "through", "element", name, references.found)
@@ -138,7 +139,7 @@ def chains(root: Table, references: References) -> dict[str, Chain]:
 
 
 def views(root: Table) -> dict[str, View]:
-    """Declare the views; merging has reported one that does not say what it shows."""
+    """Declare the views, except one without `show`, which merging has reported."""
     found: dict[str, View] = {}
     for name, entry, below in reading.elements(root, "views"):
         if below.get("show") is None:
@@ -158,7 +159,7 @@ def views(root: Table) -> dict[str, View]:
 
 
 def review(root: Table) -> Review:
-    """Declare how changes are judged; merging has reported what is accepted without a reason."""
+    """Declare how changes are judged, without accepted changes that lack a reason, which merging has reported."""
     below = reading.table(root, "review")
     breaking = reading.text(below, "breaking")
     return Review(
@@ -174,7 +175,7 @@ def review(root: Table) -> Review:
 
 
 def policies(root: Table) -> dict[str, Policy]:
-    """Declare the policies; merging has reported one that does not say what it forbids."""
+    """Declare the policies, except one without `forbid.from` or `forbid.to`, which merging has reported."""
     found: dict[str, Policy] = {}
     for name, entry, below in reading.elements(root, "policies"):
         forbid = reading.table(below, "forbid")

@@ -1,4 +1,4 @@
-"""Timing: what was written, its ports resolved; what makes no sense in it is left out."""
+"""Declare the timing of an element: its figures, its ports resolved, and nothing in it that makes no sense."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from archgen.source import Span
 from archgen.syntax.tree import Entry, Listing, Scalar, Table
 
 _NUMBER_LENGTH = 40
-"""Longer than any number that the schema allows in `calls`."""
+"""Longer than any number that the schema allows in `calls`; it bounds the time that Fraction takes."""
 
 
 def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timing | None:
-    """Read the `timing` below an element; None where none is written."""
+    """Read the `timing` of an element; None if none is written."""
     entry = reading.body(owner).entries.get("timing")
     if entry is None or type(entry.value) is not Table:
         return None
@@ -39,6 +39,7 @@ def declare_timing(owner: Entry, ports: Ports, found: list[Diagnostic]) -> Timin
         priority=reading.whole(below, "priority"),
         core=reading.whole(below, "core"),
         response=reading.measure(below, "response", "duration"),
+        # Positions by key; each call has its own, under a key that no YAML key can be (it holds a blank).
         places={e.key: e.value.at for e in below} | {f"calls {port}": at for port, _, at in calls},
         at=entry.at,
     )
@@ -62,7 +63,7 @@ def _trigger(below: Table, ports: Ports, found: list[Diagnostic]) -> Trigger | N
 
 
 def _inputs(of: Table, key: str, ports: Ports, found: list[Diagnostic]) -> tuple[str, ...] | None:
-    """Resolve a list of inputs; None where nothing stands in it, or nothing could be resolved."""
+    """Resolve a list of inputs; None if it is empty or nothing in it can be resolved."""
     sense.no_entry(of, key, "input", ports.owner, found)
     named = [ports.follow(written.text, written.at, "input") for written in reading.scalars(of, key)]
     resolved = tuple(dict.fromkeys(port for port in named if port))
@@ -93,5 +94,5 @@ def _fraction(text: str) -> Fraction | None:
 
 
 def senseless(timing: Timing, element: str) -> Iterator[Diagnostic]:
-    """Say what makes no sense in a timing, wherever its figures come from."""
+    """Yield what makes no sense in a timing, wherever its figures come from."""
     return (finding for _, finding in sense.senseless(timing, element))

@@ -1,4 +1,4 @@
-"""Conceptual types: the project's, and those that its ports use beside them."""
+"""Declare conceptual types: the project's own, and those that its ports use besides."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from archgen.syntax.tree import Entry, Table
 def declare_types(
     root: Table, used: Iterable[str], shipped: Mapping[str, Type], found: list[Diagnostic]
 ) -> dict[str, Type]:
-    """Give every type that is declared or used, by its name: the project's, else the shipped one, else the name's own."""
+    """Return every type that is declared or used, by name.
+
+    The project's own declaration wins, then a name that is itself a message, then the shipped type; a name that is none
+    of these becomes a type without a message. `used_names` is consumed lazily.
+    """
     types: dict[str, Type] = {}
     for _, entry, below in reading.elements(root, "types"):
         declared = _declared(entry, below)
@@ -27,17 +31,22 @@ def declare_types(
         name = waiting.pop() if waiting else next(names, None)
         if name is None:
             return _in_order(types)
+        # A shipped type may itself carry types, hence a work list; `name not in types` also ends circles.
         if name not in types:
             types[name] = _from_outside(name, shipped)
             waiting += _inside(types[name])
 
 
 def _in_order(types: dict[str, Type]) -> dict[str, Type]:
-    """Put the project's own first, as written, then the shipped and the unmapped ones by name: a packed file keeps this."""
+    """Sort the project's own types first, as written, then all others by origin and name.
+
+    A packed file keeps this order: packing a packed project must change nothing.
+    """
     ranks = {"project": 0, "shipped": 1, "message": 2}
     own = [one for one in types.values() if one.origin == "project" and one.at.file]
     rest = sorted(
         (one for one in types.values() if one.origin != "project" or not one.at.file),
+        # A type that nobody declared has the origin "project" (rank 0) but no file: it ranks with the messages.
         key=lambda one: (ranks[one.origin] or 2, one.name),
     )
     return {one.name: one for one in (*own, *rest)}
@@ -66,7 +75,7 @@ def _other(below: Table, key: str) -> str | None:
 
 
 def _inside(one: Type) -> Iterator[str]:
-    """Name the types that a service or action carries: they count as used."""
+    """Yield the names of the types that a service or an action carries: they count as used."""
     return (name for name in (one.request, one.response, one.feedback) if name)
 
 

@@ -1,7 +1,7 @@
-"""The interfaces of one distribution: what ships with archgen, and over it what the project defines itself.
+"""Load the interfaces of one ROS distribution: those that ship with archgen, and over them the project's own.
 
-Where the project names no distribution, every name that archgen holds for any is known, and nothing is wrong. Of a
-distribution that archgen does not hold, only the project's own definitions are known.
+Without a distribution every name that archgen holds for any is known, and no name is ever wrong. Of a distribution that
+archgen does not hold, only the project's own definitions are known.
 """
 
 from __future__ import annotations
@@ -25,21 +25,24 @@ _DATA = Path(__file__).resolve().parent / "ros_interfaces"
 _PATH = re.compile(r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII)
 _FULL = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 _ROS2 = re.compile(r"[a-z](?:_?[a-z0-9])*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*\Z", re.ASCII)
-_FIELDS_OF = {"rolling": "lyrical"}
+_FIELDS_OF = {"rolling": "lyrical"}  # tools/make_ros_interfaces.py writes no fields for rolling: they are lyrical's
 
 
 class Definitions(Mapping[str, Interface]):
-    """The fields of interfaces: the project's own, and those that ship, which are read on first use."""
+    """The definitions of interfaces by full name: the project's own, and those that ship, which are read on first use.
+
+    A file of fields is read only when one of its messages is asked for, and then only that message is parsed.
+    """
 
     __slots__ = ("_distros", "_own")
 
     def __init__(self, distros: tuple[str, ...], own: Mapping[str, Interface]) -> None:
-        """Take the distributions to ask, in order."""
+        """Remember the project's own interfaces, and the distributions to search after them, in order."""
         self._distros = distros
         self._own = own
 
     def __getitem__(self, name: str) -> Interface:
-        """Give the definition of `pkg/msg/Name`."""
+        """Return the definition of `package/msg/Name`; raise KeyError where there is none."""
         if name in self._own:
             return self._own[name]
         for distro in self._distros:
@@ -49,7 +52,7 @@ class Definitions(Mapping[str, Interface]):
         raise KeyError(name)
 
     def __iter__(self) -> Iterator[str]:
-        """Give all names: the project's own first."""
+        """Iterate over all names, the project's own first, each once."""
         return iter(dict.fromkeys([*self._own, *(name for distro in self._distros for name in _fields(distro))]))
 
     def __len__(self) -> int:
@@ -62,9 +65,10 @@ def load(
     definitions: Sequence[tuple[str, str]] = (),
     inline: Mapping[str, tuple[str, Span]] | None = None,
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
-    """Give what is known for a distribution, and what is wrong with the project's own definitions.
+    """Return the interfaces known for a distribution, and what is wrong with the project's own definitions.
 
-    `definitions` are files (path, text), `inline` those of `ros: {definitions: ...}` with the place of their text.
+    `definition_files` are pairs of path and text; `inline_definitions` are those of `ros: {definitions: ...}` by full
+    name, each with the span of its text.
     """
     if not definitions and not inline:
         return _shipped(distro), ()
@@ -75,13 +79,15 @@ def load(
 def _own(
     distro: str | None, definitions: tuple[tuple[str, str], ...], inline: tuple[tuple[str, tuple[str, Span]], ...]
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
-    """Lay the project's own definitions over what ships. They are the same in most revisions of a project."""
+    """Lay the project's own definitions over what ships; cached, because most revisions of a project share them."""
+    # The arguments are tuples, not a list and a dict, to be hashable for the cache.
     shipped = _shipped(distro)
     ros1 = is_ros_1(distro)
     diagnostics = list[Diagnostic]()
     own = dict[str, Definition]()
     places = dict[str, Span]()
     for name, definition, place in _read(definitions, dict(inline), diagnostics, ros1=ros1):
+        # The first definition of a name counts, files before inline ones.
         if name in own:
             label = Label(places[name], "the first one")
             diagnostics.append(Diagnostic(NAME, f"`{name}` is defined twice", place, labels=(label,)))
@@ -89,6 +95,7 @@ def _own(
         own[name], places[name] = definition, place
         diagnostics += definition.diagnostics
     interfaces = _merge(shipped, {name: definition.interface for name, definition in own.items()})
+    # Only after all are merged: a definition may name a message that a later one defines.
     for definition in own.values():
         diagnostics += _unknown_fields(definition, interfaces)
     diagnostics += _circles(own)
@@ -96,7 +103,7 @@ def _own(
 
 
 def name_of(file: str) -> str | None:
-    """Give the full name of the interface that a path stands for (`.../pkg/msg/Name.msg`), None where it says none."""
+    """Return the full name of the interface in a file `.../package/msg/Name.msg`, None for any other path."""
     match = _PATH.match(file)
     return f"{match[1]}/{match[2]}/{match[3]}" if match and match[2] == match[4] else None
 
@@ -108,7 +115,7 @@ def _read(
     *,
     ros1: bool,
 ) -> Iterator[tuple[str, Definition, Span]]:
-    """Parse the project's definitions; what has no name is a diagnostic."""
+    """Yield name, definition and span of each of the project's definitions; one without a valid name is reported."""
     for file, text in files:
         name, place = name_of(file), Span.of_file(file)
         if name is None:
@@ -133,7 +140,10 @@ def _nameable(name: str, place: Span, diagnostics: list[Diagnostic], *, ros1: bo
 
 
 def _moved(definition: Definition, place: Span) -> Definition:
-    """Put the places of a definition that stands inside of YAML to where its text is; the line is said in words."""
+    """Move the spans of a definition inside YAML to where its text begins; the line goes into the message.
+
+    A block's indentation and escapes in quotes make exact columns unknowable here.
+    """
     moved = (
         replace(d, span=place, message=f"line {d.span.line} of the definition: {d.message}", labels=())
         for d in definition.diagnostics
@@ -143,7 +153,7 @@ def _moved(definition: Definition, place: Span) -> Definition:
 
 
 def _unknown_fields(definition: Definition, interfaces: Interfaces) -> Iterator[Diagnostic]:
-    """Find fields whose type is a message that certainly does not exist, or looks like a slip in the name of one."""
+    """Report fields whose message certainly does not exist (an error), or looks like a misspelt one (a note)."""
     for message, place in definition.references:
         answer = interfaces.answer(message)
         if answer == "known":
@@ -152,12 +162,14 @@ def _unknown_fields(definition: Definition, interfaces: Interfaces) -> Iterator[
         help_ = f"did you mean `{_inside(guess)}`?" if guess and "/msg/" in guess else None
         if answer == "wrong":
             yield Diagnostic(NAME, f"there is no message `{message}`", place, help=help_)
+        # The package is unknown or known only in part, so the message may well exist. A note is worth it only if a
+        # package of nearly the same name has it: `geometry_msg/Pose` is most likely a slip.
         elif guess and help_ and interfaces.held and closest(message.split("/")[0], [guess.split("/")[0]]):
             yield Diagnostic("unchecked-message", f"archgen holds no message `{message}`", place, help=help_)
 
 
 def _circles(own: Mapping[str, Definition]) -> Iterator[Diagnostic]:
-    """Find the fields through which a message of the project holds itself: it would have no end, and ROS refuses it."""
+    """Report fields through which a message of the project contains itself: ROS refuses such messages."""
     for name, definition in own.items():
         for message, place in definition.references:
             if name in _inner(message, own):
@@ -166,7 +178,7 @@ def _circles(own: Mapping[str, Definition]) -> Iterator[Diagnostic]:
 
 
 def _inner(name: str, own: Mapping[str, Definition]) -> set[str]:
-    """Give a message and all messages of the project in it."""
+    """Return a message and all messages of the project that it contains, directly or not."""
     found, waiting = set[str](), [name]
     while waiting:
         message = waiting.pop()
@@ -177,15 +189,15 @@ def _inner(name: str, own: Mapping[str, Definition]) -> set[str]:
 
 
 def _inside(message: str) -> str:
-    """Write a full name as definitions do."""
+    """Return a full name as definitions write it, without `msg`."""
     return message.replace("/msg/", "/")
 
 
 def _merge(shipped: Interfaces, own: Mapping[str, Interface]) -> Interfaces:
     """Lay the project's definitions over what ships.
 
-    A package that the project defines is held whole, unless archgen holds a part of the package of that name: then the
-    project adds to it, and names that nobody holds cannot be told.
+    A package that the project defines counts as known in full, so any other name in it is wrong; unless archgen already
+    knows a part of a package of that name: then the project adds to it, and other names in it may or may not exist.
     """
     packages = frozenset(name.split("/", 1)[0] for name in own)
     known = shipped.packages()
@@ -199,18 +211,19 @@ def _merge(shipped: Interfaces, own: Mapping[str, Interface]) -> Interfaces:
 
 
 def _asked(distro: str | None) -> tuple[str, ...]:
-    """Say which distributions' data answer for a project's distribution."""
+    """Return the distributions whose data answer for a project's distribution: all for None, none if unknown."""
     return DISTROS if distro is None else (distro,) if distro in DISTROS else ()
 
 
 @cache
 def _shipped(distro: str | None) -> Interfaces:
-    """Give what ships for a distribution; for None, what any has."""
+    """Return the interfaces that ship for a distribution; for None, those of all distributions."""
     names, whole = set[str](), set[str]()
     for asked in _asked(distro):
         for package, kinds in _names(asked).items():
             for kind in ("msg", "srv", "action"):
                 names.update(f"{package}/{kind}/{name}" for name in kinds.get(kind, ()))
+            # Without a distribution nothing is "whole": a name that one lacks may exist in another.
             if kinds["whole"] and distro is not None:
                 whole.add(package)
     return Interfaces(
@@ -223,6 +236,7 @@ def _names(distro: str) -> dict[str, dict[str, Any]]:
     return found
 
 
+# Cached, and shared with callers that only look names up: LazyInterfaces asks for every single message.
 @cache
 def _fields(distro: str) -> dict[str, list[str]]:
     file = _DATA / f"{_FIELDS_OF.get(distro, distro)}.fields.json"
@@ -231,7 +245,7 @@ def _fields(distro: str) -> dict[str, list[str]]:
 
 
 def _field(text: str) -> Field:
-    """Read `float64[36] covariance`."""
+    """Parse a field as the data files hold it: `float64[36] covariance`."""
     type_, name = text.split(" ")
     base, bracket, size = type_.partition("[")
     return Field(name, base, bracket + size)

@@ -1,4 +1,4 @@
-"""Merge the slices: documents in their order become one table, and elements that nobody declared are found."""
+"""Merge the slices: documents become one mapping, in their order; elements that no file declares are reported."""
 
 from __future__ import annotations
 
@@ -17,22 +17,25 @@ if TYPE_CHECKING:
 
 Path = tuple[str, ...]
 _SUPPORT = frozenset({"timing", "requirements", "tags", "urls", "layout", "owner"})
-"""What supporting files say of components that others declare."""
+"""Keys that supporting files add to components which other files declare: they alone declare nothing."""
 
 
 def merge(documents: Sequence[Document], lost: frozenset[str] = frozenset()) -> tuple[Table, tuple[Diagnostic, ...]]:
-    """Merge documents in normal form. The documents stay as they are; the result shares their values.
+    """Merge documents in normal form into one mapping.
 
-    `lost` are the keys in files that could not be read: nobody is told that what they declare is not declared.
+    The documents are not changed (they may be cached for other revisions); the result shares their nodes. `lost_keys`
+    are the keys in files that could not be read: an element that one of them may declare is not reported as undeclared.
     """
     found: list[Diagnostic] = []
     root = _join([document.root for document in documents], (), found)
+    # Before incomplete elements are looked for, so that an undeclared element is a single finding.
     root, undeclared = _declared(root, documents, lost)
     return root, (*found, *undeclared, *_incomplete(root))
 
 
 def _join(tables: Sequence[Table], path: Path, found: list[Diagnostic]) -> Table:
-    """Merge mappings key by key, in order of first appearance."""
+    """Merge mappings key by key, in the order of first appearance."""
+    # Most subtrees are in one file only: they are shared with its document instead of being rebuilt.
     if len(tables) == 1:
         return tables[0]
     written: dict[str, list[Entry]] = {}
@@ -44,10 +47,11 @@ def _join(tables: Sequence[Table], path: Path, found: list[Diagnostic]) -> Table
 
 
 def _one(several: list[Entry], path: Path, found: list[Diagnostic]) -> Entry:
-    """Make one entry of those that stand at the same path: a mapping of mappings, or the first leaf."""
+    """Merge the entries at one path: mappings key by key; of anything else the first stays, the others are reported."""
     first = several[0]
     if len(several) == 1:
         return first
+    # A mapping and a leaf at one path conflict whatever comes first; the mappings among them are merged all the same.
     if isinstance(first.value, Table) and not _is_parameter(path):
         tables = [entry.value for entry in several if isinstance(entry.value, Table)]
         found.extend(_conflict(entry, first, path) for entry in several if not isinstance(entry.value, Table))
@@ -57,6 +61,7 @@ def _one(several: list[Entry], path: Path, found: list[Diagnostic]) -> Entry:
 
 
 def _is_parameter(path: Path) -> bool:
+    # nodes, id, parameters, name: a parameter is one value even if it is a mapping, and is never merged.
     return len(path) == 4 and path[0] == "nodes" and path[2] == "parameters"  # noqa: PLR2004
 
 
@@ -70,13 +75,15 @@ def _conflict(entry: Entry, first: Entry, path: Path) -> Diagnostic:
 
 
 def _declared(root: Table, documents: Sequence[Document], unread: frozenset[str]) -> tuple[Table, list[Diagnostic]]:
-    """Take out the components and groups that nobody declared."""
+    """Remove the components and groups that no file declares, and report them."""
     groups = root.get("groups")
     if not isinstance(groups, Table):
         return root, []
+    # Normal form turns a bare id into `{}`, which merging makes invisible: it must be looked for in the documents.
     lost = [path for path in _candidates(groups) if not _is_empty_somewhere(path, documents)]
     if not lost:
         return root, []
+    # Only what is declared is offered as a guess: two slips of the same kind must not suggest each other.
     known = [path for path in _all(groups) if path not in lost]
     found = [_undeclared(groups, path, known) for path in lost if path[-1] not in unread]
     entry = root.entries["groups"]
@@ -91,7 +98,7 @@ def _all(groups: Table) -> Iterator[Path]:
 
 
 def _candidates(groups: Table) -> Iterator[Path]:
-    """Give the groups without title and component, and the components with nothing but supporting keys."""
+    """Yield the paths of groups with neither title nor components, and of components with supporting keys only."""
     for group in groups:
         if isinstance(group.value, Table) and "title" not in group.value.entries and not any(_components(group.value)):
             yield (group.key,)
@@ -106,7 +113,7 @@ def _components(group: Value) -> Iterable[Entry]:
 
 
 def _is_empty_somewhere(path: Path, documents: Sequence[Document]) -> bool:
-    """Say whether a slice declares the element by its bare id."""
+    """Whether some document declares an element by its bare id."""
     full = ("groups", path[0]) if len(path) == 1 else ("groups", path[0], "components", path[1])
     return any(_at(document.root, full) for document in documents)
 
@@ -125,6 +132,7 @@ def _undeclared(groups: Table, path: Path, known: Sequence[Path]) -> Diagnostic:
     name = ".".join(path)
     guess = did_you_mean(name, (".".join(other) for other in known if len(other) == len(path)))
     needed = "a title or a component" if kind == "group" else "a title, a functionality, inputs or outputs"
+    # An id of an existing element that is nearly the same is the likelier cause: without one the element is new.
     help_line = guess or f"give it {needed} where it belongs"
     return Diagnostic(
         "undeclared-element", f"no file declares the {kind} `{name}`", entry.at, help=help_line, element=name
@@ -138,6 +146,7 @@ def _without(groups: Table, lost: frozenset[Path]) -> Table:
             continue
         components = [c for c in _components(group.value) if (group.key, c.key) not in lost]
         if isinstance(group.value, Table) and len(components) < sum(1 for _ in _components(group.value)):
+            # A group of which nothing is left goes too; nodes are copied, since the documents must not change.
             if not components and "title" not in group.value.entries:
                 continue
             old = group.value.entries["components"]
@@ -149,6 +158,8 @@ def _without(groups: Table, lost: frozenset[Path]) -> Table:
     return Table(kept, groups.at)
 
 
+# By section, the paths without which an element means nothing. The schema cannot ask for them: in a single slice every
+# key may be missing, because another file may write it.
 _NEEDED: dict[Path, tuple[Path, ...]] = {
     ("views",): (("show",),),
     ("policies",): (("forbid", "from"), ("forbid", "to")),
@@ -157,7 +168,7 @@ _NEEDED: dict[Path, tuple[Path, ...]] = {
 
 
 def _incomplete(root: Table) -> Iterator[Diagnostic]:
-    """Find elements that mean nothing without a key that no slice writes."""
+    """Report elements that lack a key without which they mean nothing, in all slices together."""
     for section, needed in _NEEDED.items():
         table = _below(root, section)
         for entry in table if isinstance(table, Table) else ():

@@ -1,4 +1,4 @@
-"""The first look at the merged table: which groups, components and ports there are, before any reference is followed."""
+"""List the groups, components and ports of the merged project, before any reference is resolved."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from archgen.syntax.tree import Entry, Table
 
 @dataclass(slots=True)
 class Outline:
-    """What the project declares on its high level. Inputs wait as they were written: what feeds them is not known yet."""
+    """What the project declares on its high level. Inputs stay as written: what feeds them is not known yet."""
 
     groups: dict[str, Entry] = field(default_factory=dict)
     components: dict[str, Entry] = field(default_factory=dict)
     outputs: dict[str, dict[str, Output]] = field(default_factory=dict)
-    """By component and name."""
+    """By component id and name."""
     inputs: dict[str, dict[str, Entry]] = field(default_factory=dict)
-    """By component and name."""
+    """By component id and name."""
 
     @property
     def ports(self) -> Mapping[str, Mapping[str, Collection[str]]]:
-        """Give the names of the ports of each component, by kind."""
+        """The names of the ports by kind (`input`, `output`) and component id."""
         return {"input": self.inputs, "output": self.outputs}
 
     def all_outputs(self) -> Iterator[Output]:
-        """Give every output."""
+        """Iterate over every output."""
         for outputs in self.outputs.values():
             yield from outputs.values()
 
     def types_used(self) -> Iterator[str]:
-        """Name the types that ports mention, each as often as it is."""
+        """Yield the types that ports mention, with repetitions."""
         for component, outputs in self.outputs.items():
             for entry in self.inputs[component].values():
                 written = reading.text(reading.body(entry), "type")
@@ -42,7 +42,7 @@ class Outline:
 
 
 def outline(root: Table) -> Outline:
-    """List groups, components and ports by their complete ids."""
+    """Return the outline of a merged project, by complete ids."""
     found = Outline()
     for group, entry, below in reading.elements(root, "groups"):
         found.groups[group] = entry

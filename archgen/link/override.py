@@ -1,4 +1,4 @@
-"""Figures laid over an architecture without touching a file: `object_recognizer.timing.wcet=120 ms`."""
+"""Override figures of timing without touching a file: `object_recognizer.timing.wcet=120 ms`."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ _QUANTITIES = {
 _COUNTS = ("every", "priority", "core")
 _BEHAVIOURS = ("periodic", "event", "on_demand", "once")
 KEYS = (*_QUANTITIES, *_COUNTS, "behaviour", "trigger")
-"""The keys of `timing` that can be laid over."""
+"""The keys of `timing` that can be overridden."""
 _COUNT_LENGTH = 9
 
 
 class OverrideError(ValueError):
-    """A figure cannot be laid over; the text says why."""
+    """A figure cannot be overridden; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """One key of one activity (a node's part for a component, "" where it implements none), and its value."""
+    """A new value for one key of one activity: a node's part for a component ("" if the node implements none)."""
 
     node: str
     component: str
@@ -51,16 +51,18 @@ class Assignment:
 
 
 def lay(architecture: Architecture, written: Iterable[str]) -> Architecture:
-    """Lay `ELEMENT.timing.KEY=VALUE` over an architecture. Raises `OverrideError`."""
+    """Return an architecture with overrides written as `ELEMENT.timing.KEY=VALUE`. Raises `OverrideError`."""
     for text in written:
         for assignment in read(architecture, text):
             architecture = assigned(architecture, assignment)
+    # Only at the end: two overrides may make sense together that do not one by one, such as bcet and wcet both raised.
     _judge(architecture)
     return architecture
 
 
 def read(architecture: Architecture, text: str) -> tuple[Assignment, ...]:
-    """Read one assignment: one for each activity that it concerns."""
+    """Parse one override text into an override for each activity that it concerns. Raises `OverrideError`."""
+    # From the right: an id may itself be `timing`.
     path, equals, value = text.partition("=")
     element, dot, key = path.strip().rpartition(".timing.")
     if not equals or not dot or not element:
@@ -75,7 +77,7 @@ def read(architecture: Architecture, text: str) -> tuple[Assignment, ...]:
 
 
 def assigned(architecture: Architecture, assignment: Assignment) -> Architecture:
-    """Lay one value over an architecture; of rate and period, the other one goes."""
+    """Return an architecture with one value overridden; overriding the rate removes the period, and the reverse."""
     node = architecture.nodes[assignment.node]
     timing = node.timing.get(assignment.component, Timing(at=node.at))
     changes = {assignment.key: assignment.value}
@@ -113,7 +115,7 @@ def _count(text: str) -> int | None:
 
 
 def _activities(architecture: Architecture, element: str) -> tuple[tuple[str, str], ...]:
-    """Find the activities that an element's timing belongs to: a node, `node.component`, or a component with one node."""
+    """Return the activities (node, component) of an element: a node, `node.component`, or a component with one node."""
     node = architecture.nodes.get(element)
     if node is not None:
         return tuple((node.id, component) for component in node.implements or ("",))
@@ -146,9 +148,10 @@ def _of_component(architecture: Architecture, element: str) -> tuple[tuple[str, 
 
 
 def _judge(architecture: Architecture) -> None:
-    """Refuse what no file may say either."""
+    """Raise `OverrideError` for figures that a file could not state either."""
     for node in architecture.nodes.values():
         for timing in node.timing.values():
+            # drop_senseless reads the position of every figure that it reports; an overridden one may have none.
             places = {key: timing.places.get(key, timing.at) for key in KEYS}
             found: list[Diagnostic] = []
             sound(replace(timing, places=places), node.id, found)

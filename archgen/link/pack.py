@@ -1,4 +1,7 @@
-"""The packed project: the merged slices as plain data, with all that stands in other files put in."""
+"""Pack a project: its merged slices as plain data, with everything from other files put in.
+
+The packed file must give the same report as the folder (docs/decisions/0002-packed-attachments.md).
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ _RAW = frozenset({"parameters", "calls"})
 
 @dataclass(slots=True)
 class Packed:
-    """A project as one mapping, and the ignore comments at their places in it."""
+    """A project as one mapping, and the ignore comments by the path of the value that each belongs to."""
 
     data: dict[str, object] = field(default_factory=dict)
     comments: dict[Place, str] = field(default_factory=dict)
@@ -30,8 +33,9 @@ class Packed:
 
 @dataclass(frozen=True, slots=True)
 class Attachments:
-    """What stands in files of other kinds: the project's own interfaces by full name, its chapters by path, and the
-    pictures that the chapters show, by path.
+    """The contents of files other than YAML.
+
+    The project's own interfaces by full name, its chapters by path, and the pictures in the chapters by path.
     """
 
     definitions: Mapping[str, str] = field(default_factory=dict)
@@ -40,13 +44,15 @@ class Attachments:
 
 
 def pack(merged: Table, architecture: Architecture, ignores: Iterable[Ignore], attached: Attachments) -> Packed:
-    """Make the packed project."""
+    """Return the packed project."""
+    # Comments are found by their line and taken out of this dict as their elements are packed.
     waiting = {(ignore.at.file, ignore.at.line): ignore for ignore in ignores}
     packed = Packed()
     whole = _table(merged, (), packed.comments, waiting, raw=False)
     project = {"id": architecture.project.id, "title": architecture.project.title}
     whole["archgen"] = 1
     whole["project"] = {**project, **_mapping(whole.get("project"))}
+    # A packed file is the whole project: nothing may send its readers to other files.
     whole.pop("sources", None)
     ros = {key: value for key, value in _mapping(whole.get("ros")).items() if key != "interfaces"}
     if attached.definitions:
@@ -57,6 +63,7 @@ def pack(merged: Table, architecture: Architecture, ignores: Iterable[Ignore], a
     if attached.pictures:
         report["pictures"] = {path: base64.b64encode(data).decode("ascii") for path, data in attached.pictures.items()}
     types = _mapping(whole.get("types"))
+    # Of the shipped type mapper, what the project uses: another version of archgen may map these types differently.
     types |= {t.name: _type(t) for t in architecture.types.values() if t.origin == "shipped" and t.name not in types}
     rest = {"ros": ros, "report": report, "types": types}
     whole |= {key: value for key, value in rest.items() if value}
@@ -90,6 +97,7 @@ def _value(
 
 
 def _scalar(scalar: Scalar, *, raw: bool) -> object:
+    # As text `1.10` stays `1.10`; as a number it would become 1.1.
     return scalar.value if raw else scalar.text
 
 
@@ -97,6 +105,7 @@ def _table(
     table: Table, place: Place, comments: dict[Place, str], waiting: dict[tuple[str, int], Ignore], *, raw: bool
 ) -> dict[str, object]:
     data: dict[str, object] = {}
+    # An entry before what is in it: of several values on one line the outermost gets the comment.
     for entry in table:
         here = (*place, entry.key)
         _comment(entry.at.file, entry.at.line, here, comments, waiting)
@@ -111,7 +120,7 @@ def _is_raw(entry: Entry) -> bool:
 def _comment(
     file: str, line: int, here: Place, comments: dict[Place, str], waiting: dict[tuple[str, int], Ignore]
 ) -> None:
-    """Take an ignore comment along to the first element that stands on its line."""
+    """Attach the ignore comment of a line to the first value on that line; it is taken out of `pending_ignores`."""
     ignore = waiting.pop((file, line), None)
     if ignore is not None:
         comments[here] = f"archgen: ignore[{', '.join(ignore.rules)}] {ignore.why}".rstrip()

@@ -1,4 +1,7 @@
-"""Read values off a normal-form table. What is missing, or of another kind than expected, reads as not written."""
+"""Read values off a mapping in normal form. What is missing, or of an unexpected kind, reads as not written.
+
+Types are compared with `type(...) is`, not isinstance: these functions run for every key of every element.
+"""
 
 from __future__ import annotations
 
@@ -20,18 +23,18 @@ _BLANKS = re.compile(r"\s+")
 
 
 def table(of: Table, key: str) -> Table:
-    """Give the table at a key, an empty one where there is none."""
+    """Return the mapping at a key, an empty one where there is none."""
     entry = of.entries.get(key)
     return entry.value if entry is not None and type(entry.value) is Table else NOTHING
 
 
 def body(entry: Entry) -> Table:
-    """Give what stands below an element's key."""
+    """Return an element's body: the mapping at its key, an empty one where there is none."""
     return entry.value if type(entry.value) is Table else NOTHING
 
 
 def scalar(of: Table, key: str) -> Scalar | None:
-    """Give the scalar at a key, None where nothing is written."""
+    """Return the scalar at a key, None where nothing is written."""
     entry = of.entries.get(key)
     if entry is None:
         return None
@@ -40,7 +43,8 @@ def scalar(of: Table, key: str) -> Scalar | None:
 
 
 def text(of: Table, key: str) -> str | None:
-    """Give a text as it was written."""
+    """Return the text at a key as it was written (`1.10` is not 1.1), None where nothing is written."""
+    # The same as get_scalar(...).text, without the second call: the most frequent function of linking.
     entry = of.entries.get(key)
     if entry is None:
         return None
@@ -49,7 +53,7 @@ def text(of: Table, key: str) -> str | None:
 
 
 def scalars(of: Table, key: str) -> tuple[Scalar, ...]:
-    """Give the scalars of a list; one scalar counts as a list of one."""
+    """Return the scalars of a list; a single scalar counts as a list of one."""
     found = of.get(key)
     if type(found) is Listing:
         return tuple(item for item in found.items if type(item) is Scalar and item.value is not None)
@@ -57,66 +61,66 @@ def scalars(of: Table, key: str) -> tuple[Scalar, ...]:
 
 
 def texts(of: Table, key: str) -> tuple[str, ...]:
-    """Give the texts of a list."""
+    """Return the texts of a list."""
     return tuple(item.text for item in scalars(of, key))
 
 
 def whole(of: Table, key: str) -> int | None:
-    """Give a whole number."""
+    """Return a whole number, None for any other value."""
     found = scalar(of, key)
     return found.value if found and type(found.value) is int else None
 
 
 def flag(of: Table, key: str) -> bool:
-    """Tell whether `true` stands at a key."""
+    """Whether the value at a key is `true`."""
     found = scalar(of, key)
     return found is not None and found.value is True
 
 
 def measure(of: Table, key: str, dimension: str) -> Quantity | None:
-    """Give a quantity of a dimension."""
+    """Return a quantity of a dimension such as `duration`, None where it is not written or malformed."""
     found = scalar(of, key)
     return quantity.parse(found.text, dimension) if found else None
 
 
 def place(of: Table, key: str) -> Span:
-    """Give where the value at a key stands."""
+    """Return the span of the value at a key, `NOWHERE` where it is not written."""
     entry = of.entries.get(key)
     return entry.value.at if entry else NOWHERE
 
 
 def words(of: Table, key: str) -> Mapping[str, str]:
-    """Give a mapping of texts, such as `urls`."""
+    """Return a mapping of texts, such as `urls`."""
     found = table(of, key)
     return {e.key: e.value.text for e in found if type(e.value) is Scalar and e.value.value is not None}
 
 
 def elements(of: Table, key: str) -> Iterator[tuple[str, Entry, Table]]:
-    """Give the elements of a section: id, entry, and what stands below."""
+    """Yield the elements of a section: id, entry and body."""
     for entry in table(of, key):
         yield entry.key, entry, body(entry)
 
 
 def layout(of: Table) -> Layout:
-    """Give an element's layout."""
+    """Return an element's layout."""
     direction = text(table(of, "layout"), "direction")
     return Layout(direction) if direction in {"left-right", "top-bottom"} else Layout()  # type: ignore[arg-type]
 
 
 def title(of: Table, name: str) -> str:
-    """Give an element's title, made from its id where it has none: `object_recognition` is "Object Recognition"."""
+    """Return an element's title, made from its id if it has none: `object_recognition` is "Object Recognition"."""
     written = text(of, "title")
     return written if written is not None else made_title(name)
 
 
 @lru_cache(4096)
 def type_name(written: str) -> str:
-    """Give a type's name: Unicode NFC, blanks folded to one; a message has its full name."""
+    """Return a type's name in the form in which names are compared: NFC, blanks folded to one, messages in full."""
     folded = _BLANKS.sub(" ", unicodedata.normalize("NFC", written)).strip()
     return full_message(folded) or folded
 
 
 def message(of: Table) -> str | None:
-    """Give the full name of the message written in an element."""
+    """Return the full name of the message that an element names, None where there is none."""
     written = text(of, "message")
     return None if written is None else full_message(written.strip())

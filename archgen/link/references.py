@@ -1,4 +1,4 @@
-"""Follow references: what a dotted path means, and what to say where it means nothing, or several things."""
+"""Resolve references: which element a dotted path means, and what to report if it means none, or several."""
 
 from __future__ import annotations
 
@@ -12,28 +12,33 @@ from archgen.source import NOWHERE, Span
 from archgen.suggest import closest
 from archgen.syntax.tree import Scalar, Table
 
+# How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _DEPTH = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
 _GUESSES = 300_000
-"""How many names are compared with mistyped ones in one run: some dozen guesses among the names of 10,000 components, as
-many as anybody needs in a project of usual size. What comes later is reported without a guess.
+"""How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
+components, as many as anybody needs in a project of usual size. What comes later is reported without a guess. Without
+the limit, thousands of unknown references would take time that grows with the square of the project.
 """
 
 
 @dataclass(slots=True)
 class References:
-    """All that can be referred to, where it was declared, and what is wrong with the references followed so far."""
+    """Resolves references to everything that can be referred to, and collects what is wrong with them.
+
+    `implements` is filled in from outside once the nodes' components are resolved, which itself needs this object.
+    """
 
     places: Mapping[str, Mapping[str, Span]]
-    """By kind and complete id: what dotted paths name."""
+    """Where elements that dotted paths can name were declared, by kind and complete id."""
     plain_places: Mapping[str, Mapping[str, Span]]
-    """By kind and id: what is named by its id alone (`partner`, `host`, `container`, `use case`)."""
+    """The same for elements named by their id alone, by kind (`partner`, `host`, `container`, `use case`) and id."""
     found: list[Diagnostic]
     lost: frozenset[str] = frozenset()
-    """The keys in files that could not be read: nobody is told that what they declare does not exist."""
+    """The keys in files that could not be read: what they may declare is not reported as unknown."""
     implements: Mapping[str, Collection[str]] = field(default_factory=dict)
     """The components of each node, once they are known."""
     suspects: set[str] = field(default_factory=set)
-    """Complete ids of what unresolved references most likely meant."""
+    """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     names: Names = field(init=False)
     _left: int = _GUESSES
     _pools: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
@@ -42,10 +47,16 @@ class References:
         self.names = Names(self.places)
 
     def follow(self, written: Scalar, kinds: Sequence[str], element: str, component: str | None = None) -> Named | None:
-        """Give what a reference means; None, and a finding, where that is not clear. `component` is who writes it."""
+        """Return the element that a reference means; None, and a diagnostic, if that is not clear.
+
+        `kinds` are the kinds that are allowed here; the diagnostic is about `element_id`. `component_id` is the
+        component that writes the reference: elements of its group win; a single word never means itself or its output.
+        """
         words = written.text
         result = self.names.find(words, kinds, component=component)
         one = result.one
+        # Whatever an unresolved reference may have meant is a suspect: that such an element seems unread is an
+        # aftermath of this finding, not a second mistake.
         if result.count > 1:
             self.suspects.update(name.id for name in result.elements)
             self.found.append(self._ambiguous(written, result, element))
@@ -56,7 +67,7 @@ class References:
         return one
 
     def plain(self, written: Scalar | None, kind: str, element: str) -> str | None:
-        """Give a plain id (of a partner, a host, ...); None, and a finding, where there is no such element."""
+        """Return the id of a partner, host, container or use case; None, and a diagnostic, if there is no such one."""
         known = self.plain_places[kind]
         if written is None or written.text in known:
             return written.text if written else None
@@ -67,18 +78,20 @@ class References:
         return None
 
     def owners(self, below: Table, element: str, inherited: Iterable[str]) -> tuple[str, ...]:
-        """Give who answers for an element, each once: as written, where nobody wrote it as inherited."""
+        """Return the owners of an element, each once: those written, or the inherited ones if none are written."""
         if below.get("owner") is None:
             return tuple(dict.fromkeys(inherited))
         found = (self.plain(one, "partner", element) for one in reading.scalars(below, "owner"))
         return tuple(dict.fromkeys(name for name in found if name))
 
     def is_lost(self, words: str) -> bool:
-        """Tell whether a file that could not be read may declare what a path names."""
+        """Whether a file that could not be read may declare what a path names."""
+        # The last part or the one before it: a port may be lost, or the component that it belongs to.
         return not self.lost.isdisjoint(words.split(".")[-2:])
 
     def guess(self, word: str, pool: Collection[str]) -> str | None:
-        """Guess what a word stands for, as long as guessing is cheap enough."""
+        """Return the candidate that a name most likely stands for, as long as the budget for guesses lasts."""
+        # Set to zero, not left as it is: from here on no reference gets a guess, not even one with a smaller pool.
         if len(pool) > self._left:
             self._left = 0
             return None
@@ -102,6 +115,7 @@ class References:
     def _unknown(self, written: Scalar, kinds: Sequence[str], element: str, component: str | None) -> Diagnostic:
         words = written.text
         what = _possible(kinds, words.count(".") + 1)
+        # The commonest reasons are named before anything is guessed: the writer itself, an input, a group.
         own = f"{component}.{words}"
         if component and (own in self.places["output"] or component.endswith(f".{words}")):
             help_line = "one word never means the writer itself or its own output: a loop is written `component.output`"
@@ -134,6 +148,7 @@ class References:
         )
 
     def _warn_hidden(self, written: Scalar, one: Named, hidden: Iterable[Named], element: str) -> None:
+        # A node and the component that it implements often have the same name: either is meant, nothing is hidden.
         others = [name for name in hidden if name.id not in self.implements.get(one.id, ())]
         if others:
             self.found.append(
@@ -148,12 +163,18 @@ class References:
             )
 
     def _guess_path(self, words: str, kinds: Sequence[str]) -> str | None:
-        """Guess first among paths with the same last word, then among all of this length, then elsewhere by its end."""
+        """Return the path that was most likely meant, or None.
+
+        First among paths with the same last part (few, and a slip is usually in one part only), then among all paths of
+        the same length; at last without leading parts, in case an element was moved to another group.
+        """
         if not self._left:
             return None
         length = words.count(".") + 1
         fitting = [kind for kind in kinds if _DEPTH[kind] >= length]
         last = words.rpartition(".")[2]
+        # A set of ends: two complete paths with the same end are one candidate, since the guess has the length of the
+        # reference that somebody wrote.
         near = {_end(path, length) for kind in fitting for path in self.names.ending(kind, last)}
         guess = self.guess(words, near) if length > 1 and near else None
         if guess is None:
@@ -176,7 +197,7 @@ class References:
 
 
 def unknown(written: Scalar, what: str, guess: str | None, declared: Span, element: str) -> Diagnostic:
-    """Say that there is no such element, and what may have been meant."""
+    """Report that there is no such element, with what may have been meant."""
     return Diagnostic(
         "unknown-reference",
         f"no {what} named `{written.text}`",
@@ -188,7 +209,7 @@ def unknown(written: Scalar, what: str, guess: str | None, declared: Span, eleme
 
 
 def _possible(kinds: Sequence[str], length: int) -> str:
-    """Name the kinds that a path of this length can mean."""
+    """Return the kinds that a path of some length can mean, as words: "component or output"."""
     possible = [kind for kind in kinds if _DEPTH[kind] >= length] or [kinds[-1]]
     return " or ".join(filter(None, (", ".join(possible[:-1]), possible[-1])))
 
@@ -199,29 +220,30 @@ def _end(path: str, length: int) -> str:
 
 @dataclass(slots=True)
 class Ports:
-    """The ports of one component, or of all components that a node implements, for the keys that name them."""
+    """Resolves keys that name ports: of one component, or of all components that a node implements."""
 
     references: References
     owner: str
-    """The element whose keys they are, for findings."""
+    """The element whose keys they are, for diagnostics."""
     components: tuple[str, ...]
     ports: Mapping[str, Mapping[str, Collection[str]]]
-    """The names of the inputs and outputs of each component, by kind."""
+    """The names of ports by kind (`input`, `output`) and component."""
     free: bool = False
-    """The node implements nothing: its keys are names of its own."""
+    """Whether the node implements nothing, so that its keys are names of its own."""
     _names: Names | None = None
 
     @property
     def names(self) -> Names:
-        """Give the look-up of keys; most elements need none."""
+        """The look-up of ports by the ends of their ids, built on first use: most keys are found without it."""
         if self._names is None:
             self._names = Names({kind: list(_complete(self.components, names)) for kind, names in self.ports.items()})
         return self._names
 
     def follow(self, words: str, at: Span, kind: str) -> str | None:
-        """Give the complete id of the port (`input` or `output`) that a key means."""
+        """Return the complete id of the port (`kind` is `input` or `output`) that a key means, or None."""
         if not self.components:  # what it implements is not known: that is reported already
             return words if self.free else None
+        # The usual case, one component and the plain name of a port, needs no look-up of its own.
         if len(self.components) == 1 and words in self.ports[kind].get(self.components[0], ()):
             return f"{self.components[0]}.{words}"
         result = self.names.find(words, (kind,))
@@ -255,6 +277,7 @@ class Ports:
             return Diagnostic(
                 "unknown-reference", message, at, labels=(label,), help=f"`{words}` is an {other}", element=self.owner
             )
+        # An ambiguous end would be no help as a guess.
         clear = [path for path in self.names.ends(kind) if len(self.names.ending(kind, path)) == 1]
         guess = self.references.guess(words, clear)
         meant = self.names.find(guess, (kind,)).one if guess else None

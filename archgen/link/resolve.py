@@ -1,4 +1,4 @@
-"""What a reference in `from` brings: the outputs that it stands for, as connections and edges."""
+"""Wire inputs: turn each reference in `from` into the outputs that it stands for, as connections and edges."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from archgen.syntax.tree import Entry, Scalar
 _SOURCES = ("group", "component", "output")
 MAX_PAIRS = 500_000
 """How many pairs of output and input references may make. 10,000 components with 23,000 connections make 30,000; only
-many references to large groups make more, and then their number grows with its square.
+many references to large groups make more, and then their number grows with the square of the groups' size.
 """
 
 
 @dataclass(slots=True)
 class Wiring:
-    """Connections as they are made."""
+    """Wires inputs one after the other; the results are in `connections` and `edges`."""
 
     outline: Outline
     references: References
@@ -35,12 +35,14 @@ class Wiring:
     _brought: dict[str, tuple[Output, ...]] = field(default_factory=dict)
 
     def input(self, component: str, entry: Entry) -> Input:
-        """Declare an input and connect it."""
+        """Return an input, connected to what its `from` names."""
         below = reading.body(entry)
         complete = f"{component}.{entry.key}"
         made = tuple(self._connect(component, complete, written) for written in reading.scalars(below, "from"))
         connections = tuple(connection for connection in made if connection)
         self.connections += connections
+        # Two references may bring the same output: one edge, in the order of first mention and with its position. The
+        # reversal makes the first mention win in the dict.
         pairs = {output: connection.at for connection in reversed(connections) for output in connection.outputs}
         order = dict.fromkeys(output for connection in connections for output in connection.outputs)
         self.edges += [Edge(output, complete, pairs[output]) for output in order]
@@ -64,6 +66,7 @@ class Wiring:
         target = self.references.follow(written, _SOURCES, component, component)
         if target is None:
             return None
+        # A connection without outputs is kept: it is what was written, even if it brings nothing.
         outputs = () if self._full else tuple(self._outputs(target, component))
         if len(self.edges) + len(outputs) > MAX_PAIRS:
             self._too_many(written, component)
@@ -71,7 +74,7 @@ class Wiring:
         return Connection(complete, written.text, target.kind, target.id, outputs, written.at)  # type: ignore[arg-type]
 
     def _too_many(self, written: Scalar, component: str) -> None:
-        """Report it once: what follows brings nothing either."""
+        """Report the limit on pairs once; all later references bring nothing, so that the cut is at one clear place."""
         if not self._full:
             self._full = True
             message = (
@@ -83,10 +86,11 @@ class Wiring:
             )
 
     def _outputs(self, target: Named, reader: str) -> Iterator[str]:
-        """Name what a reference stands for: one output, or all that carry messages, except the reader's own."""
+        """Yield the outputs that a reference stands for: one, or all that carry messages except the reader's own."""
         if target.kind == "output":
             yield target.id
             return
+        # Cached by id alone: a group and a component never share a complete id, since one has a dot and one has none.
         if target.id not in self._brought:
             self._brought[target.id] = tuple(self._carrying_messages(target))
         yield from (output.id for output in self._brought[target.id] if output.component != reader)
@@ -101,5 +105,6 @@ class Wiring:
         for component in components:
             for output in self.outline.outputs[component].values():
                 mapped = self.types.get(output.type or "")
+                # A component or group as a whole stands for its data: a service is called by name, light is no message.
                 if not output.physical and flow_of(mapped.message if mapped else None) == "topic":
                     yield output

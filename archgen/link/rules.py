@@ -1,4 +1,4 @@
-"""The rules of linking that judge references."""
+"""The rules about references, with their pages."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What is well written and cannot be: a period of nothing, a best case above the worst. It is said, and left out.
+"""Report figures that are well-formed but impossible, such as a period of zero or a best case above the worst.
 
-What follows from a figure that cannot be is noise: later stages see it as not written.
+They are left out of the model: whatever would follow from an impossible figure is noise.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _UNKNOWN = "leave it out where it is not known"
 
 
 def sound(timing: Timing, element: str, found: list[Diagnostic]) -> Timing:
-    """Report what makes no sense in a timing, and give the rest of it."""
+    """Report what makes no sense in a timing, and return the timing without it."""
     dropped: dict[str, Any] = {}
     for key, finding in senseless(timing, element):
         found.append(finding)
@@ -29,7 +29,7 @@ def sound(timing: Timing, element: str, found: list[Diagnostic]) -> Timing:
 
 
 def positive(of: Table, key: str, dimension: str, element: str, found: list[Diagnostic]) -> Quantity | None:
-    """Read a quantity that cannot be zero; None, and a finding, where it is."""
+    """Read a quantity that cannot be zero; None, and a diagnostic, if it is."""
     measured = reading.measure(of, key, dimension)
     if measured is None or measured.value:
         return measured
@@ -38,14 +38,14 @@ def positive(of: Table, key: str, dimension: str, element: str, found: list[Diag
 
 
 def no_entry(of: Table, key: str, what: str, element: str, found: list[Diagnostic]) -> None:
-    """Report a list in which nothing stands, where that says nothing."""
+    """Report an empty list where it has no meaning."""
     value = of.get(key)
     if isinstance(value, Listing) and not value.items:
         found.append(_wrong(f"`{key}` names no {what}", value.at, f"name one or more, or leave `{key}` out", element))
 
 
 def latency(of: Table, element: str, found: list[Diagnostic]) -> tuple[Quantity | None, Quantity | None]:
-    """Read the best and the worst latency of a link; no best where it is above the worst."""
+    """Read the best and the worst latency of a link; the best is None, and reported, if it is above the worst."""
     best, worst = reading.measure(of, "best", "duration"), reading.measure(of, "worst", "duration")
     if best is None or worst is None or best.value <= worst.value:
         return best, worst
@@ -56,11 +56,12 @@ def latency(of: Table, element: str, found: list[Diagnostic]) -> tuple[Quantity 
 
 
 def senseless(timing: Timing, element: str) -> Iterator[tuple[str, Diagnostic]]:
-    """Say what makes no sense in a timing: the keys to leave out, and why."""
+    """Yield what makes no sense in a timing: the key to leave out, and the diagnostic that says why."""
     places = timing.places
     for key, quantity in (("period", timing.period), ("rate", timing.rate)):
         if quantity is not None and quantity.value == 0:
             yield key, _wrong(f"a {key} cannot be zero", places[key], _UNKNOWN, element)
+    # Of two figures that contradict each other one is dropped: the rate here, the best case below.
     if timing.period is not None and timing.rate is not None:
         label = Label(places["period"], "the period")
         cure = "write one of them: each follows from the other"

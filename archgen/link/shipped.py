@@ -1,4 +1,4 @@
-"""The type mapper that ships with archgen (ros_type_mapper.yaml), as one distribution has it."""
+"""Load the type mapper that ships with archgen (ros_type_mapper.yaml), for one distribution."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from archgen.model.mapping import Type
 
 @cache
 def shipped_types(distro: str | None) -> Mapping[str, Type]:
-    """Give the shipped types by their names, with the messages of a distribution.
+    """Return the shipped types by name, with the messages of a distribution; read once, and read-only.
 
-    Reading them costs some milliseconds: ask only when the project uses a type that it does not map. Without a
-    distribution, and for one that the file does not name, an entry's plain message counts.
+    Without a distribution, and for one that an entry does not name, the entry's plain message counts.
     """
     found = dict[str, Type]()
     for name, entry in _entries().items():
@@ -32,6 +31,7 @@ def shipped_types(distro: str | None) -> Mapping[str, Type]:
 def _entries() -> dict[str, dict[str, Any]]:
     import yaml
 
+    # Not archgen's own parser: the file ships with archgen, and no position in it is ever reported.
     loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
     text = resources.path("ros_type_mapper.yaml").read_text(encoding="utf-8")
     types: dict[str, dict[str, Any]] = yaml.load(text, loader)["types"]  # noqa: S506  # the base loader makes only text

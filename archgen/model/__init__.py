@@ -1,1 +1,1 @@
-"""The model: what an architecture consists of, as frozen plain data. It knows nothing of files or formats."""
+"""The model: the elements of an architecture as frozen plain data. It knows nothing of files or formats."""

@@ -1,4 +1,4 @@
-"""The whole architecture: both levels, the mapping between them, and what stands around them."""
+"""The architecture: components, nodes, the mapping between them, and requirements, partners, chains and views."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from archgen.model.review import Review
 from archgen.source import NOWHERE, Span
 
 
+# Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
+# files equals what it was. Where the place counts, too, it has to be compared explicitly (timing/analyse does).
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One pair of an output and an input that a connection makes, by their complete ids."""
+    """A pair of output and input that a connection joins, by their complete ids."""
 
     output: str
     input: str
@@ -35,7 +37,7 @@ class Partner:
     description: str | None = None
     contact: str | None = None
     reviewers: tuple[str, ...] = ()
-    """Who reviews its files, as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
+    """The reviewers of its files as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
@@ -64,7 +66,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """One element of a chain's `through`: complete id of a node, a component or an output."""
+    """One element of a chain's `through`: the complete id of a node, a component or an output."""
 
     kind: Literal["node", "component", "output"]
     id: str
@@ -73,7 +75,7 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """A chain of effect from a source to a reaction, with the deadline (ns) that it must meet."""
+    """A cause-effect chain from a source to a reaction, with its deadline (ns)."""
 
     id: str
     title: str
@@ -82,12 +84,12 @@ class Chain:
     requirements: tuple[str, ...] = ()
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
-    """What was written in `through` and names nothing: of such a chain nothing can be said."""
+    """The entries of `through` that name no element: such a chain is not judged."""
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A picture that the project asks for: what a selector shows."""
+    """A diagram that the project defines: the part of the architecture that a selector selects."""
 
     id: str
     title: str
@@ -101,7 +103,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """A flow that the project forbids, as two selectors."""
+    """A flow that the project forbids, from what one selector selects to what another selects."""
 
     id: str
     title: str
@@ -114,7 +116,7 @@ class Policy:
 
 @dataclass(frozen=True, slots=True)
 class ProjectInfo:
-    """What the project says of itself."""
+    """The project's own id, title, version and description."""
 
     id: str
     title: str
@@ -125,12 +127,12 @@ class ProjectInfo:
 
 @dataclass(frozen=True, slots=True)
 class Architecture:
-    """An architecture, linked. Mappings keep the order of first appearance.
+    """An architecture with all references resolved. Mappings keep the order of first appearance.
 
-    `components`, `inputs` and `outputs` are the same objects that hang below `groups`, by complete id. `edges` are all
-    pairs that the connections make, services and actions included (there the output is the server's). Low level:
-    `nodes` (with the planned ones that `transform` adds), `endpoints` in order of node, `topics` by absolute name and
-    flow: what `transform.derive` fills in.
+    `components`, `inputs` and `outputs` are the same objects as below `groups`, by complete id. `edges` are all pairs
+    that the connections make, services and actions included (there the output is the server's). `transform` fills in
+    the low level: planned nodes in `nodes`, `endpoints` in the order of nodes, and `topics` by absolute name (with the
+    flow behind the name if a topic and a service share one).
     """
 
     project: ProjectInfo
@@ -148,7 +150,7 @@ class Architecture:
     connections: tuple[Connection, ...] = ()
     edges: tuple[Edge, ...] = ()
     types: Mapping[str, Type] = field(default_factory=dict)
-    """Every type that is declared or used, by its name; message None where it is not mapped."""
+    """Every type that is declared or used, by name; its message is None if it is not mapped."""
     nodes: Mapping[str, Node] = field(default_factory=dict)
     hosts: Mapping[str, Host] = field(default_factory=dict)
     containers: Mapping[str, Container] = field(default_factory=dict)
@@ -161,20 +163,20 @@ class Architecture:
     topics: Mapping[str, Topic] = field(default_factory=dict)
     interfaces: Interfaces = field(default_factory=Interfaces)
     partial: bool = False
-    """A file could not be read at all: what nobody seems to use may be used there."""
+    """Whether a file could not be read at all. Then no rule reports something as unused: that file may use it."""
     lost: frozenset[str] = frozenset()
-    """The keys of what could not be read: of what they may declare no rule says that it is unknown."""
+    """The keys of entries that could not be read. No rule reports a name as unknown that they may declare."""
     suspects: frozenset[str] = frozenset()
-    """Complete ids of what references that could not be resolved most likely meant (the guess, or the candidates). No rule
-    says of these that nobody uses them: the reference is reported already."""
+    """The complete ids of the elements that unresolved references most likely mean (the guess, or the candidates). No
+    rule reports these as unused: the reference is reported already."""
 
     def message(self, output: Output) -> str | None:
-        """Give the message of an output by its type, None while unknown (physical outputs have none)."""
+        """Return the message that an output's type is mapped to; None if unknown, or if the output is physical."""
         if output.type is None or output.physical:
             return None
         mapped = self.types.get(output.type)
         return mapped.message if mapped else None
 
     def implementers(self, component: str) -> Iterator[Node]:
-        """Give the nodes that implement a component, by its complete id."""
+        """Yield the nodes that implement the component with this complete id, planned ones included."""
         return (node for node in self.nodes.values() if component in node.implements)

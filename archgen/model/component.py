@@ -1,4 +1,4 @@
-"""The high level: groups of functional components, their ports, requirements and performance."""
+"""The functional level: groups of components, their ports, requirements and performance."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ Direction = Literal["left-right", "top-bottom"]
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How an element's diagram is drawn."""
+    """How the diagram of an element is drawn."""
 
     direction: Direction | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """One reference in an input's `from`: the source as written and what it was resolved to.
+    """One reference in an input's `from`: the source as written, and what it was resolved to.
 
-    `target` is the complete id of a group, a component or an output; `outputs` the ids of the outputs that it stands
-    for (all edges of this connection begin there).
+    `target` is the complete id of a group, a component or an output; `outputs` are the ids of the outputs that it
+    stands for: one edge begins at each of them.
     """
 
     input: str
@@ -40,7 +40,7 @@ class Connection:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """An input of a component. `id` is `group.component.input`; `type` is the type that it expects, if it says so."""
+    """An input of a component. `id` is `group.component.input`; `type` is the type that it expects, if written."""
 
     id: str
     name: str
@@ -52,7 +52,7 @@ class Input:
     optional: bool = False
     description: str | None = None
     from_written: bool = False
-    """Something stands in `from`, whether or not it could be resolved: no rule calls such an input unfed."""
+    """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     type_at: Span = field(default=NOWHERE, compare=False, repr=False)
 
@@ -74,7 +74,7 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Indicator:
-    """One performance indicator of a component."""
+    """A performance indicator of a component; `execution_time` in ns."""
 
     id: str
     title: str
@@ -85,7 +85,7 @@ class Indicator:
 
 @dataclass(frozen=True, slots=True)
 class RequirementUse:
-    """One entry of a `requirements` list: an id (`known` says whether it is declared), or free text."""
+    """One entry of a `requirements` list: a requirement's id (declared or not) if `is_id`, else free text."""
 
     text: str
     is_id: bool
@@ -96,9 +96,8 @@ class RequirementUse:
 class Component:
     """A functional component. `id` is `group.component`.
 
-    `inputs_known` is False while nobody has written `inputs` (unknown), True for `{}` (known to be none); the same for
-    outputs and requirements. Owners are the group's where the component has
-    none; `owner` is the first of them.
+    `inputs_known` is False if `inputs` is not written (unknown), True for `inputs: {}` (known to be none); likewise for
+    outputs and requirements. A component without owners has those of its group; `owner` is the first one.
     """
 
     id: str
@@ -127,7 +126,7 @@ class Component:
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Give all partners who answer for it, the first one first."""
+        """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()
 
 
@@ -148,5 +147,5 @@ class Group:
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Give all partners who answer for it, the first one first."""
+        """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()

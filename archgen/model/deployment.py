@@ -11,7 +11,7 @@ from archgen.source import NOWHERE, Span
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """A computer. `cores` None is unknown."""
+    """A computer. `cores` is None if unknown."""
 
     id: str
     title: str
@@ -23,7 +23,7 @@ class Host:
 
 @dataclass(frozen=True, slots=True)
 class Container:
-    """One process that loads several nodes; one thread is one single-threaded executor."""
+    """A process that loads several nodes. `threads: 1` is a single-threaded executor; None if unknown."""
 
     id: str
     title: str
@@ -34,7 +34,7 @@ class Container:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A network between hosts. Bandwidth in bit/s, latencies in ns."""
+    """A network between hosts. `bandwidth` in bit/s; `best` and `worst` are latencies in ns."""
 
     id: str
     title: str

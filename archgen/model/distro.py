@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 ROS_1 = frozenset({"groovy", "hydro", "indigo", "jade", "kinetic", "lunar", "melodic", "noetic"})
-"""Those that may still run somewhere. Any other name, or none, is taken for ROS 2."""
+"""The ROS 1 distributions that may still be in use. Any other name, or none, counts as ROS 2."""
 
 
 def is_ros_1(distro: str | None) -> bool:
-    """Tell whether a distribution is one of ROS 1."""
+    """Whether a distribution is one of ROS 1; False for None."""
     return distro in ROS_1

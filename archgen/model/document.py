@@ -1,4 +1,4 @@
-"""What documents consist of beside the architecture: the chapters that archgen writes, and those of the project."""
+"""The chapters of documents: those that archgen generates, and those that the project writes."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ GENERATED = (
     "open_points",
     "statistics",
 )
-"""The chapters that archgen writes, by the names that `report.chapters` uses, in their order where nobody says otherwise."""
+"""The generated chapters by their names in `report.chapters`, in their default order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """A chapter that the project wrote: its path in the project, and its CommonMark."""
+    """A chapter that the project wrote: its path relative to the project's folder, and its CommonMark text."""
 
     path: str
     text: str
 
     @property
     def folder(self) -> str:
-        """Give the folder that the chapter's pictures are found from."""
+        """The folder of the chapter, which the paths of its pictures are relative to."""
         return self.path.rpartition("/")[0]

@@ -1,4 +1,7 @@
-"""How far a project was at one commit: what is counted over time."""
+"""The progress of a project over time: what is counted at each commit.
+
+`archgen stats --history` and the cache of history write these as JSON (through `asdict`): the names of fields are keys.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from typing import Literal
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Findings by severity."""
+    """The number of findings by severity."""
 
     error: int = 0
     warning: int = 0
@@ -17,7 +20,7 @@ class Findings:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """The counts of the whole project, of a group or of a partner, as `archgen stats` has them, and its findings."""
+    """The counts of the project, a group or a partner as in `archgen stats`, and the number of its findings."""
 
     scope: Literal["project", "group", "partner"]
     id: str
@@ -33,7 +36,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A project at one commit; the first row is the whole. `day` is that of the committer's clock."""
+    """A project at one commit. The first row is the whole project's; `day` is the date by the committer's clock."""
 
     commit: str
     day: str
@@ -45,13 +48,13 @@ class Point:
 
     @property
     def whole(self) -> Row:
-        """Give the row of the whole project."""
+        """The row of the whole project."""
         return self.rows[0]
 
 
 @dataclass(frozen=True, slots=True)
 class History:
-    """A project over time, oldest first. A shallow clone's is not whole: it begins where the clone does."""
+    """A project over time, oldest first. `whole` is False for a shallow clone, whose history begins later."""
 
     points: tuple[Point, ...] = ()
     by: Literal["revision", "month"] = "revision"

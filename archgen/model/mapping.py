@@ -1,4 +1,4 @@
-"""The type mapper: conceptual types and the ROS messages that carry them."""
+"""Conceptual types, the ROS messages they are mapped to, and the names of messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SHORT = re.compile(r"([a-z][a-z0-9_]*)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A conceptual type and its message (`pkg/msg/Name`), None while nobody mapped it."""
+    """A conceptual type. `message` is the ROS message it is mapped to (`pkg/msg/Name`), if any; `size` in B."""
 
     name: str
     message: str | None = None
@@ -27,13 +27,13 @@ class Type:
     response: str | None = None
     feedback: str | None = None
     origin: Literal["project", "shipped", "message"] = "project"
-    """Who maps it: the project, archgen's type mapper, or the name itself, being a message."""
+    """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     message_at: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
 def full_message(text: str) -> str | None:
-    """Give a message's full name (`sensor_msgs/Image` is `sensor_msgs/msg/Image`), None where the text is none."""
+    """Return a message's full name (`sensor_msgs/msg/Image` for `sensor_msgs/Image`); None if the text is none."""
     if _FULL.match(text):
         return text
     short = _SHORT.match(text)
@@ -41,6 +41,6 @@ def full_message(text: str) -> str | None:
 
 
 def flow_of(message: str | None) -> Literal["topic", "service", "action"]:
-    """Say what flows for a full message name: its middle part decides; an unknown message counts as a topic."""
+    """Return the kind of flow of a full message name, by its middle part; an unknown message (None) is a topic."""
     middle = message.split("/")[1] if message else "msg"
     return {"srv": "service", "action": "action"}.get(middle, "topic")  # type: ignore[return-value]

@@ -1,7 +1,7 @@
-"""Dotted names: which elements a path may mean whose leading parts are left out.
+"""Resolve dotted paths, whose leading parts may be left out, to elements.
 
-One look-up for references in files and for selectors. Every end of every path is a key, so that no search walks over the
-elements.
+References in files and selectors share these rules. Every ending of every complete id is a key of the index, so that no
+search walks over the elements.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 
 LISTED = 8
-"""How many candidates are given by name; there may be ten thousand."""
+"""The number of candidates that are listed; there may be ten thousand."""
 
 
 def made_title(name: str) -> str:
-    """Make the title of an element that has none from its id: `object_recognition` is "Object Recognition"."""
+    """Make the title of an element without one from its name: "Object Recognition" for `object_recognition`."""
     return " ".join(word[:1].upper() + word[1:] for word in name.split("_") if word)
 
 
 class Named(NamedTuple):
-    """An element: its kind (`group`, `component`, `output`, ...) and its complete id."""
+    """A reference to an element: its kind (`group`, `component`, `output`, ...) and its complete id."""
 
     kind: str
     id: str
@@ -30,9 +30,9 @@ class Named(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a path may mean: one element, none, or several (`count` of them, the first few by name).
+    """The elements that a path may mean: none, one, or several. `count` is their number, `elements` the first few.
 
-    `hidden` are the candidates that the complete path of another element hides.
+    `hidden_elements` are further candidates that lost against the element whose complete id the path is.
     """
 
     elements: tuple[Named, ...]
@@ -41,7 +41,7 @@ class Found:
 
     @property
     def one(self) -> Named | None:
-        """Give the element, if it is one."""
+        """The element if there is exactly one, else None."""
         return self.elements[0] if self.count == 1 else None
 
 
@@ -49,28 +49,30 @@ NOTHING = Found((), 0)
 
 
 class Names:
-    """The complete ids of each kind of element, found by their ends."""
+    """Finds elements by any ending of their complete ids."""
 
     __slots__ = ("_complete", "_ends", "_ends_in_group")
 
     def __init__(self, ids: Mapping[str, Iterable[str]]) -> None:
-        """Take the complete ids by kind."""
+        """Index the complete ids of each kind."""
         self._complete = {kind: frozenset(paths) for kind, paths in ids.items()}
+        # By kind: ids by ending, and ids by group and ending. Without the second, candidates in a group would have to
+        # be filtered out of all those in the project.
         self._ends: dict[str, dict[str, list[str]]] = {}
         self._ends_in_group: dict[str, dict[tuple[str, str], list[str]]] = {}
         for kind, paths in ids.items():
             self._ends[kind], self._ends_in_group[kind] = _ends(paths)
 
     def find(self, words: str, kinds: Sequence[str], *, component: str | None = None) -> Found:
-        """Look a path up among some kinds, as `component` (its complete id) writes it, or somebody outside all groups.
+        """Resolve a path among some kinds, as written in a component (by complete id) or outside all groups (None).
 
-        A complete path is that element. Else the candidates end in the words; one word never means the writer or an
-        output of its own; those in the writer's group win over all others.
+        A complete id means that element. Otherwise the candidates are the elements whose ids end in the path, and those
+        in the component's own group win over others. A path of one word never means the component or its own output.
         """
         ends = {kind: paths for kind in kinds if (paths := self._ends[kind].get(words))}
         if len(ends) == 1 and (component is None or "." in words):
             ((kind, paths),) = ends.items()
-            if len(paths) == 1:  # nearly always
+            if len(paths) == 1:  # a short cut for what is nearly always the case; `_choose_match` finds the same
                 return Found((Named(kind, paths[0]),), 1)
         return self._choose(words, kinds, ends, component) if ends else NOTHING
 
@@ -78,6 +80,7 @@ class Names:
         self, words: str, kinds: Sequence[str], ends: Mapping[str, Sequence[str]], component: str | None
     ) -> Found:
         own = self._own(words, component)
+        # The order of `kinds` decides between two elements of different kinds that have the same complete id.
         for kind in kinds:
             if words in self._complete[kind]:
                 hidden = tuple(name for name in _take(ends, own).elements if name != (kind, words))
@@ -90,7 +93,7 @@ class Names:
         return _take(ends, own)
 
     def _own(self, words: str, component: str | None) -> tuple[Named, ...]:
-        """Name what one word never means: the writer itself and its output of that name."""
+        """Return what a path of one word never means: the component that writes it, and its output of that name."""
         if component is None or "." in words:
             return ()
         own: list[Named] = []
@@ -101,19 +104,20 @@ class Names:
         return tuple(own)
 
     def is_complete(self, kind: str, path: str) -> bool:
-        """Tell whether a path is the complete id of an element."""
+        """Whether a path is the complete id of an element of this kind."""
         return path in self._complete[kind]
 
     def ends(self, kind: str) -> Iterable[str]:
-        """Give every path that may stand for elements of a kind, each once."""
+        """Return every path that matches some element of a kind, each once."""
         return self._ends[kind]
 
     def ending(self, kind: str, words: str) -> Sequence[str]:
-        """Give the complete ids of a kind that end in some words."""
+        """Return the complete ids of a kind that end in a path."""
         return self._ends[kind].get(words, ())
 
 
 def _ends(paths: Iterable[str]) -> tuple[dict[str, list[str]], dict[tuple[str, str], list[str]]]:
+    """Index ids by their endings, and by group and ending; the complete id is an ending only in the first index."""
     everywhere: dict[str, list[str]] = {}
     in_group: dict[tuple[str, str], list[str]] = {}
     for path in paths:
@@ -127,7 +131,8 @@ def _ends(paths: Iterable[str]) -> tuple[dict[str, list[str]], dict[tuple[str, s
 
 
 def _take(found: Mapping[str, Sequence[str]], own: tuple[Named, ...]) -> Found:
-    """Name the first few and count the rest; `own` are left out. A long list is not walked through."""
+    """Return the first few candidates and the number of all, without the excluded ones."""
+    # There may be thousands of candidates: they are counted by the lengths of their lists, never walked through.
     left_out = [name for name in own if name.kind in found]
     names = (Named(kind, path) for kind, paths in found.items() for path in paths)
     first = tuple(islice((name for name in names if name not in left_out), LISTED))

@@ -1,4 +1,4 @@
-"""The low level: ROS nodes and the endpoints with which they use topics, services and actions."""
+"""The implementation level: ROS nodes, and the endpoints through which they use topics, services and actions."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Flow = Literal["topic", "service", "action"]
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """Quality of service as it counts: the profile's values with the written ones laid over.
+    """Effective quality of service: the values of the profile, overridden by those that are written.
 
-    Durations are in ns; None is unlimited (deadline, lifespan, lease duration) or the profile's own (depth).
-    `written` is False where nobody wrote `qos`: the profile `default` counts, and a mismatch is a warning only.
+    Durations are in ns; None is unlimited (deadline, lifespan, lease duration) or the middleware's choice (depth).
+    `written` is False if no `qos` is written: then the profile `default` counts, and a mismatch is only a warning.
     """
 
     profile: str = "default"
@@ -40,10 +40,10 @@ class Qos:
 
 @dataclass(frozen=True, slots=True)
 class PortUse:
-    """An entry below `publishes`, `subscribes`, `serves` or `calls` as it was written, its port resolved.
+    """An entry below `publishes`, `subscribes`, `serves` or `calls` as written, with its port resolved.
 
-    `port` is the complete id of the component's output or input; None below `internal` (then `key` is just a name).
-    `topics` are the names as written (several only for topics), empty where left out.
+    `port` is the complete id of the component's output or input; None below `internal`, where `key` is only a name.
+    `topics` are the names as written (several only for topics), empty if left out; `topic_places` are their spans.
     """
 
     use: Use
@@ -60,10 +60,9 @@ class PortUse:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A ROS node. `implements` holds complete component ids; `written` is False for the planned node that a component
-    without nodes gets.
+    """A ROS node. `implements` holds complete component ids; `written` is False for planned nodes that archgen adds.
 
-    `uses` is what was written; what the node really exposes are the architecture's endpoints.
+    `uses` are the entries as written; what the node exposes in the end are the architecture's endpoints.
     """
 
     id: str
@@ -72,7 +71,7 @@ class Node:
     description: str | None = None
     owner: str | None = None
     co_owners: tuple[str, ...] = ()
-    """Who else answers for it: as written, else all further owners of its components."""
+    """Further owners: as written, else all further owners of its components."""
     name: str = ""
     namespace: str = "/"
     kinds: tuple[NodeKind, ...] = ("node",)
@@ -81,13 +80,13 @@ class Node:
     plugin: str | None = None
     container: str | None = None
     host: str | None = None
-    """Its own, or its container's."""
+    """The node's own host, else its container's."""
     status: NodeStatus | None = None
     uses: tuple[PortUse, ...] = ()
     uses_known: tuple[Use, ...] = ()
-    """Which of publishes, subscribes, serves, calls somebody wrote (`{}` counts)."""
+    """Which of `publishes`, `subscribes`, `serves`, `calls` are written (`{}` counts)."""
     timing: Mapping[str, Timing] = field(default_factory=dict)
-    """By component id (one entry for each activity), or by "" for a node that implements nothing."""
+    """By component id (one entry for each activity), or by "" for a node that implements no component."""
     parameters: Mapping[str, object] = field(default_factory=dict)
     parameter_files: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
@@ -99,22 +98,22 @@ class Node:
 
     @property
     def full_name(self) -> str:
-        """Namespace and name as ROS shows them: `/perception/object_recognizer`."""
+        """The namespace and name as ROS shows them: `/perception/object_recognizer`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Give all partners who answer for it, the first one first."""
+        """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()
 
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """One use of one topic, service or action by one node, derived or written.
+    """The use of one topic, service or action by one node, written or derived.
 
-    `name` is absolute (`/camera/rgbd`). `port` is the complete id of the component's port, None for internal ones.
-    `message` is the full message (`pkg/msg/Name`), None while nobody named it. `written` says whether the node itself
-    names the port. `sources` (for subscribes and calls) are the outputs whose messages arrive here.
+    `name` is absolute (`/camera/rgbd`). `port` is the complete id of the component's port, None for internal endpoints.
+    `message` is the full name (`pkg/msg/Name`), None if unknown. `written`: the node itself names the port;
+    `name_written`: also the topic. `sources` (for subscribes and calls) are the ids of the outputs that arrive here.
     """
 
     node: str
@@ -136,12 +135,12 @@ class Endpoint:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """A topic, service or action by its absolute name, with all who use it (indices into nothing: the endpoints)."""
+    """A topic, service or action with its absolute name, and the endpoints that use it; `size` in B."""
 
     name: str
     flow: Flow
     messages: tuple[str, ...]
-    """Distinct full names, in order of appearance; more than one is a conflict."""
+    """Distinct full names in order of appearance; more than one is a conflict."""
     types: tuple[str, ...]
     writers: tuple[Endpoint, ...]
     """Publishers, or servers."""
@@ -149,4 +148,4 @@ class Topic:
     """Subscribers, or clients."""
     size: Quantity | None = None
     shared: bool = False
-    """/tf and its like, and the project's `ros.shared_topics`."""
+    """Whether all nodes share it: /tf and the like, and the project's `ros.shared_topics`."""

@@ -1,4 +1,4 @@
-"""The profiles of quality of service: what each stands for, as ROS 2's middleware interface has them.
+"""The QoS profiles of ROS 2's middleware interface, and their values.
 
 Source: rmw/include/rmw/qos_profiles.h, https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html
 """
@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from archgen.model.node import Qos, Use
 
+# What a profile does not set has the default of `Qos`, which is that of `default`.
 PROFILES: Mapping[str, Qos] = {
     "default": Qos("default"),
     "sensor_data": Qos("sensor_data", reliability="best_effort", depth=5),
@@ -21,9 +22,9 @@ PROFILES: Mapping[str, Qos] = {
 
 
 def profile(name: str, use: Use) -> Qos:
-    """Give a profile's values for one side. An unknown profile counts as `default`.
+    """Return the values of a profile for one side. An unknown profile counts as `default`.
 
-    `system_default` is the middleware's choice; DDS says reliable for those who write and best effort for those who read.
+    `system_default` is the middleware's choice: DDS defaults to reliable for writers and best effort for readers.
     """
     found = PROFILES.get(name, PROFILES["default"])
     if name == "system_default" and use == "subscribes":

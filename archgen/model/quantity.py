@@ -10,7 +10,7 @@ from functools import lru_cache
 from archgen.frozen import dataclass
 
 DIGITS = 18
-"""So many may stand before the point, and so many behind it."""
+"""The maximal number of digits before the decimal point, and behind it."""
 _NUMBER = re.compile(rf"([0-9]{{1,{DIGITS}}}(?:\.[0-9]{{1,{DIGITS}}})?) ?([A-Za-z/]+)\Z", re.ASCII)
 _BYTES = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
 UNITS: dict[str, dict[str, int]] = {
@@ -29,12 +29,15 @@ UNITS: dict[str, dict[str, int]] = {
         **{f"{unit}/s": 8 * factor for unit, factor in _BYTES.items()},
     },
 }
-"""The units of each dimension, as multiples of its base: ns, Hz, B, bit/s. Case counts."""
+"""The units of each dimension as multiples of its base unit: ns, Hz, B, bit/s. Case-sensitive."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """An exact value in its dimension's base unit (ns, Hz, B or bit/s), and the text to show for it (`200 ms`)."""
+    """An exact value in its dimension's base unit (ns, Hz, B or bit/s), and the text as written (`200 ms`).
+
+    Quantities are compared by value only: `1 s` equals `1000 ms`.
+    """
 
     value: Fraction
     text: str = field(compare=False)
@@ -43,9 +46,10 @@ class Quantity:
         return self.text
 
 
+# The same quantities come up again and again, and in each version of a project that is compared.
 @lru_cache(4096)
 def parse(text: str, dimension: str) -> Quantity | None:
-    """Read `200 ms`, `0.5 kHz`, `12 kB`, `1 Gbit/s`; None where it is not a quantity of this dimension."""
+    """Parse `200 ms`, `0.5 kHz`, `12 kB`, `1 Gbit/s`; return None if it is not a quantity of this dimension."""
     match = _NUMBER.match(text)
     if match is None:
         return None

@@ -1,4 +1,4 @@
-"""How a project judges changes: against which branch, how much a broken partner matters, what was agreed."""
+"""How a project reviews changes: the branch to compare with, the severity of breaking changes, accepted changes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from archgen.source import NOWHERE, Span
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """A breaking change that was agreed: the element as the diff names it, why, and which key where only that one is meant."""
+    """A breaking change that was agreed on: the element as the diff names it, and the reason.
+
+    `key` limits the acceptance to one key of the element; None accepts all changes of it.
+    """
 
     element: str
     reason: str
@@ -21,9 +24,9 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Review:
-    """The section `review`. `main` is the branch that changes are compared with, None where git tells.
+    """The section `review`. `main` is the branch that changes are compared with, None to ask git.
 
-    `breaking` is how much a change matters that breaks another partner's part, None where nobody says. `backends` are the
+    `breaking` is the severity of a change that breaks another partner's part, None if not written. `backends` are the
     project's own backends that may run in the review of a pull request.
     """
 

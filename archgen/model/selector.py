@@ -1,6 +1,6 @@
-"""What a selector selects in an architecture: components and nodes.
+"""Evaluate selectors: which components and nodes of an architecture they select.
 
-How selectors are written is in `model.selector_words`, what each key names in `model.selector_keys`.
+`model.selector_parser` parses selectors, `model.selector_keys` finds what a key such as `tag:` names.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ __all__ = ["Problem", "Selecting", "Selection", "parse", "select"]
 
 _PATHS = ("group", "component", "output")
 _MOST_GUESSED = 100_000
-"""Among more names nobody is helped by a guess that takes seconds."""
+"""No guess is made among more names than these: it would take seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What is selected, by complete ids; nodes of selected components are, and components of selected nodes.
+    """The selected components and nodes by complete id: with a component its nodes, with a node its components.
 
-    `named` are the elements that paths name, groups and outputs included, in the order of the words.
+    `named_elements` are the elements that paths name, groups and outputs included, in the order of the words.
     """
 
     components: frozenset[str] = frozenset()
@@ -40,21 +40,21 @@ class Selection:
 def select(
     text: str, architecture: Architecture, findings: Mapping[str, frozenset[str]] | None = None
 ) -> tuple[Selection, tuple[Problem, ...]]:
-    """Evaluate one selector. `findings` are the ids of the elements that each rule has found, for `finding:`."""
+    """Evaluate one selector. `findings` are the ids of the elements with findings of each rule, for `finding:`."""
     return Selecting(architecture, findings or {}).select(text)
 
 
 @dataclass()
 class Selecting:
-    """The look-ups of an architecture, made when a word first asks for them: keep it to evaluate several selectors."""
+    """Evaluates selectors on one architecture. Its look-ups are made on first use: keep it for several selectors."""
 
     architecture: Architecture
     findings: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def select(self, text: str) -> tuple[Selection, tuple[Problem, ...]]:
-        """Evaluate a selector: all words without `-` together, or everything, without those with `-`.
+        """Evaluate a selector: the union of the words without `-` (everything if there are none), minus those with `-`.
 
-        Where something is wrong (not only a warning) nothing is selected.
+        With an error (not only warnings) nothing is selected.
         """
         read = parse(text)
         problems = list(read.problems)
@@ -64,11 +64,13 @@ class Selecting:
             return Selection(), tuple(problems)
         if not wanted:
             wanted = [Hit(frozenset(self.architecture.components), frozenset(self.architecture.nodes))]
+        # The order of words does not matter: `-` is applied last, to all of them.
         return self._without(wanted, refused), tuple(problems)
 
     def _without(self, wanted: Sequence[Hit], refused: Sequence[Hit]) -> Selection:
-        """Take words out. A node goes where it is refused itself, or with the last of its components."""
+        """Subtract hits from others. A node goes if it is refused itself, or if the last of its components is."""
         gone = frozenset[str]().union(*(hit.components for hit in refused))
+        # Nodes that refused words bring only by their components stay as long as another of their components does.
         gone_nodes = frozenset[str]().union(*(hit.nodes for hit in refused if hit.of_nodes))
         components = frozenset[str]().union(*(hit.components for hit in wanted)) - gone
         nodes = frozenset[str]().union(*(hit.nodes for hit in wanted)) - gone_nodes
@@ -81,24 +83,24 @@ class Selecting:
 
     @cached_property
     def names(self) -> Names:
-        """Find elements by their paths."""
+        """Resolves paths to elements."""
         found = self.architecture
         kinds = {"group": found.groups, "component": found.components, "output": found.outputs, "input": found.inputs}
         return Names({**kinds, "node": found.nodes})
 
     @cached_property
     def components(self) -> graph.Graph:
-        """Follow the flow between components."""
+        """The flow between components."""
         return graph.components(self.architecture)
 
     @cached_property
     def nodes(self) -> graph.Graph:
-        """Follow the flow between nodes."""
+        """The flow between nodes."""
         return graph.nodes(self.architecture)
 
     @cached_property
     def nodes_of(self) -> Mapping[str, list[str]]:
-        """Find the nodes that implement a component."""
+        """The ids of the nodes that implement each component."""
         found: dict[str, list[str]] = defaultdict(list)
         for node in self.architecture.nodes.values():
             for component in node.implements:
@@ -107,7 +109,7 @@ class Selecting:
 
     @cached_property
     def readers(self) -> Mapping[str, list[str]]:
-        """Find the components that read an output."""
+        """The ids of the components that read each output."""
         found: dict[str, list[str]] = defaultdict(list)
         for edge in self.architecture.edges:
             found[edge.output].append(self.architecture.inputs[edge.input].component)
@@ -122,6 +124,8 @@ class Selecting:
         return self._both_levels(hit)
 
     def _spread(self, hit: Hit, before: int | None, after: int | None) -> Hit:
+        """Add what feeds a hit and what it feeds, up to some steps each; None is any number of steps."""
+        # Steps are steps between nodes only if the word names nodes and nothing else.
         if hit.of_nodes:
             reached = graph.reach(self.nodes.before, hit.nodes, before) | graph.reach(
                 self.nodes.after, hit.nodes, after
@@ -132,14 +136,14 @@ class Selecting:
         return Hit(whole.components.union(behind, self._ahead(whole, after)), whole.nodes, hit.named)
 
     def _ahead(self, hit: Hit, steps: int | None) -> dict[str, int]:
-        """Give what is fed; from an output on, only its own readers are the first step."""
+        """Return the components that a hit feeds, with their steps; the first step of outputs is their own readers."""
         if not hit.outputs or steps == 0:
             return graph.reach(self.components.after, hit.components, steps)
         starts = (reader for output in hit.outputs for reader in self.readers.get(output, ()))
         return graph.reach(self.components.after, starts, None if steps is None else steps - 1)
 
     def _between(self, first: Hit, last: Hit) -> Hit:
-        """Give all ways from one to the other: what the first feeds of what feeds the last."""
+        """Return all ways from one hit to another: what is both downstream of the first and upstream of the last."""
         named = (*first.named, *last.named)
         if first.of_nodes and last.of_nodes:
             ahead = graph.reach(self.nodes.after, first.nodes)
@@ -149,13 +153,14 @@ class Selecting:
             first, last = self._both_levels(first), self._both_levels(last)
             behind = graph.reach(self.components.before, last.components).keys()
             way = self._ahead(first, None).keys() & behind
+            # The components of outputs are no part of what the outputs feed, but where the way begins.
             if first.outputs and way:
                 way |= first.components
             hit = Hit(frozenset(way), frozenset(), named)
         return self._both_levels(hit)
 
     def _both_levels(self, hit: Hit) -> Hit:
-        """Add the nodes of components, and the components of nodes."""
+        """Add the nodes of the components, and the components of the nodes."""
         nodes = {node for component in hit.components for node in self.nodes_of.get(component, ())}
         crossing = hit.nodes if hit.crosses else ()
         implemented = (c for node in crossing for c in self.architecture.nodes[node].implements)
@@ -164,6 +169,7 @@ class Selecting:
     def _atom(self, atom: Atom, problems: list[Problem]) -> Hit:
         if atom.key is not None:
             hit = by_key(self.architecture, atom.key, atom.value, self.findings)
+            # Only a warning, unlike a path that names nothing: a tag may be selected before anything has it.
             if not hit.components and not hit.nodes:
                 message = f"nothing has `{atom.key}:{atom.value}`"
                 problems.append(Problem(message, atom.start, atom.end, "warning"))
@@ -176,7 +182,8 @@ class Selecting:
         return self._path(atom, problems)
 
     def _path(self, atom: Atom, problems: list[Problem]) -> Hit:
-        """Follow a path as references do; what no group, component or output is called may be a node or an input."""
+        """Resolve a path by the rules of references. If no group, component or output fits, try nodes, then inputs."""
+        # Kinds are tried in this order, so that an input or a node never makes the path of a component ambiguous.
         found = self.names.find(atom.value, _PATHS)
         if not found.count:
             found = self.names.find(atom.value, ("node",))
@@ -195,12 +202,14 @@ class Selecting:
         return self._hit(found.elements if found.count == 1 else ())
 
     def _guess(self, words: str) -> str | None:
+        """Return the path with as many parts that is most similar, or None."""
+        # Only among paths with as many parts: `camera` is no slip for `sensing.camera`, which it would have found.
         length = words.count(".")
         pool = {path for kind in (*_PATHS, "node") for path in self.names.ends(kind) if path.count(".") == length}
         return closest(words, pool) if len(pool) <= _MOST_GUESSED else None
 
     def _matching(self, pattern: str) -> list[Named]:
-        """Find the elements whose paths end in a pattern."""
+        """Return the elements whose ids end in a pattern, part by part."""
         parts = pattern.split(".")
         found = self.architecture
         kinds = {"group": found.groups, "component": found.components, "output": found.outputs, "node": found.nodes}
@@ -209,6 +218,7 @@ class Selecting:
         ]
 
     def _hit(self, named: Iterable[Named]) -> Hit:
+        """Return the components and nodes of some elements; a group stands for all of its components."""
         elements = tuple(named)
         components = set[str]()
         for name in elements:
@@ -220,6 +230,7 @@ class Selecting:
                 components.add(name.id.rpartition(".")[0])
         nodes = frozenset(name.id for name in elements if name.kind == "node")
         outputs = tuple(name.id for name in elements if name.kind == "output")
+        # `outputs` is set only if the word names nothing else, see `SelectorHit.outputs`.
         whole = len(outputs) == len(elements)
         return Hit(frozenset(components), nodes, elements, outputs if whole else (), bool(nodes) and not components)
 

@@ -1,4 +1,4 @@
-"""The keys of selectors: which components and nodes `tag:`, `owner:`, `type:` and the others name."""
+"""The keys of selectors: which components and nodes `tag:`, `owner:`, `type:` and the others select."""
 
 from __future__ import annotations
 
@@ -13,20 +13,24 @@ from archgen.model.node import Node
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """What an atom names. `of_nodes`: it speaks of nodes only, so that steps are steps between nodes."""
+    """The elements that a path or key selects. `only_nodes`: it names nodes only, so that steps are between nodes."""
 
     components: frozenset[str]
     nodes: frozenset[str]
     named: tuple[Named, ...] = ()
     outputs: tuple[str, ...] = ()
-    """Given where only outputs are named: what they feed is less than what their components feed."""
+    """The ids of outputs if nothing else is named: they feed less than their components do."""
     of_nodes: bool = False
     crosses: bool = True
-    """The components of these nodes are meant, too."""
+    """Whether the components of the nodes are selected, too."""
 
 
 def wild(pattern: str, text: str) -> bool:
-    """Compare a text with a pattern in which `*` stands for any run; takes time in proportion to the text."""
+    """Whether a text matches a pattern in which `*` stands for any characters, none included.
+
+    Each piece is searched from the end of the one before it, so that the time is in proportion to the text. A regular
+    expression made from the pattern would backtrack.
+    """
     first, *rest = pattern.split("*")
     if not rest:
         return pattern == text
@@ -43,7 +47,7 @@ def wild(pattern: str, text: str) -> bool:
 
 
 def by_key(architecture: Architecture, key: str, value: str, findings: Mapping[str, frozenset[str]]) -> Hit:
-    """Give the components and nodes that a key's value names; `*` stands for any run."""
+    """Return the components and nodes that a key's value selects; `*` in it stands for any characters."""
     if key == "type":
         return Hit(frozenset(_with_type(architecture, " ".join(value.split()))), frozenset())
     if key == "tag":
@@ -55,6 +59,7 @@ def by_key(architecture: Architecture, key: str, value: str, findings: Mapping[s
         (c.id for c in architecture.components.values() if _any(value, of_component(c))) if of_component else ()
     )
     nodes = (n.id for n in architecture.nodes.values() if _any(value, of_node(n))) if of_node else ()
+    # A node of one partner may implement components of others: `owner:` selects the node without those components.
     return Hit(frozenset(components), frozenset(nodes), of_nodes=of_component is None, crosses=key != "owner")
 
 
@@ -85,7 +90,7 @@ _NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
 
 
 def _tagged(architecture: Architecture, value: str) -> Hit:
-    """Find what has a tag: itself, through its group, through a requirement that it serves, or through its host."""
+    """Find what has a tag itself, through its group, through a requirement that it serves, or through its host."""
     groups = {g.id for g in architecture.groups.values() if _any(value, g.tags)}
     requirements = {r.id for r in architecture.requirements.values() if _any(value, r.tags)}
     hosts = {h.id for h in architecture.hosts.values() if _any(value, h.tags)}
@@ -99,7 +104,7 @@ def _tagged(architecture: Architecture, value: str) -> Hit:
 
 
 def _with_type(architecture: Architecture, value: str) -> Iterable[str]:
-    """Name the components that send a type (or message), expect it, or read an output of it."""
+    """Yield the components that send a type (or message), expect it, or read an output with it."""
     names = {t.name for t in architecture.types.values() if wild(value, t.name) or _any(value, (t.message,))}
     sending = {output.id for output in architecture.outputs.values() if output.type in names}
     yield from (architecture.outputs[output].component for output in sending)
@@ -108,7 +113,7 @@ def _with_type(architecture: Architecture, value: str) -> Iterable[str]:
 
 
 def _found(architecture: Architecture, elements: Iterable[str]) -> Hit:
-    """Find the components and nodes that findings concern; one on a group concerns its components."""
+    """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
     for element in elements:
         port = architecture.inputs.get(element) or architecture.outputs.get(element)

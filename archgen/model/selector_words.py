@@ -1,11 +1,11 @@
-"""The selector language, read: `2+driving.safety_supervisor tag:safety -sensing.*`.
+"""The parser of the selector language: `2+driving.safety_supervisor tag:safety -sensing.*`.
 
     selector = word {blank word}
     word     = ["-"] term
     term     = [N]"+"atom | atom"+"[N] | [N]"+"atom"+"[N] | atom | atom".."atom
     atom     = path | key":"value
 
-What the words mean is in `model.selector`.
+`model.selector_evaluation` says what the words mean.
 """
 
 from __future__ import annotations
@@ -32,10 +32,12 @@ KEYS = (
     "node",
 )
 ALL = -1
-"""As many steps as there are."""
+"""Any number of steps."""
+# Blanks separate words except within quotes. A quote that is not closed runs to the end, and is reported.
 _WORD = re.compile(r'(?:[^\s"]|"[^"]*"?)+')
 _STEPS_BEFORE = re.compile(r"([0-9]*)\+")
 _STEPS_AFTER = re.compile(r"\+([0-9]*)")
+# A plain value ends before `..`, the mark of a range; single dots belong to it.
 _ATOM = re.compile(
     r'(?:(?P<key>[^\s:+.",]+):)?(?:"(?P<quoted>[^"]*)"|(?P<plain>(?:(?!\.\.)[^\s+":,])+))',
 )
@@ -44,7 +46,7 @@ _DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with a selector, from `start` to `end` (in characters, from 0, the end not included)."""
+    """A mistake in a selector, from `start` to `end` (in characters from 0, `end` exclusive)."""
 
     message: str
     start: int
@@ -55,7 +57,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """A path (`key` None), or a key with its value."""
+    """A path (then `key` is None), or a key with its value."""
 
     key: str | None
     value: str
@@ -65,7 +67,7 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """One word. `before` and `after` are numbers of steps (`ALL`, or 0 for none); `to` is the other end of `x..y`."""
+    """One word. `steps_before` and `steps_after` may be `ALL_STEPS`, or 0 for none; `range_end` is the y of `x..y`."""
 
     atom: Atom
     negative: bool = False
@@ -76,14 +78,14 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class Selector:
-    """A selector, read as far as it is sound."""
+    """A parsed selector: its valid words, and the problems of the others."""
 
     words: tuple[Word, ...]
     problems: tuple[Problem, ...] = ()
 
 
 def parse(text: str) -> Selector:
-    """Read a selector; what is wrong is left out, and told."""
+    """Parse a selector. Words with mistakes are left out and reported as problems."""
     words: list[Word] = []
     problems: list[Problem] = []
     for match in _WORD.finditer(text):
@@ -100,6 +102,7 @@ def parse(text: str) -> Selector:
 
 
 def _word(text: str, start: int, end: int) -> Word | Problem:
+    """Parse the word between two positions of a text."""
     reserved = _reserved(text, start, end)
     if reserved:
         return reserved
@@ -115,6 +118,7 @@ def _word(text: str, start: int, end: int) -> Word | Problem:
     after = _STEPS_AFTER.match(text, here, end)
     if after:
         here = after.end()
+    # `1+x..y` is not in the grammar: steps and ranges exclude each other, and the rest is reported below.
     elif text.startswith("..", here) and not before:
         other = _atom(text, here + 2, end)
         if isinstance(other, Problem):
@@ -122,6 +126,7 @@ def _word(text: str, start: int, end: int) -> Word | Problem:
         to, here = other, other.end
     if here < end:
         return Problem(f"`{text[here:end]}` is more than a word can hold", here, end, help=_FORMS)
+    # Longer numbers are refused: no architecture has that many steps, and int() of very long ones fails.
     counts = [match[1] for match in (before, after) if match and len(match[1]) > _DIGITS]
     if counts:
         return Problem(f"`{counts[0]}` steps are too many", start, end, help="leave the number out to take all of them")
@@ -132,7 +137,7 @@ _FORMS = "a word is `x`, `+x`, `x+`, `2+x+1` or `x..y`, where x is a path or `ke
 
 
 def _reserved(text: str, start: int, end: int) -> Problem | None:
-    """Find what no word may hold outside quotes: a comma, or a quote that is not closed."""
+    """Return a problem for a comma outside quotes or a quote that is not closed, else None."""
     quoted = False
     for position in range(start, end):
         if text[position] == '"':
@@ -145,6 +150,7 @@ def _reserved(text: str, start: int, end: int) -> Problem | None:
 
 
 def _atom(text: str, start: int, end: int) -> Atom | Problem:
+    """Parse a path, or a key with its value, at a position; it need not reach up to `end`."""
     match = _ATOM.match(text, start, end)
     if match is None:
         found = text[start:end]

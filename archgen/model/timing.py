@@ -1,4 +1,4 @@
-"""Timing as it was written. What follows from it is the analyses' business."""
+"""Timing as it is written. What follows from it is computed in `archgen.timing`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Behaviour = Literal["periodic", "event", "on_demand", "once"]
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """What fires an element: any of the inputs, or all of them; `inputs` None means every input.
+    """What triggers an activity: any of the inputs, or all of them; `inputs` None means every input.
 
     Inputs are complete ids of input ports (`group.component.input`).
     """
@@ -28,7 +28,7 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True)
 class OutputTiming:
-    """When an output is published, if not at each activation."""
+    """When an output is published, if not at each activation; `max_gap` (ns) is the most between two messages."""
 
     conditional: bool = False
     max_gap: Quantity | None = None
@@ -37,9 +37,10 @@ class OutputTiming:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """A `timing` mapping. Durations are in ns, rates in Hz, both exact; None is not written, hence unknown.
+    """A `timing` mapping. Durations are in ns, rates in Hz, both exact; None is not written, and hence unknown.
 
-    `outputs` is keyed by the output's complete id, `calls` by the input's, in calls for each activation.
+    `outputs` is keyed by the output's complete id; `calls` by the input's, its values are calls per activation. The
+    names of attributes are the keys of the YAML: linker, rules and `timing/sensitivity` read them with `getattr`.
     """
 
     behaviour: Behaviour | None = None
@@ -57,5 +58,5 @@ class Timing:
     core: int | None = None
     response: Quantity | None = None
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-    """Where each key's value was written, by the key's name."""
+    """The span of each key's value by the key's name, and of each entry of `calls` by `calls PORT`."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)

@@ -1,6 +1,6 @@
 """Project: find a project and read its files, archgen.yaml first, then what `sources` names.
 
-From the disk, or from a commit of the repository that it stands in.
+The files come from the disk, or from a commit of the repository that the project is in.
 """
 
 from archgen.project.find import MARKER, ProjectNotFoundError

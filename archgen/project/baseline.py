@@ -1,4 +1,4 @@
-"""Read a baseline: the findings that a project knows of and will cure in its own time. docs/checks.md tells it to users."""
+"""Read a baseline: the findings that a project knows and will fix in its own time (docs/checks.md)."""
 
 from __future__ import annotations
 
@@ -14,22 +14,26 @@ from archgen.syntax.folder import Folder
 from archgen.syntax.tree import Entry, Listing, Scalar, Table, Value
 
 MARK = "archgen_baseline"
-"""The key that tells a baseline from all other files, with the version of its format."""
+"""The key that tells a baseline from all other files; its value is the version of the format."""
 _KEYS = ("rule", "element", "message", "count")
 _MOST = 1_000_000
 _OWN = re.compile(rf"^{MARK}[ \t]*:", re.MULTILINE)
 
 
 def is_own(text: str) -> bool:
-    """Say whether a text was a baseline once: one that a merge broke may be written anew, anything else may not."""
+    """Whether a text is a baseline, even one that cannot be parsed.
+
+    Only such a file may be overwritten: one that a merge broke can be written anew, anything else is somebody's work.
+    """
     return _OWN.search(text) is not None
 
 
 def read(file: Path, shown: str, rules: Mapping[str, Rule]) -> tuple[str, tuple[Known, ...], tuple[Diagnostic, ...]]:
-    """Read a baseline that findings call `shown`: its text, what it knows, and what is wrong with it.
+    """Return a baseline's text, the findings that it lists, and what is wrong with it.
 
-    With a mistake in an entry that entry is not used; with one in the file nothing of it is.
+    Diagnostics name the file `display_name`. An entry with a mistake is left out; with a syntax error nothing is used.
     """
+    # Through FolderFiles for its protections: size, pipes, encoding, and no link out of the baseline's own folder.
     text = files.read(Folder(file.parent.resolve()), file.name)
     if text.problem:
         place = text.problem.span._replace(file=shown)
@@ -88,6 +92,7 @@ def _wrong(table: Table) -> Iterator[Diagnostic]:
             yield Diagnostic("wrong-value", f"`{key}` takes text", value.at)
     count = table.get("count")
     number = count.value if isinstance(count, Scalar) else None
+    # `type(...) is`, because True is an int too.
     if count is not None and (type(number) is not int or not 0 < number <= _MOST):
         yield Diagnostic("wrong-value", f"`count` takes a whole number from 1 to {_MOST}", count.at)
 

@@ -1,4 +1,4 @@
-"""Find the folder of a project, and the file that is read first."""
+"""Find a project's folder, and the file in it that is read first."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ MARKER = "archgen.yaml"
 
 
 class ProjectNotFoundError(Exception):
-    """There is no project where one was looked for. The text says what to do."""
+    """There is no project where one was looked for. The message says what to do."""
 
 
 def find(path: Path | None) -> tuple[Path, str]:
-    """Give the project's folder, and the name of the file in it that is read first."""
+    """Return a project's folder, and the name of the file in it that is read first.
+
+    `path` is a folder with an archgen.yaml, a file that is the whole project, or None: then the current folder and
+    those above it are searched. Raises `ProjectNotFoundError`.
+    """
     if path is None:
         return _around()
     real = Path(os.path.realpath(path))

@@ -1,4 +1,4 @@
-"""Load a project: everything that later stages want to know of its files."""
+"""Load a project: everything that later stages need to know about its files."""
 
 from __future__ import annotations
 
@@ -25,13 +25,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A project, read. `documents` are in normal form, in the order in which they are merged.
+    """A project whose files have been read. `documents` are in normal form, in the order in which they are merged.
 
-    `first` is the file that was read first. `id` and `title` are what the project is called where it does not say so itself. `rules` are the settings as they
-    stand in `rules:` (names not checked), `rule_places` where. `interfaces` are the interface files, relative to the project's folder.
-    `chapters` are the entries of `report.chapters`, None where nobody wrote them.
-    Nothing is used of the files in `broken`. `lost` are the keys in them, and in whatever else was not understood, so that
-    nobody complains of what they declare; with `partial` that was a whole file or section.
+    `first_file` was read first. `id` and `title` are the defaults for a project that states neither. `rule_settings`
+    are the severities in `rules:` by name (names not checked), `rule_spans` where they are written. `interface_files`
+    are relative to the project's folder. `chapter_entries` are those of `report.chapters`, None if it is not written.
+
+    Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
+    understood: what they may declare is never reported as missing. `partial` is whether that was a whole file or
+    section.
     """
 
     files: Files
@@ -54,28 +56,30 @@ class Loaded:
 
     @property
     def root(self) -> Path:
-        """Give the project's folder."""
+        """The project's folder."""
         return self.files.root
 
 
 def load(path: Path | None = None, known: Slices | None = None) -> Loaded:
-    """Read the project in a folder, in a file, or (with nothing given) around the current folder."""
+    """Read the project in a folder, in a file, or (None) around the current folder."""
     root, first = find(path)
     return load_from(Folder(root), first, known)
 
 
 def load_from(files: Files, first: str, known: Slices | None = None) -> Loaded:
-    """Read a project, wherever its files are; `first` is the one that is read first. Slices that are `known` are not
-    parsed again.
+    """Read a project, wherever its files are, beginning with `first_file`.
+
+    Slices in `parsed_slices` are not parsed again, and new ones are added to it.
     """
     reading = Reading(files, known=known)
     take(reading, first)
-    if first == MARKER:
+    if first == MARKER:  # a file of any other name is the whole project: its `sources` are not followed
         read_sources(reading)
     return _finish(reading, first)
 
 
 def _finish(reading: Reading, first: str) -> Loaded:
+    # The default id and title come from the folder's name, or from the file's. A bare clone is called `robot.git`.
     stem = reading.files.root.name.removesuffix(".git") if first == MARKER else Path(first).stem
     words = re.findall(r"[a-z0-9]+", stem.lower())
     slug = "_".join(words) if words and words[0][0].isalpha() else "_".join(["project", *words])
@@ -87,6 +91,8 @@ def _finish(reading: Reading, first: str) -> Loaded:
         for file in matches(reading, pattern)
     ]
     settings = dict(_settings(reading))
+    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
+    # In a conflict the first value wins, as it does in merging.
     distro = next((value.text for value in _values(reading, "ros", "distro") if isinstance(value, Scalar)), None)
     chapters = next((value for value in _values(reading, "report", "chapters") if isinstance(value, Listing)), None)
     return Loaded(
@@ -118,7 +124,7 @@ def _settings(reading: Reading) -> Iterator[tuple[str, tuple[Severity, Span]]]:
 
 
 def _values(reading: Reading, *path: str) -> Iterator[Value]:
-    """Give what the documents hold at a path, in their order."""
+    """Yield the nodes that the documents hold at a path of keys, in the order of the documents."""
     for document in reading.documents:
         value: Value | None = document.root
         for key in path:

@@ -1,7 +1,7 @@
-"""Read what was observed on the robot, to be held against the design.
+"""Read what was observed on the robot, to be compared with the design (docs/timing.md).
 
-A file is YAML (`measured: {ID: {rate: 29.7 Hz, wcet: 41 ms}}`) or CSV with a header (`id,rate,wcet`). Ids are activities
-or topics; every figure is a quantity with its unit. docs/timing.md tells it to users.
+A file is YAML (`measured: {ID: {rate: 29.7 Hz, wcet: 41 ms}}`) or CSV with a header (`id,rate,wcet`). Ids are those of
+activities or topics; every figure is a quantity with its unit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from archgen.timing.measured import KEYS, Observation
 
 
 def read(file: str, text: str) -> tuple[tuple[Observation, ...], tuple[Diagnostic, ...]]:
-    """Read observations, YAML or, where the file is called `.csv`, CSV."""
+    """Read observations from a file's text: CSV if its name ends in `.csv`, else YAML."""
     found: list[Diagnostic] = []
     rows = _csv(file, text, found) if file.lower().endswith(".csv") else _yaml(file, text, found)
     return tuple(rows), tuple(found)
@@ -50,6 +50,7 @@ def _csv(file: str, text: str, found: list[Diagnostic]) -> Iterator[Observation]
     header: list[str] = []
     try:
         for row in reader:
+            # The csv module tells lines but no columns, and of a row with line breaks in quotes only the last line.
             at = Span(file, reader.line_num, 1, reader.line_num, 1)
             if not any(cell.strip() for cell in row):
                 continue
@@ -77,6 +78,7 @@ def _figures(
             found.append(Diagnostic("unknown-key", f"`{key}` cannot be measured", key_at, help=help_line))
             continue
         quantity = parse(text.strip(), KEYS[key]) if text is not None else None
+        # A measured duration may be zero, below the clock's resolution; a rate or a period cannot.
         if quantity is None or (key in {"rate", "period"} and not quantity.value):
             example = "29.7 Hz" if key == "rate" else "41 ms"
             found.append(_wrong(f"`{key}` takes a {KEYS[key]} with its unit, such as {example}", at))

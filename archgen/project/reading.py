@@ -1,4 +1,4 @@
-"""Read the files of a project, in the order of `sources`, each normalised by itself."""
+"""Read the files of a project in the order of `sources`, each normalised by itself."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from archgen.syntax.tree import Document, Value
 
 _NO_SOURCES = frozenset({"backends"})
-"""Folders that hold no slices unless `sources` names them."""
+"""Folders that are not searched for slices unless `sources` names them."""
 _NO_SLICE = frozenset({"archgen", baseline.MARK})
-"""Keys of files that are no slices: a project of its own, and a baseline."""
+"""Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
 
 @dataclass(slots=True)
 class Reading:
-    """What has been read so far."""
+    """What has been read so far; the functions below add to it."""
 
     files: Files
     sources: Sources = field(default_factory=Sources)
@@ -40,13 +40,14 @@ class Reading:
     seen: set[str] = field(default_factory=set)
     broken: list[str] = field(default_factory=list)
     lost: set[str] = field(default_factory=set)
-    """The keys of what was not understood, and what those that cannot be ids may have been meant to be."""
+    """The keys of what was not understood, and the ids that malformed ones may have been meant to be."""
     partial: bool = False
     """Whether a whole file or section was not understood."""
 
 
 def _read(reading: Reading, file: str) -> Slice:
-    """Read and parse one file; nothing is kept of it yet but its text."""
+    """Read and parse one file; only its text is recorded, for excerpts."""
+    # A lone surrogate or a line break in a name could not be written to a terminal or a report.
     if not file.isprintable():
         message = f"a file's name cannot be read as text: {file!a}"
         unnamed = Diagnostic("syntax-error", message, Span.of_file(MARKER), help="rename the file")
@@ -57,7 +58,7 @@ def _read(reading: Reading, file: str) -> Slice:
 
 
 def take(reading: Reading, file: str) -> None:
-    """Read one file, whatever it holds, as a slice."""
+    """Read one file as a slice, whatever it holds."""
     reading.seen.add(file)
     _keep(reading, _read(reading, file))
 
@@ -74,7 +75,7 @@ def _keep(reading: Reading, one: Slice) -> None:
 
 
 def read_sources(reading: Reading) -> None:
-    """Read the files that `sources` names, or all below where nothing is written."""
+    """Read the files that `sources` names, or all YAML files below where it is not written."""
     listed = reading.documents[0].root.entries.get("sources") if reading.documents else None
     if listed is None:
         _read_all(reading)
@@ -86,7 +87,7 @@ def read_sources(reading: Reading) -> None:
 
 
 def _take_slice(reading: Reading, file: str, *, named: bool) -> None:
-    """Read a file; what a wildcard found is left out if it is a project of its own (a packed one, for instance)."""
+    """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
     reading.seen.add(file)
     one = _read(reading, file)
     if named or _NO_SLICE.isdisjoint(one.sections):
@@ -94,15 +95,18 @@ def _take_slice(reading: Reading, file: str, *, named: bool) -> None:
 
 
 def _read_all(reading: Reading) -> None:
-    """Read every *.yaml below that holds a section, and say which do not."""
+    """Read every *.yaml below that holds a section, and list those that do not in one note."""
     known, ignored = sections(), list[tuple[str, str | None]]()
     for file in globs.expand(reading.files, "**/*.yaml", skip=_NO_SOURCES):
         if file in reading.seen:
             continue
         reading.seen.add(file)
         one = _read(reading, file)
+        # Tested on the text, since a baseline that a merge broke cannot be parsed.
         if baseline.is_own(one.text):
             continue  # broken or not, it is judged where it is used
+        # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
+        # only if it seems to be meant as a slice.
         if one.document is None and one.diagnostics[0].rule != "too-large" and not _looks_like_slice(one, known):
             ignored.append((file, None))
         elif one.document is None:
@@ -111,13 +115,15 @@ def _read_all(reading: Reading) -> None:
             if _NO_SLICE.isdisjoint(one.sections):
                 _keep(reading, one)
         elif one.sections:
+            # With a guess from the first key that is nearly the name of a section, such as `group:`.
             ignored.append((file, next(filter(None, (closest(key, known) for key in one.sections)), None)))
+    # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
     if ignored and MARKER not in reading.broken:
         reading.diagnostics.append(_ignored(ignored))
 
 
 def _looks_like_slice(one: Slice, known: frozenset[str]) -> bool:
-    """Say whether a file that cannot be parsed was meant as a slice: one that cannot be read at all, or has a section."""
+    """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
     return not one.text or re.search(rf"^\W*(?:{'|'.join(sorted(known))})\W*:", one.text, re.MULTILINE) is not None
 
 
@@ -131,7 +137,7 @@ def _ignored(ignored: list[tuple[str, str | None]]) -> Diagnostic:
 
 
 def matches(reading: Reading, pattern: Value) -> Iterator[str]:
-    """Give the files of one pattern; say where it leads out of the project or to nothing."""
+    """Yield the files that one pattern matches; report a pattern that leaves the project or matches nothing."""
     if not isinstance(pattern, Scalar):
         return
     if not globs.is_inside(pattern.text):

@@ -1,4 +1,4 @@
-"""The rules of finding files."""
+"""The rules about finding a project's files."""
 
 from __future__ import annotations
 

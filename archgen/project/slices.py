@@ -1,4 +1,4 @@
-"""One file of a project, understood by itself: parsed, validated, in normal form. The same text is understood once."""
+"""One file of a project by itself: parsed, validated and normalised. The same text is processed only once."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from archgen.syntax.tree import Document, Listing, Table, Value
 
 @dataclass(frozen=True, slots=True)
 class Understood:
-    """What validating a slice came to. `lost` are the keys that were taken out of it, and what those that cannot be ids may
-    have been meant to be; with `partial` a whole section is among them.
+    """The result of validating a slice.
+
+    `lost_keys` are the keys that were taken out of it, and the ids that malformed ones may have been meant to be.
+    `partial` is whether a whole section is among them.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -26,7 +28,10 @@ class Understood:
 
 @dataclass(slots=True)
 class Slice:
-    """A file's document, None where it cannot be parsed, and the sections that it writes."""
+    """A file's document, None where it cannot be parsed, and the sections that it writes.
+
+    `sections` are those of the text: validation may take some of them out of the document.
+    """
 
     file: str
     text: str
@@ -36,18 +41,21 @@ class Slice:
     _understood: Understood | None = None
 
     def understood(self) -> Understood:
-        """Validate the document and bring it into normal form, the first time that somebody asks."""
+        """Validate and normalise the document, in place, on the first call; later calls return the same result."""
         if self._understood is None:
             self._understood = _understand(self)
         return self._understood
 
 
 Slices = dict[tuple[str, str], Slice]
-"""Slices by file and text, for who reads a project at many revisions: most files are the same in most of them."""
+"""Cache of slices by file and text, for reading a project at many revisions, most of whose files are the same.
+
+The documents are shared by all revisions, so no tree may change after `Slice.validate_once`.
+"""
 
 
 def parse(file: str, text: str, known: Slices | None = None) -> Slice:
-    """Parse a file, or take it from those that are known."""
+    """Parse a file, or take it from the cache; a newly parsed slice is added to the cache."""
     found = known.get((file, text)) if known is not None else None
     if found is None:
         document, diagnostics = yaml.parse(file, text)
@@ -63,21 +71,25 @@ def _understand(one: Slice) -> Understood:
         return Understood(one.diagnostics, tuple(_written(one.text)), partial=True)
     wrong = validate(one.document)
     lost = tuple(_lost(one, one.document, wrong)) if wrong else ()
+    # Both before normalise: it removes empty sections, which are not lost but simply not written.
     partial = len(one.document.root.entries) < len(one.sections)
     return Understood((*one.diagnostics, *wrong, *normalise(one.document)), lost, partial)
 
 
 _KEY = re.compile(r"(?<![A-Za-z0-9_.-])([A-Za-z0-9][A-Za-z0-9_.-]*+)[\"']?[ \t]*+:")
-"""Begins at a word's first letter and never goes back: a long word without a colon is looked at once."""
+"""A word before a colon. It starts only at a word's beginning, and possessive quantifiers (`*+`) never backtrack: a
+long word without a colon is scanned once, not once for each of its letters.
+"""
 
 
 def _written(text: str) -> list[str]:
-    """Give the keys in a file, read or not, as its text shows them."""
+    """Return everything in a text that looks like a key; works on text that cannot be parsed."""
     return _KEY.findall(text)
 
 
 def _lost(one: Slice, document: Document, wrong: tuple[Diagnostic, ...]) -> Iterator[str]:
-    """Give the keys that were taken out of a document, and the ids that were meant by those that cannot be one."""
+    """Yield the keys that were taken out of a document, and the ids that malformed keys may have been meant to be."""
+    # Counted, not a set: of two elements with the same id in different sections one may be lost and the other not.
     yield from Counter(_written(one.text)) - Counter(_keys(document.root))
     lines = one.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     for diagnostic in wrong:

@@ -1,4 +1,4 @@
-"""A project in the history of its repository: the same project at any commit."""
+"""A project in its repository: the same project at any commit."""
 
 from __future__ import annotations
 
@@ -19,20 +19,22 @@ class NotAtRevisionError(ProjectNotFoundError):
 
 @dataclass(frozen=True, slots=True)
 class Tracked:
-    """A project's place in its repository. `places` are the folders (from the repository's root) and the files read first
-    that it may be, in the order in which they are tried: more than one where the disk holds no such project (any more).
+    """Where a project is in its repository.
+
+    `locations` are the candidates in the order in which they are tried, each a folder from the repository's root and
+    the file read first. There are several only where the disk does not (or no longer) hold the project.
     """
 
     objects: Objects
     places: tuple[tuple[str, str], ...]
 
     def commit(self, revision: str) -> str:
-        """Give the full hash of a revision's commit. Raises what `git.resolve` raises."""
+        """Return the full hash of a revision's commit. Raises what `git.resolve` raises."""
         return resolve(self.objects.repository, revision)
 
 
 def tracked(path: Path | None = None) -> Tracked:
-    """Find the repository of the project at a path (None: around the current folder), be it on disk or in commits only.
+    """Find the repository of the project at a path (None: around the current folder), on disk or only in commits.
 
     Raises `git.NoRepositoryError`, and `ProjectNotFoundError` where neither a project nor a repository is there.
     """
@@ -50,6 +52,8 @@ def _only_committed(path: Path | None, nothing: ProjectNotFoundError) -> Tracked
     except (NoRepositoryError, OSError):
         raise nothing from None
     prefix = found.prefix
+    # A path that is not on disk may have been a folder with an archgen.yaml or a file; without a path, archgen.yaml may
+    # have been in the current folder or any folder above it, as in find_project.
     if path is not None:
         return Tracked(Objects(found), ((prefix, MARKER), (posixpath.dirname(prefix), posixpath.basename(prefix))))
     folders = [prefix]
@@ -59,17 +63,17 @@ def _only_committed(path: Path | None, nothing: ProjectNotFoundError) -> Tracked
 
 
 def load_at(project: Tracked, revision: str, known: Slices | None = None) -> Loaded:
-    """Read a project as a revision holds it, from git's objects; slices that are `known` are not parsed again.
+    """Read a project at a revision, from git's objects; slices in `parsed_slices` are not parsed again.
 
-    Raises `NotAtRevisionError` where it does not exist there, and what `git.resolve` raises.
+    Raises `NotAtRevisionError` if the project does not exist there, and what `git.resolve` raises.
     """
     return load_commit(project, project.commit(revision), known, revision)
 
 
 def load_commit(project: Tracked, commit: str, known: Slices | None = None, revision: str = "") -> Loaded:
-    """Read a project as a commit holds it, by its full hash; `revision` is what a person called it.
+    """Read a project at a commit, given by its full hash; `revision` is the name that errors use.
 
-    Raises `NotAtRevisionError` where it does not exist there.
+    Raises `NotAtRevisionError` if the project does not exist there.
     """
     for folder, first in project.places:
         files = committed(project.objects, commit, folder)

@@ -1,4 +1,4 @@
-"""Schema: what may stand where, in our own words; short forms are taken out here."""
+"""Schema: check a document against the JSON Schema, phrase what is wrong, and expand the short forms."""
 
 from archgen.schema.rules import RULES
 from archgen.schema.shorthand import fold, normalise

@@ -1,4 +1,4 @@
-"""The rules of reading, syntax and schema alike: what can be wrong with a file by itself."""
+"""The rules of reading, for syntax and schema alike: what can be wrong with a file by itself."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Take out the short forms, file by file, so that nobody after this sees them: every element becomes a mapping.
+"""Expand the short forms, file by file, so that later stages never see them: every element becomes a mapping.
 
-Empty entries go too (they are "not written"), but below an id an empty entry declares the element and becomes `{}`.
+Empty entries are removed too (they count as not written), but below an id an empty entry declares the element and
+becomes `{}`. Normalising twice changes nothing.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 class Form:
     """What a kind of element looks like.
 
-    A scalar or list in its place stands for the keys in `short`; the keys in `lists` always hold lists; below the keys
-    in `keyed` stand elements by id, below those in `parts` one thing; `raw` keys are left as they are.
+    A scalar or list in the element's place is the value of every key in `short_keys`. The keys in `list_keys` always
+    hold lists. `keyed_forms` are the keys that hold elements by id, `part_forms` those that hold a single one. The
+    values of `raw_keys` are left as they are.
     """
 
     short: tuple[str, ...] = ()
@@ -55,6 +57,7 @@ _NODE = Form(
     parts={"internal": Form(keyed=_USES)},
     raw=frozenset({"parameters"}),
 )
+# One latency is both the best and the worst: a constant.
 _LINK = Form(("connects",), frozenset({"connects"}), parts={"latency": Form(("best", "worst"))})
 _ROOT = Form(
     keyed={
@@ -76,7 +79,8 @@ _ROOT = Form(
 
 
 def normalise(document: Document) -> tuple[Diagnostic, ...]:
-    """Bring a document, already validated, into the normal form. Its tree is changed in place."""
+    """Bring a validated document into the normal form. Its tree is changed in place."""
+    # Types and indicators first: both look at short forms that _normalise_mapping expands.
     types = document.root.get("types")
     found = tuple(_fold_types(types)) if isinstance(types, Table) else ()
     groups = document.root.get("groups")
@@ -86,7 +90,8 @@ def normalise(document: Document) -> tuple[Diagnostic, ...]:
 
 
 def fold(name: str) -> str:
-    """Give a type's name as it is compared: blanks folded to one, in Unicode's composed form."""
+    """Return a type's name as it is compared: runs of blanks folded to one, in Unicode's composed form (NFC)."""
+    # Nearly every name is plain ASCII without double blanks and needs no work.
     return name if name.isascii() and "  " not in name and name == name.strip() else _folded(name)
 
 
@@ -95,12 +100,13 @@ def _folded(name: str) -> str:
 
 
 def _element(value: Value, form: Form) -> Table:
-    """Give what stands for an element as a mapping."""
+    """Return an element as a mapping: itself, or its short form expanded; empty becomes `{}`."""
     if isinstance(value, Table):
         _table(value, form)
         return value
     if isinstance(value, Scalar) and value.value is None:
         return Table({}, value.at)
+    # All keys share the node where there are several: safe, because scalars and lists are not changed after this.
     return Table({key: Entry(key, value.at, _leaf(key, value, form)) for key in form.short}, value.at)
 
 
@@ -109,7 +115,7 @@ def _leaf(key: str, value: Value, form: Form) -> Value:
 
 
 def _table(table: Table, form: Form) -> None:
-    """Bring the entries of a mapping into the normal form, and drop those that are empty."""
+    """Bring the entries of a mapping into the normal form in place, and drop those that are empty."""
     empty: list[str] = []
     for key, entry in table.entries.items():
         value = entry.value
@@ -135,7 +141,7 @@ def _below(key: str, value: Table, form: Form) -> None:
 
 
 def _fold_types(types: Table) -> Iterator[Diagnostic]:
-    """Write the names of types as they are compared."""
+    """Replace the names of types by their folded form, and report names that fold to the same."""
     if all(fold(key) == key for key in types.entries):
         return
     folded: dict[str, Entry] = {}
@@ -148,11 +154,12 @@ def _fold_types(types: Table) -> Iterator[Diagnostic]:
     types.entries = folded
 
 
+# The figures of an indicator that may be written directly in `performance`.
 _DIRECT = ("accuracy", "execution_time")
 
 
 def _overall(groups: Table) -> Iterator[Diagnostic]:
-    """Move what stands directly in `performance` to its indicator `overall`."""
+    """Move figures written directly in `performance` into its indicator `overall`."""
     for group in groups:
         components = group.value.get("components") if isinstance(group.value, Table) else None
         for component in components if isinstance(components, Table) else ():
@@ -168,6 +175,7 @@ def _hoist(performance: Table) -> Iterator[Diagnostic]:
     written = [entry for entry in direct if isinstance(entry.value, Scalar) and entry.value.value is not None]
     if not written:
         return
+    # Validation has left either a mapping or an empty `overall:`, which gives way to the figures.
     overall = performance.entries.get("overall")
     if overall is None or not isinstance(overall.value, Table):
         overall = Entry("overall", written[0].at, Table({}, written[0].at))

@@ -1,4 +1,7 @@
-"""Hold a document against the JSON Schema, phrase what differs, and take it out, so that later stages rely on kinds."""
+"""Check a document against the JSON Schema, report what differs, and take it out of the tree.
+
+Later stages rely on it: what is left has the kind of value that the schema asks for.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +24,11 @@ if TYPE_CHECKING:
     from archgen.syntax.tree import Document, Entry, Value
 
 _USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
-"""Ids that break a rule of style are reported, and kept: what refers to them is not wrong as well."""
+"""Ids that only break a rule of style are reported but kept, so that references to them are not reported as well."""
 
 
 def validate(document: Document) -> tuple[Diagnostic, ...]:
-    """Check a document; afterwards it holds only what the schema allows."""
+    """Report what the schema does not allow, and remove it from the document's tree in place."""
     data = _data(document.root)
     validator = _validator()
     if validator.is_valid(data):
@@ -35,6 +38,7 @@ def validate(document: Document) -> tuple[Diagnostic, ...]:
     seen = set[tuple[str | int, ...]]()
     for error in _by_weight(validator.iter_errors(data)):
         _judge(document, error, found, wrong, seen)
+    # Only now: while errors are being located, their paths must still lead through an unchanged tree.
     for place, key in wrong:
         _prune(place, key)
     _drop_holes(document.root)
@@ -43,7 +47,7 @@ def validate(document: Document) -> tuple[Diagnostic, ...]:
 
 @functools.cache
 def schema() -> dict[str, Any]:
-    """Give the JSON Schema of the language."""
+    """Return the JSON Schema of the language. Cached and shared: nobody may change it."""
     text = resources.path("schemas", "archgen.schema.json").read_text(encoding="utf-8")
     return json.loads(text)  # type: ignore[no-any-return]
 
@@ -54,17 +58,22 @@ def _validator() -> jsonschema_rs.Draft202012Validator:
 
 
 def sections() -> frozenset[str]:
-    """Name the top-level sections."""
+    """Return the names of the top-level sections."""
     return frozenset(schema()["properties"])
 
 
 def _data(value: Value) -> object:
-    """Turn a tree into what the validator takes. Floats go as text: it reads NaN as null and 5.0 as a whole number."""
+    """Turn a tree into what the validator takes.
+
+    Floats go as text, because the validator reads NaN as null and 5.0 as a whole number. Integers are clamped to what
+    it can hold.
+    """
     if isinstance(value, Table):
         return {_MARK + key if key[0] in _NUMERIC else key: _data(entry.value) for key, entry in value.entries.items()}
     if isinstance(value, Listing):
         return [_data(item) for item in value.items]
     found = value.value
+    # `type(...) is`: a bool is an int as well, and must stay a bool.
     if type(found) is float:
         return value.text
     return max(-_BEYOND, min(found, _BEYOND)) if type(found) is int else found
@@ -72,13 +81,13 @@ def _data(value: Value) -> object:
 
 _MARK = "\0"
 _NUMERIC = frozenset("0123456789+\0")
-"""The validator's paths tell the key `0` or `+1` from an entry's number by nothing: such keys are marked."""
+"""First characters of keys that get the mark: the validator's paths do not tell the key `0` from the index 0."""
 _BEYOND = 1 << 60
-"""Larger than any number of the language, and small enough for the validator."""
+"""Larger than any number that the language allows, and small enough for the validator."""
 
 
 def _by_weight(errors: Iterable[jsonschema_rs.ValidationError]) -> list[jsonschema_rs.ValidationError]:
-    """Put a wrong type before all that follows from it."""
+    """Sort wrong types first: what else the validator says of the same value follows from it and is then left out."""
     return sorted(errors, key=lambda error: error.kind.name != "type")
 
 
@@ -89,9 +98,11 @@ def _judge(
     wrong: list[tuple[Place, str | None]],
     seen: set[tuple[str | int, ...]],
 ) -> None:
+    # `seen_paths` are those already reported: one finding for each place, the first one, which is a wrong type if any.
     place = _locate(document.root, [_unmarked(step) for step in error.instance_path])
     part = _part(error.schema_path)
     kind = error.kind.name
+    # The library reports one error for all unknown keys of a mapping; each becomes a finding of its own, at its key.
     if kind == "additionalProperties" and isinstance(place.value, Table):
         kind_of: Any = error.kind  # its attributes depend on the kind, which the library's types do not say
         for key in map(_unmarked, kind_of.unexpected):
@@ -130,21 +141,28 @@ def _locate(root: Table, path: list[str | int]) -> Place:
 
 
 def _part(path: Iterable[str | int]) -> dict[str, Any]:
-    """Give the part of the schema that an error comes from."""
+    """Return the part of the schema that an error comes from: all but the last step, which is the keyword."""
     found: Any = schema()
     for step in list(path)[:-1]:
         found = found[step]
     return found  # type: ignore[no-any-return]
 
 
+# Stands in for a wrong list entry until all are found: removing one at once would shift the indices of the others.
+# Compared by identity, and gone from the tree when validation returns.
 _HOLE = Scalar(None, "", wording.NO_PLACE)
 _KEPT = frozenset({"from", "implements", "through"})
-"""What a rule asks for: where nothing sound is left of it, an empty list says that somebody wrote it."""
+"""Keys whose absence a rule reports. Where nothing sound is left of one, an empty list keeps the fact that it was
+written, so that the same mistake is not reported a second time as a missing key.
+"""
 _KEYED = wording.SECTIONS_BY_ID | {"components", "inputs", "outputs", "publishes", "subscribes", "serves", "calls"}
 
 
 def _prune(place: Place, key: str | None) -> None:
-    """Take out what is wrong. An element stays by its id, so that what refers to it is not wrong as well."""
+    """Take a wrong key or value out of its tree.
+
+    An element keeps its id and loses only its content, so that references to it are not reported as well.
+    """
     if key is not None and isinstance(place.value, Table):
         place.value.entries.pop(key, None)
     elif isinstance(place.parent, Listing):
@@ -152,6 +170,7 @@ def _prune(place: Place, key: str | None) -> None:
     elif isinstance(place.parent, Table) and place.entry is not None:
         if _is_asked_for(place.path):
             place.entry.value = Listing([], place.value.at)
+        # An empty value below an id declares the element, as in `rgbd:`; normalising turns it into `{}`.
         elif len(place.path) > 1 and place.path[-2] in _KEYED:
             place.entry.value = Scalar(None, "", place.value.at)
         else:
@@ -159,7 +178,7 @@ def _prune(place: Place, key: str | None) -> None:
 
 
 def _is_asked_for(path: tuple[str | int, ...]) -> bool:
-    """Say whether a path is that of a key in `_KEPT`, and not of an element that is called like one."""
+    """Whether a path is that of a key in `_KEPT_LIST_KEYS`, not of an element that happens to have such an id."""
     if path[-1] not in _KEPT:
         return False
     if path[-1] == "from":
@@ -168,13 +187,14 @@ def _is_asked_for(path: tuple[str | int, ...]) -> bool:
 
 
 def _drop_holes(value: Value) -> None:
-    """Take the wrong entries out of lists, and lists of which nothing is left out of mappings."""
+    """Remove the holes from lists, and lists of which nothing is left from their mappings."""
     if isinstance(value, Listing):
         value.items = [item for item in value.items if item is not _HOLE]
         for item in value.items:
             _drop_holes(item)
     elif isinstance(value, Table):
         for entry in tuple(value):
+            # A list that was written empty says "known to be none" and must survive.
             had = isinstance(entry.value, Listing) and bool(entry.value.items)
             _drop_holes(entry.value)
             if had and isinstance(entry.value, Listing) and not entry.value.items and entry.key not in _KEPT:

@@ -1,4 +1,7 @@
-"""What is wrong with a value or a key, in our own words, with help for the commonest slips."""
+"""Phrase what is wrong with a value or a key, in our own words, with help for the commonest slips.
+
+The validator's own messages quote the schema's patterns and Python values, which say nothing to people who write YAML.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from archgen.suggest import did_you_mean
 from archgen.syntax.tree import Entry, Listing, Scalar, Table, Value
 
 NO_PLACE = NOWHERE
+# A sign, digits with a point or a comma, and whatever follows them as the unit.
 _NUMBER = re.compile(r"\s*([-+]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*(\S*)\s*\Z", re.ASCII)
 _SPELLED = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "usec": "us", "µs": "us",
@@ -34,12 +38,12 @@ SECTIONS_BY_ID = frozenset(
     {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
     | {"views", "policies"}
 )
-"""The sections that hold elements by id."""
+"""The top-level sections that hold elements by id."""
 _PLAIN_WORDS = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}
 
 
 class Place(NamedTuple):
-    """Where an error stands: its path, the value there, what holds it, and its key's entry if that is a mapping."""
+    """Where an error is: its path, the node there, what holds the node, and its entry if that is a mapping."""
 
     path: tuple[str | int, ...]
     value: Value
@@ -48,7 +52,7 @@ class Place(NamedTuple):
 
 
 def unknown_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
-    """Phrase a key that does not exist there."""
+    """Report a key that the schema does not have at its place, with the most likely meaning as help."""
     known = tuple(part.get("properties", ()))
     message = (
         f"no section is called `{entry.key}`" if not path else f"{_article(part['title'])} has no key `{entry.key}`"
@@ -70,7 +74,7 @@ def _key_help(entry: Entry, known: tuple[str, ...]) -> str | None:
 
 
 def wrong_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
-    """Phrase a key that cannot be the id of what it names."""
+    """Report a key that cannot be an id of what it names, with an id that could as help."""
     message = f"`{entry.key}` cannot be {_article(part.get('title', 'key').split(' of ')[0])}"
     better = next((key for key in better_keys(entry.key) if re.search(part.get("pattern", r"\Z."), key)), None)
     help_line = part.get("patternErrorMessage") or "it is too long"
@@ -82,18 +86,19 @@ def wrong_key(entry: Entry, part: dict[str, Any], path: tuple[str | int, ...]) -
 
 
 def better_keys(key: str) -> tuple[str, str]:
-    """Give what may have been meant by a key that is no id: as the id of a requirement, and as any other."""
+    """Return what a malformed id may have been meant to be: as the id of a requirement, and as any other id."""
     snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", key).lower()
     return re.sub(r"[^A-Za-z0-9._-]+", "-", key).strip("-"), re.sub(r"[^a-z0-9]+", "_", snake).strip("_")
 
 
 def wrong(kind: str, place: Place, part: dict[str, Any]) -> Diagnostic:
-    """Phrase a value of the wrong kind, or one that is not allowed."""
+    """Report a value of the wrong type, or one that is not allowed; `kind` is the validator's name for the error."""
     name, value = _name(place), place.value
     if kind == "type":
         rule, message, help_line = _wrong_type(name, value, part)
     else:
         rule, (message, help_line) = "wrong-value", _wrong_value(kind, name, value, part)
+    # A container's own span can cover a whole section: its key is shown instead. An entry of a list has no key.
     at = value.at
     if isinstance(value, Table | Listing) and place.entry is not None and value is place.entry.value:
         at = place.entry.at
@@ -140,7 +145,7 @@ _PLAIN = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 
 
 def _in_list(text: str) -> str:
-    """Write a text as an entry of a list: quoted, where YAML would read it otherwise."""
+    """Return a text as an entry of a list in brackets: quoted where YAML would read it as something else."""
     return _short(text) if _PLAIN.match(text) else f'"{_short(text)}"'
 
 
@@ -182,7 +187,10 @@ def _value_help(kind: str, text: str, part: dict[str, Any]) -> str | None:
 
 
 def _dimension(part: dict[str, Any]) -> str | None:
-    """Give the dimension of a quantity, by the first words of what the schema says to a wrong one."""
+    """Return the dimension of a quantity, or None for other values.
+
+    The schema has no field for it: the second word of its `patternErrorMessage` ("a duration is ...") decides.
+    """
     words = str(part.get("patternErrorMessage", "")).split(" ")
     return _DIMENSIONS.get(words[1]) if words[1:] else None
 
@@ -221,11 +229,12 @@ def _wrong_unit(name: str, number: str, unit: str, dimension: str, explained: st
 _OTHER_KEY = {("rate", unit): "period" for unit in quantity.UNITS["duration"]} | {
     ("period", unit): "rate" for unit in quantity.UNITS["frequency"]
 }
-"""What is meant where somebody writes `rate: 20 ms` or `period: 50 Hz`."""
+"""The key that was meant where somebody writes `rate: 20 ms` or `period: 50 Hz`, by key and unit."""
 
 
 def _better_unit(unit: str, dimension: str) -> str | None:
     units = quantity.UNITS[dimension]
+    # A known other spelling first, then the case: `MS` may be meant as ms, and `mbps` is nothing but a spelling.
     spelled = _SPELLED.get(unit)
     if spelled in units:
         return spelled
@@ -259,7 +268,7 @@ def _name(place: Place) -> str:
 
 
 def element(path: tuple[str | int, ...]) -> str | None:
-    """Give the id of the element that a path leads into."""
+    """Return the id of the element that a path leads into, or None outside of all elements."""
     if len(path) < 2:  # noqa: PLR2004 - a section and an id
         return None
     if path[0] == "groups" and len(path) > 3 and path[2] == "components":  # noqa: PLR2004

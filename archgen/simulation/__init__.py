@@ -1,7 +1,8 @@
-"""Simulation of the modelled architecture: what was seen in so many seconds, from so many seeds.
+"""Simulate the architecture as it is modelled and record what was observed over many runs.
 
-`flatten` makes a system a plan of lists, `engine` runs one seed of it, `series` reads reaction times and data ages off the
-traces, and `simulate` puts the seeds together. What is seen is a lower bound on the worst case, never the worst case.
+`plan_builder` turns a system into a plan of lists, `event_loop` runs one seed of it, `chain_series` reads reaction
+times and data ages off the traces, and `simulate_system` puts the seeds together. An observed maximum is a lower bound
+on the worst case, never the worst case itself.
 """
 
 from archgen.simulation.result import ActivitySeen, ChainSeen, Distribution, Figures, HostSeen, LinkSeen, Result

@@ -1,4 +1,4 @@
-"""What was seen beside the bounds of the analysis: which bound stands beside which figure."""
+"""The bounds of the analysis that belong beside the observed figures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from archgen.timing.value import Value
 
 
 def pauses(analysis: Analysis) -> dict[tuple[str, str], Fraction]:
-    """Give the largest time between two chances to publish each conditional output, in ns, where it is known."""
+    """Return the longest time in ns between two chances to publish, by activity and conditional output, where it is
+    known.
+    """
     found = {}
     for activity in analysis.system.activities.values():
         gap = known(analysis.paces[activity.id].gap) if activity.id in analysis.paces else None
@@ -21,23 +23,28 @@ def pauses(analysis: Analysis) -> dict[tuple[str, str], Fraction]:
         if gap is None or worst is None or response is None:
             continue
         for output in activity.conditional:
+            # Two successive job ends are furthest apart when the first job was as quick and the second as slow as
+            # possible.
             found[activity.id, output] = gap + worst - (response.best.value or 0)
     return found
 
 
 def ages(analysis: Analysis, chains: Mapping[str, ChainResult]) -> dict[str, Value]:
-    """Bound the data age of each chain: where an event is the stimulus, it is larger than the reaction time."""
+    """Return the bound on the data age of each chain, by chain id.
+
+    Where an event is the stimulus of a chain, this is larger than its reaction time.
+    """
     network = Network.of(analysis)
     return {key: data_age(network, found) for key, found in chains.items()}
 
 
 def known(value: Value | None) -> Fraction | None:
-    """Give a figure that is a bound from above; a sum with gaps is none."""
+    """Return a value that bounds from above; None for an incomplete sum or one that only bounds from below."""
     return value.value if value and value.complete and value.side != "at least" else None
 
 
 def utilisation(analysis: Analysis, host: str) -> Fraction | None:
-    """Give the bound on a host's load, as a share of all of its cores."""
+    """Return the bound on a host's load as a share of all its cores, None where it is unknown."""
     load = analysis.hosts.get(host)
     whole = known(load.utilisation) if load else None
     return None if load is None or whole is None else whole / load.cores

@@ -1,4 +1,7 @@
-"""Cores: which threads have one at a moment, and who must leave for somebody more urgent."""
+"""Dispatch threads to cores, and preempt the less urgent ones.
+
+A smaller urgency key is more urgent; ties are broken by the order in which threads became ready.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from archgen.simulation.threads import choose
 
 
 def dispatch(run: Run, now: int) -> None:
-    """Choose what each thread does next, and give threads to cores."""
+    """Choose the next job of each woken thread, then give out the cores of every changed processor."""
     threads = run.threads
     while run.awake:
         thread = run.awake.pop()
@@ -31,10 +34,11 @@ def dispatch(run: Run, now: int) -> None:
 
 
 def _assign(run: Run, now: int, processor: int) -> None:
-    """Give cores to threads some of which must have a certain one, the most urgent first."""
+    """Assign cores where some threads are pinned and others are not, the most urgent first."""
     threads = run.threads
     running = threads.running[processor]
     wanted = sorted(threads.ready[processor])
+    # Preemptive: all cores are given out anew, running threads included. Otherwise running threads keep theirs.
     if threads.preemptive[processor]:
         wanted = sorted([*wanted, *((threads.key[t], threads.order[t], t) for t in running)])
         taken: dict[int, int] = {}
@@ -42,6 +46,7 @@ def _assign(run: Run, now: int, processor: int) -> None:
         taken = {threads.core[t]: t for t in running}
     for _, _, thread in wanted:
         pin, last = threads.affinity[thread], threads.core[thread]
+        # An unpinned thread that is running prefers the core it has, so that it is not moved without need.
         cores = [pin] if pin >= 0 else [*([last] if thread in running else []), *range(threads.cores[processor])]
         core = next((one for one in cores if one not in taken), None)
         if core is not None:
@@ -50,11 +55,12 @@ def _assign(run: Run, now: int, processor: int) -> None:
 
 
 def _move(run: Run, now: int, processor: int, taken: dict[int, int]) -> None:
-    """Take threads off their cores that lost them, and start those that got one."""
+    """Take threads that lost their core off it, and start those that got one."""
     threads = run.threads
     running, ready = threads.running[processor], threads.ready[processor]
     for thread in [t for t in running if t not in taken.values()]:
         running.remove(thread)
+        # The job's end is already on the heap: the new version makes `end_thread` ignore it.
         threads.version[thread] += 1
         threads.left[thread] = threads.until[thread] - now
         ready.append((threads.key[thread], threads.order[thread], thread))
@@ -66,12 +72,15 @@ def _move(run: Run, now: int, processor: int, taken: dict[int, int]) -> None:
 
 
 def _start(run: Run, now: int, thread: int, running: list[int]) -> None:
+    """Start or resume a thread at time `now`, and schedule the end of its job."""
     threads, steps = run.threads, run.steps
     left = threads.left[thread]
+    # -1: the job has not started yet. A preempted thread comes back with the time that it has left.
     if left < 0:
         at = threads.current[thread]
         job = steps.pending[at].popleft()
         wire = job[1]
+        # Calls are not counted in a queue: they never replace one another.
         if wire >= 0 and not run.wires.request[wire]:
             run.wires.waiting[run.wires.queue[wire]] -= 1
         steps.acted[at] = job[0]
@@ -88,10 +97,11 @@ def _start(run: Run, now: int, thread: int, running: list[int]) -> None:
 
 
 def _preempt(run: Run, now: int, ready: list[tuple[int, int, int]], running: list[int]) -> bool:
-    """Take the least urgent running thread off its core, if a more urgent one waits."""
+    """Take the least urgent running thread off its core if a more urgent one is ready; return whether it did."""
     threads = run.threads
     last = max(running, key=lambda t: (threads.key[t], threads.order[t]))
     key = ready[0][0]
+    # Keys below zero are written priorities, which always preempt. Other threads preempt only under fixed ranks.
     if key >= threads.key[last] or (key >= 0 and threads.scheduler[threads.processor[last]] != RANKS):
         return False
     running.remove(last)

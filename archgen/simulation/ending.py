@@ -1,4 +1,4 @@
-"""Jobs end: the response is noted, calls are made, outputs published, and who waits is answered."""
+"""Complete jobs: record the response, make calls, publish outputs, and answer requests."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from archgen.simulation.threads import leave
 
 
 def ended(run: Run, now: int, thread: int, version: int) -> None:
-    """End what a thread does, unless it was taken off its core since this end was foreseen."""
+    """End the job of a thread, unless the thread was preempted after this end was scheduled."""
     threads = run.threads
     if threads.version[thread] != version:
         return
@@ -22,9 +22,11 @@ def ended(run: Run, now: int, thread: int, version: int) -> None:
 
 
 def _complete(run: Run, now: int, at: int) -> None:
-    """End a job: note its response, publish, answer, and let the thread go on."""
+    """Complete a job that ran on its thread: publish its results and let the thread go on."""
     steps = run.steps
     wire = steps.request[at]
+    # A load-only job stands for the work of an activity with a declared response: its results were published
+    # separately.
     if wire != LOAD:
         _finish(run, now, at, (steps.acted[at], wire, steps.started[at] - 1))
     thread = steps.thread[at]
@@ -36,7 +38,10 @@ def _complete(run: Run, now: int, at: int) -> None:
 
 
 def _finish(run: Run, now: int, at: int, job: Job) -> None:
-    """End a job's work: publish, and answer who waits for it. The job has its own number in place of a sample's."""
+    """Record a finished job's response, make its calls, publish its outputs and answer its requests.
+
+    The third field of the job is the job's own number here, not the number of a sample.
+    """
     fired, wire, number = job
     steps = run.steps
     _note(run, now, at, now - fired)
@@ -50,6 +55,8 @@ def _finish(run: Run, now: int, at: int, job: Job) -> None:
                 if conditional:
                     _note_passed(run, one, number)
                 send(run, now, one, number)
+    # The request that fired this job is answered at once; a periodic server answers all that waited when the job
+    # started.
     if wire >= 0 and run.answers[wire] >= 0:
         _note_passed(run, run.answers[wire], number)
         send(run, now, run.answers[wire], number)
@@ -61,13 +68,13 @@ def _finish(run: Run, now: int, at: int, job: Job) -> None:
 
 
 def _note_passed(run: Run, wire: int, number: int) -> None:
-    """Note that a job sent something where not every job does."""
+    """Log that a job sent on a wire on which not every job sends."""
     if run.wires.noted[wire]:
         run.wires.passed[wire].append(number)
 
 
 def _note(run: Run, now: int, at: int, response: int) -> None:
-    """Note the end of a job."""
+    """Record a job's response time and the gap since the activity's previous end, in units."""
     steps = run.steps
     steps.worst[at] = max(steps.worst[at], response)
     if response < steps.best[at] or steps.best[at] < 0:
@@ -82,10 +89,11 @@ def _note(run: Run, now: int, at: int, response: int) -> None:
 
 
 def _calls(run: Run, at: int) -> list[int]:
-    """Give the requests of one job, in order; of a fraction of a call, as many as are due."""
+    """Return the wires of the calls that one job makes, in order; fractional calls are spread evenly over the jobs."""
     found: list[int] = []
     due = run.steps.due[at]
     for place, (number, wires) in enumerate(run.calls[at]):
+        # The remainder is carried in integers from job to job: 2/3 of a call gives 0, 1, 1, 0, 1, 1, ...
         total = due[place] + number.numerator
         due[place] = total % number.denominator
         found += wires * (total // number.denominator)
@@ -93,9 +101,10 @@ def _calls(run: Run, at: int) -> list[int]:
 
 
 def _publishes(run: Run, now: int, at: int, place: int, patience: int | None) -> bool:
-    """Decide on a conditional output; it is never silent for longer than was promised."""
+    """Decide whether a conditional output is published now; its promised largest gap is always kept."""
     published, silence = run.steps.published[at], run.steps.silence[at]
     last = published[place]
+    # The draw comes first whatever the patience, so that a promise does not shift the random numbers that follow.
     if run.random() >= run.publish_share[at] and (patience is None or (last >= 0 and now - last <= patience)):
         return False
     if last >= 0 and now - last > silence[place]:
@@ -105,5 +114,5 @@ def _publishes(run: Run, now: int, at: int, place: int, patience: int | None) ->
 
 
 def keep_promise(run: Run, now: int, at: int) -> None:
-    """End a job whose end was declared."""
+    """Finish the oldest job with a declared response."""
     _finish(run, now, at, run.steps.promises[at].popleft())

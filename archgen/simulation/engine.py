@@ -1,7 +1,8 @@
-"""One run of a plan: events on a heap, in units of time that are integers.
+"""Process the events of one run of a plan, from a heap; times are integers in the plan's unit.
 
-At one moment ends come first, then arrivals, then releases; when all of them are done, threads are given to cores. The
-inner loop is written for speed: it works on lists by small integers and makes no objects but tuples.
+At one moment jobs end first, then samples arrive, then activities are released; when all of that has happened, threads
+are dispatched to cores. The inner loop is written for speed: it works on lists indexed by small integers and creates no
+objects but tuples.
 """
 
 from __future__ import annotations
@@ -18,13 +19,15 @@ from archgen.simulation.plan import KEPT, PERIODIC, Plan
 from archgen.simulation.run import ARRIVAL, HELD, LATE, NOBODY, RELEASE, SEVERAL, TICK, Run
 
 MOST_WAITING = 2_000_000
-"""Events that may wait: far more than any system that comes to rest has."""
+"""The most events that may wait on the heap: far more than any system that settles has."""
 MOST_ROUNDS = 100_000
-"""Jobs of one thread, one after the other, that may take no time at all."""
+"""The most dispatches at one moment, which is what jobs that take no time cause."""
 
 
 class FloodError(Exception):
-    """Each event makes more than one other: the simulation would never end. `at` is when it was given up, in ns."""
+    """Each event causes more than one other, so that the simulation would never end. `gave_up_at` is the simulated time
+    in ns.
+    """
 
     def __init__(self, at: Fraction) -> None:
         super().__init__(at)
@@ -32,20 +35,27 @@ class FloodError(Exception):
 
 
 def go(plan: Plan, seed: int, horizon: int, watched: Collection[int] = (), logged: Collection[int] = ()) -> Run:
-    """Run a plan by a seed until a moment; note the jobs of the watched steps, and what they read on the logged wires."""
+    """Run a plan with a seed up to `horizon` (in units) and return the finished run.
+
+    The jobs of the `watched` activities are recorded, and which samples they read on the `logged` wires.
+    """
     run = Run(plan, seed, watched, logged)
     play(run, horizon)
     return run
 
 
 def play(run: Run, horizon: int) -> None:
-    """Play what was drawn until a moment."""
+    """Process all events up to `horizon` (in units). Raise EventFloodError if they multiply without end."""
     _begin(run)
+    # A key holds the time in its upper bits and the order within a moment in its lowest two, so that comparing one
+    # integer orders two events.
     heap = run.heap
     now = popped = rounds = 0
     while heap:
         key = heap[0][0]
         if key >> 2 > now:
+            # All events of this moment are processed: dispatch before time goes on. A job that takes no time ends at
+            # this very moment, so the heap is looked at again.
             if run.awake or run.touched:
                 dispatch(run, now)
                 rounds += 1
@@ -65,15 +75,18 @@ def play(run: Run, horizon: int) -> None:
             deliver(run, now, what, which)
         elif order == RELEASE:
             _release(run, now, what, which)
+        # A negative subject is the end of a job with a declared response, which belongs to an activity and not to a
+        # thread.
         elif what >= 0:
             ended(run, now, what, which)
         else:
             keep_promise(run, now, -1 - what)
+    # Job starts and direct deliveries skip the heap, and count as events too.
     run.events = popped + sum(run.steps.started) + run.wires.sent
 
 
 def _begin(run: Run) -> None:
-    """Publish what is published once, and set the clocks."""
+    """Deliver what is published once, and schedule the first tick of every periodic activity."""
     for at, step in enumerate(run.plan.steps):
         if step.kind == KEPT:
             for output in step.outputs:
@@ -85,7 +98,7 @@ def _begin(run: Run) -> None:
 
 
 def _release(run: Run, now: int, at: int, what: int) -> None:
-    """Let a clock tick, or let through what was held back by jitter."""
+    """Handle a release: a clock tick, a tick delayed by jitter, or an activation by data that jitter held back."""
     steps = run.steps
     if what == HELD:
         wire, sample = steps.held[at].popleft()
@@ -95,6 +108,8 @@ def _release(run: Run, now: int, at: int, what: int) -> None:
             enqueue(run, now, wire, sample)
         return
     if what == TICK:
+        # RELEASE, at, TICK)) | The next tick follows from the nominal time, not from the delayed one: jitter does not
+        # accumulate.
         heappush(run.heap, (now + steps.period[at] << 2 | RELEASE, at, TICK))
         jitter = steps.jitter[at]
         if jitter:

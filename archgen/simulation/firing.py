@@ -1,4 +1,4 @@
-"""Activations: who gets through, what queues up, and what a job takes in when it starts."""
+"""Activate jobs: gates (`every`, `throttle`), jitter, and what a job reads when it starts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from archgen.simulation.state import Job
 
 
 def passes(run: Run, now: int, at: int) -> bool:
-    """Say whether an activation gets through `every` and `throttle`."""
+    """Return whether an activation passes `every` and `throttle`, and advance their state."""
     step, steps = run.plan.steps[at], run.steps
     if step.every > 1:
         steps.turn[at] = (steps.turn[at] + 1) % step.every
@@ -24,8 +24,9 @@ def passes(run: Run, now: int, at: int) -> bool:
 
 
 def hold(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Hold back what is to fire a step by its jitter, in order."""
+    """Hold back an activation by data for up to the activity's jitter; activations keep their order."""
     steps = run.steps
+    # Never earlier than the activation before it, since `held_firings` is emptied in order.
     there = max(now + run.between(at, 0, steps.jitter[at]), steps.held_until[at])
     steps.held_until[at] = there
     steps.held[at].append((wire, sample))
@@ -33,7 +34,10 @@ def hold(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: 
 
 
 def fire(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Activate a step: a job waits for its thread. One whose end was declared begins at once, and only its load waits."""
+    """Activate an activity: queue a job for its thread.
+
+    With a declared response the job begins at once and ends on time; only its load is queued.
+    """
     steps = run.steps
     before = steps.fired[at]
     if before >= 0 and now - before > steps.firing_gap[at]:
@@ -49,7 +53,7 @@ def fire(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: 
 
 
 def _promise(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Start a job whose end was declared: whatever the load, it ends in the declared time."""
+    """Start a job with a declared response: it ends within the declared time whatever the load."""
     steps = run.steps
     job = (now, wire, sample)
     if wire >= 0 and not run.wires.request[wire]:
@@ -57,14 +61,17 @@ def _promise(run: Run, now: int, at: int, wire: int, sample: Any) -> None:  # no
     read(run, now, at, job)
     promised = steps.promised[at] or 0
     low = min(steps.shortest[at], promised)
+    # Jobs of one activity end in order, as they would on one thread.
     end = max(now + run.between(at, low, promised - low), steps.promise_end[at])
     steps.promise_end[at] = end
+    # `read` has just counted this job, so its number is one less than the count.
     steps.promises[at].append((now, wire, steps.started[at] - 1))
+    # END, -1 - at, 0)) | Activities are encoded as negative numbers here; thread numbers are not negative.
     heappush(run.heap, (end << 2 | END, -1 - at, 0))
 
 
 def read(run: Run, now: int, at: int, job: Job) -> None:
-    """Take in what fired a job, and what the other inputs hold."""
+    """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     steps, wires = run.steps, run.wires
     _, wire, sample = job
     if wire >= 0:
@@ -74,6 +81,7 @@ def read(run: Run, now: int, at: int, job: Job) -> None:
             wires.newest[one] = number
     for queue in wires.sampled[at]:
         wires.waiting[queue] = 0
+    # Requests that came before this start are answered at its end; later ones wait for the next job.
     if steps.asked[at]:
         steps.taken[at] += steps.asked[at]
         steps.asked[at] = []

@@ -1,4 +1,4 @@
-"""Threads and processors of a plan: who shares a thread, a container's threads, or cores."""
+"""Place activities on threads, and threads on processors, for a simulation plan."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from archgen.timing.system import Activity, System
 
 
 class Places:
-    """Threads and processors, numbered as activities ask for them. `number` gives the number of each activity."""
+    """Threads and processors, numbered as activities ask for them. `activity_numbers` is the number of each activity by
+    id.
+    """
 
     def __init__(self, system: System, number: Mapping[str, int]) -> None:
         self.system = system
@@ -28,6 +30,7 @@ class Places:
         self.core: dict[str, int | None] = {}
         self.loose: set[str] = set()
         for host in dict.fromkeys(a.host for a in system.activities.values() if a.host is not None):
+            # `pins` is the analysis's own placement, so that bounds and simulation agree on who may run where.
             for unit, core in pins(system, [a for a in system.activities.values() if a.host == host]).items():
                 self.core |= dict.fromkeys(unit, core)
                 if core is None:
@@ -36,12 +39,12 @@ class Places:
                     self.pinned[host].append(core)
 
     def cores(self) -> dict[str, int]:
-        """Give the cores of each host that something runs on."""
+        """Return the number of cores of each host that something runs on; 1 where it is unknown."""
         used = dict.fromkeys(processor.host for processor in self.processors if processor.host is not None)
         return {host: self.system.cores.get(host) or 1 for host in used}
 
     def thread(self, activity: Activity) -> int:
-        """Give the thread: one of its own, or that of its container."""
+        """Return the number of an activity's thread: its own, or the one of its single-threaded container."""
         container = activity.container
         threads = self.system.threads.get(container) if container is not None else None
         if container is not None and threads == 1:
@@ -58,7 +61,7 @@ class Places:
         return self.new_thread([activity], pool)
 
     def new_thread(self, members: list[Activity], pool: int) -> int:
-        """Add a thread, on the cores where its members run."""
+        """Add a thread on the cores where its members run, and return its number."""
         self.members.append([self.number[activity.id] for activity in members])
         core = self.core.get(members[0].id)
         self.processor_of_thread.append(self.processor(members[0], core))
@@ -67,7 +70,10 @@ class Places:
         return len(self.members) - 1
 
     def processor(self, activity: Activity, core: int | None) -> int:
-        """Give the cores that a thread may run on. Those to which something is pinned are kept for it."""
+        """Return the number of the processor that a thread may run on.
+
+        A core to which something is pinned is a processor of its own; the other cores of a host form one together.
+        """
         host = activity.host
         if host is None:
             self.processors.append(Processor(activity.id, None, 1))
@@ -83,12 +89,12 @@ class Places:
         return self.shared[host, core]
 
     def mixed(self, host: str) -> bool:
-        """Tell whether no core is left for what is not pinned: then it runs anywhere, between what is."""
+        """Return whether pins leave no core for the unpinned activities of a host, which then run on any core."""
         cores = self.system.cores.get(host) or 1
         return 1 < cores <= len(self.pinned.get(host, ())) and host in self.loose
 
     def pin(self, host: str | None, core: int | None) -> int:
-        """Give the core that a thread must have, among the shared ones of a host where no core is left."""
+        """Return the core that a pinned thread must have on a host where no core is left; -1 for any."""
         if host is None or core is None or not self.mixed(host):
             return -1
         return self.pinned[host].index(core) % (self.system.cores.get(host) or 1)

@@ -1,4 +1,4 @@
-"""A system flattened to lists indexed by small integers: what the engine's inner loop can read quickly.
+"""A system flattened to lists indexed by small integers, which the inner loop of the simulation reads quickly.
 
 Threads are what a scheduler sees: each activity has one of its own, except that those of a single-threaded container
 share one. Processors are what threads run on: a pinned core, the other cores of a host, or one of its own for a thread
@@ -14,20 +14,21 @@ from fractions import Fraction
 from archgen.timing.system import Arc
 
 PERIODIC, TRIGGERED, KEPT, IDLE = range(4)
-"""What starts an activity: the clock (or the world outside, by a stated period), an arrival, the start of everything (its
-data are kept), nothing that is known."""
+"""What starts an activity: the clock (or the outside world, by a stated period), an arrival, the start of the run (its
+data are kept), or nothing that is known.
+"""
 SAMPLED, ANY = -2, -1
 """Slots of wires that fire nobody, and of those that fire by themselves."""
 FINEST = 1000
-"""Times are counted in units of at most so many ns: phases and execution times fall between the written figures too."""
+"""The longest unit of time in ns: phases and execution times must be able to fall between the written figures."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wire:
-    """One arc, as the engine sees it. Times in units; `queue` is the reader's queue that a firing sample stands in.
+    """One arc, as the simulation sees it. Times are in units; `queue` is the reader's queue, -1 for calls and answers.
 
-    `slot` is the place of the input among those that all must be there, -1 for an any-of trigger, -2 where the
-    sample is only kept to be read; `link` is -1 where the wire has no link of known bandwidth.
+    `slot` is the position of the input in an all-of trigger, -1 for an any-of trigger, -2 where the sample is only kept
+    to be read. `link` is -1 where the wire has no link of known bandwidth.
     """
 
     target: int
@@ -39,17 +40,19 @@ class Wire:
     link: int
     transmission: int
     limit: int | None
-    """What the link's declared latency promises, queueing included. None where nothing is declared: then `best` (and `worst`,
-    the same) is what a sample needs beside its turn on the link."""
+    """The link's declared worst latency, queueing included. None where nothing is declared: then `best` (and `worst`,
+    which is the same) is what a sample needs in addition to its turn on the link.
+    """
     request: bool
     selective: bool = False
-    """Not every job of its source sends on it, and nothing is promised: a conditional output without `max_gap`, less than
-    one call for each activation, an answer for one of several who ask."""
+    """Whether some jobs of its source may not send on it, without any promise: a conditional output without `max_gap`,
+    less than one call for each activation, or an answer for one of several callers.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """What one output key reaches. `patience` None: published whenever it may be silent no longer than that (units)."""
+    """The wires of one output key. The output may stay silent for `patience` units; None: there is no such promise."""
 
     key: str
     wires: tuple[int, ...]
@@ -59,7 +62,9 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One activity, as the engine sees it. Times in units; `calls` are (calls for each activation, wires)."""
+    """One activity, as the simulation sees it. Times are in units; `calls` are pairs (calls for each activation,
+    wires).
+    """
 
     id: str
     kind: int
@@ -72,21 +77,21 @@ class Step:
     throttle: int
     slots: int
     kept: tuple[int, ...]
-    """The slots that an output published once fills for ever."""
+    """The slots that an output published once fills for good."""
     captured: tuple[int, ...]
-    """Wires of the inputs that must all be there: their newest samples go with a firing."""
+    """The wires of all inputs of an all-of trigger: their newest samples go with an activation."""
     wires: tuple[int, ...]
     outputs: tuple[Output, ...]
     calls: tuple[tuple[Fraction, tuple[int, ...]], ...]
     thread: int
     priority: int | None
     samples: bool
-    """It samples the world; where it does not, its activation is the event."""
+    """Whether it samples the world; if not, its activation is itself the event."""
 
 
 @dataclass(frozen=True, slots=True)
 class Processor:
-    """Cores that share one queue of threads. `name` says which."""
+    """Cores that share one queue of threads. `host` is None for a thread without a host."""
 
     name: str
     host: str | None
@@ -95,7 +100,7 @@ class Processor:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Everything that the engine needs. `unit` in ns; `unknown` says which figures were taken as nothing."""
+    """Everything that the event loop needs. `unit` is in ns; `unknown_figures` were taken as nothing."""
 
     unit: Fraction
     steps: tuple[Step, ...]
@@ -106,17 +111,17 @@ class Plan:
     members: tuple[tuple[int, ...], ...]
     """The activities of each thread."""
     affinity: tuple[int, ...]
-    """The core that a thread must have, among those of its processor; -1 for any."""
+    """The core that each thread must have, among those of its processor; -1 for any."""
     pool_of_thread: tuple[int, ...]
     """The container whose threads it shares, -1 for none."""
     pools: tuple[int, ...]
-    """How many threads each such container has."""
+    """The number of threads of each such container."""
     processors: tuple[Processor, ...]
     links: tuple[str, ...]
     queues: tuple[tuple[str, str, str], ...]
     """The activity, input and topic of each queue."""
     cores: Mapping[str, int]
-    """Of each host."""
+    """The number of cores, by host."""
     answers: Mapping[int, int]
-    """The wire that brings the answer back, by that of the request."""
+    """The wire that brings back the answer, by the wire of the request."""
     unknown: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""What was seen, and what it rests on, as plain data for `--format json` (schemas/simulation.schema.json)."""
+"""Simulation results and their assumptions as plain data for `--format json` (schemas/simulation.schema.json)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Plain = dict[str, object]
 
 
 def plain(result: Result, analysis: Analysis, chains: Mapping[str, ChainResult]) -> Plain:
-    """Give everything as JSON data: durations in ms, rates in Hz, shares without unit."""
+    """Return everything as JSON data: durations in ms, rates in Hz, shares without unit."""
     oldest = ages(analysis, chains)
     return {
         "version": 1,
@@ -128,4 +128,6 @@ def _share(value: Fraction | None) -> float | None:
 
 
 def _ms(value: Fraction | None) -> float | None:
+    # Rounded to a picosecond, so that the noise of binary fractions does not show.
+    """Convert ns to ms."""
     return None if value is None else round(float(value / _MS), 9)

@@ -1,4 +1,4 @@
-"""What was seen in all runs together; durations in ns."""
+"""What was observed in all runs together. Durations are in ns."""
 
 from __future__ import annotations
 
@@ -9,18 +9,20 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """Figures as they were distributed over all seeds."""
+    """How a duration was distributed over all seeds, in ns."""
 
     least: Fraction
     median: Fraction
     most_of_it: Fraction
-    """95 of 100 are no larger."""
+    """The 95th percentile."""
     largest: Fraction
 
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What was seen of a chain: None where nothing passed along all of it. `inputs` counts what the figures are of."""
+    """The figures of a chain, None where nothing passed along all of it. `input_count` is the number of inputs behind
+    them.
+    """
 
     reaction: Distribution | None
     age: Distribution | None
@@ -31,9 +33,9 @@ class Figures:
 
 @dataclass(frozen=True, slots=True)
 class ChainSeen:
-    """A chain: over all inputs, and over those alone that each output was published for, as its bound assumes.
+    """A chain: over all inputs, and over only those inputs for which each output was published, as its bound assumes.
 
-    `passing` is None where no output of the chain leaves any out: then the bound holds for all inputs.
+    `forwarded_inputs` is None where no output of the chain leaves any input out: then the bound holds for all of them.
     """
 
     through: tuple[str, ...]
@@ -42,13 +44,15 @@ class ChainSeen:
 
     @property
     def comparable(self) -> Figures:
-        """Give the figures that the bounds hold for."""
+        """The figures that the bounds hold for."""
         return self.every if self.passing is None else self.passing
 
 
 @dataclass(frozen=True, slots=True)
 class ActivitySeen:
-    """An activity: jobs done in all seeds, jobs a second, response times, largest gaps of activations and of ends."""
+    """An activity: jobs done in all seeds, jobs a second, response times, and largest gaps between activations and
+    ends.
+    """
 
     jobs: int
     rate: Fraction
@@ -57,12 +61,12 @@ class ActivitySeen:
     activation_gap: Fraction | None
     gap: Fraction | None
     silences: Mapping[str, Fraction]
-    """The largest time between two publications of each conditional output."""
+    """The longest time between two publications, by conditional output."""
 
 
 @dataclass(frozen=True, slots=True)
 class HostSeen:
-    """The share of a host's cores that was busy: over all seeds, and in the busiest one."""
+    """The busy share of a host's cores: over all seeds, and in the busiest one."""
 
     mean: Fraction
     largest: Fraction
@@ -70,7 +74,9 @@ class HostSeen:
 
 @dataclass(frozen=True, slots=True)
 class LinkSeen:
-    """A link of known bandwidth: the longest time from sending to sent, and the share of time that it was busy."""
+    """A link of known bandwidth: the longest wait from sending until sent (in ns), and the share of time that it was
+    busy.
+    """
 
     wait: Fraction
     share: Fraction
@@ -78,7 +84,7 @@ class LinkSeen:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What was seen. Each largest figure is a lower bound on the worst case: no run shows the worst for certain."""
+    """What was observed. Each maximum is a lower bound on the worst case: no run is certain to show the worst."""
 
     seconds: int
     seeds: int
@@ -90,4 +96,4 @@ class Result:
     drops: Mapping[tuple[str, str, str], int]
     """Samples pushed out of a queue unread, by activity, input and topic."""
     unknown: tuple[str, ...]
-    """Figures that are not written: they were taken as nothing, or what rests on them did not run."""
+    """Figures that are not written: they were taken as nothing, or what depends on them did not run."""

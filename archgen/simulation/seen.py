@@ -1,4 +1,4 @@
-"""What the runs so far showed of a plan, run by run."""
+"""Add up what the runs of a plan showed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from archgen.simulation.tracks import Track, nothing
 
 
 class Seen:
-    """What the runs so far showed, in units."""
+    """Totals over the runs so far, in units."""
 
     def __init__(self, plan: Plan, tracks: Mapping[str, Track]) -> None:
         self.plan = plan
@@ -28,17 +28,19 @@ class Seen:
         self.events = 0
 
     def add(self, run: Run, horizon: int) -> None:
-        """Add what one run showed."""
+        """Add the figures of one finished run."""
         steps = run.steps
         self.events += run.events
         self.jobs = [a + b for a, b in zip(self.jobs, steps.finished, strict=True)]
         self.worst = list(map(max, self.worst, steps.worst))
+        # -1 means that no job has ended yet.
         self.best = [b if a < 0 or 0 <= b < a else a for a, b in zip(self.best, steps.best, strict=True)]
         self.gap = list(map(max, self.gap, steps.gap))
         self.firing_gap = list(map(max, self.firing_gap, steps.firing_gap))
         self.silence = [list(map(max, a, b)) for a, b in zip(self.silence, steps.silence, strict=True)]
         self.drops = [a + b for a, b in zip(self.drops, run.wires.drops, strict=True)]
         self.busy.append(
+            # A job's whole execution is counted when it starts, and may reach beyond the end of the run.
             [min(busy, horizon * p.cores) for busy, p in zip(run.threads.busy, self.plan.processors, strict=True)]
         )
         self.link_wait = list(map(max, self.link_wait, run.wires.link_wait))
@@ -47,7 +49,7 @@ class Seen:
             track.add(run)
 
     def result(self, seconds: int, seeds: int, horizon: int, asked: Mapping[str, Sequence[str]]) -> Result:
-        """Give what was seen, and the chains that were asked for."""
+        """Return the result, with the chains that were asked for by the ids of their activities."""
         plan, unit = self.plan, self.plan.unit
         whole = seconds * seeds
         return Result(

@@ -1,4 +1,4 @@
-"""Samples leave: at once on one host, over a link with its latency and bandwidth between two."""
+"""Send samples: at once on one host, over a link with latency and bandwidth between two."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ from archgen.simulation.run import ARRIVAL, Run
 
 
 def send(run: Run, now: int, wire: int, sample: int) -> None:
-    """Send a sample, over the link if there is one; samples of one wire keep their order."""
+    """Send a sample, over its link if it has one; the samples of one wire keep their order."""
     wires = run.wires
     if wires.direct[wire]:
+        # Delivered without an event: most wires are local, and the heap is the most expensive part.
         wires.sent += 1
         deliver(run, now, wire, sample)
         return
     there = now + wires.best[wire]
     spread = wires.spread[wire]
     if spread:
+        # The reader's share of extremes is used, since wires have none of their own.
         there = run.between(wires.target[wire], there, spread)
     if wires.link[wire] >= 0:
         there = _over_link(run, now, there, wire)
@@ -30,7 +32,10 @@ def send(run: Run, now: int, wire: int, sample: int) -> None:
 
 
 def _over_link(run: Run, now: int, there: int, wire: int) -> int:
-    """Queue for a link's bandwidth. A declared latency has the queueing in it and is kept; else the queueing comes on top."""
+    """Queue a sample for a link's bandwidth and return when it arrives.
+
+    A declared latency includes queueing and is kept; without one, queueing is added on top.
+    """
     wires = run.wires
     link, transmission = wires.link[wire], wires.transmission[wire]
     free = wires.link_free[link]

@@ -1,4 +1,4 @@
-"""Many runs of one system, by seeds from 0 on."""
+"""Simulate one system many times, with seeds from 0 on."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ def simulate(
     chains: Mapping[str, Sequence[str]] | None = None,
     pauses: Pauses | None = None,
 ) -> Result:
-    """Run a system for so many seconds from each of so many seeds.
+    """Simulate a system for `seconds` with each of `seeds` seeds.
 
-    `chains` name activities along arcs. `pauses` see `flatten`: without them an output that has a promised largest gap
-    is published at each chance.
+    `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
+    conditional output with a promised largest gap is published at each chance.
     """
     plan = flatten(system, pauses)
+    # Only activities and wires on a chain are recorded: a trace grows with each job.
     ways = {key: found for key, way in (chains or {}).items() if (found := route(plan, way)) is not None}
     watched = {at for way in ways.values() for at in way.steps}
     logged = {wire for way in ways.values() for pair in way.wires for wire in pair}

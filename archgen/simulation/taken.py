@@ -1,4 +1,6 @@
-"""What a simulation takes for granted: what it draws at random, what nobody wrote, what contradicts itself."""
+"""What a simulation assumes: what it draws at random, what was filled in for figures nobody wrote, what contradicts
+itself.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ NOT_SIMULATED = (
     "deadlines and liveliness of quality of service",
     "whatever is outside of the architecture",
 )
-"""See docs/simulation.md."""
+"""The user's copy of this list is in docs/simulation.md."""
 
 
 _SOMETIMES = {
@@ -34,7 +36,7 @@ _SOMETIMES = {
 
 @dataclass(frozen=True, slots=True)
 class Default:
-    """A figure that was not written, what was taken for it, and of whom."""
+    """A figure that was not written, the value assumed for it, and the elements it is missing from."""
 
     figure: str
     taken: str
@@ -42,7 +44,7 @@ class Default:
 
 
 def drawn(system: System) -> tuple[str, ...]:
-    """Say what each seed draws at random, as far as this system leaves it open."""
+    """Return phrases for what each seed draws at random, as far as this system leaves it open."""
     activities, arcs = system.activities.values(), system.arcs
     containers = [name for name, threads in system.threads.items() if threads == 1]
     found = (
@@ -63,7 +65,7 @@ def drawn(system: System) -> tuple[str, ...]:
 
 
 def defaults(system: System) -> tuple[Default, ...]:
-    """Give what nobody wrote and the simulation needs."""
+    """Return the figures that nobody wrote and the simulation needs."""
     working = [a for a in system.activities.values() if a.behaviour != "once"]
     ranked = {a.host for a in working if a.priority is not None}
     bare = {a.host for a in working if a.host and system.cores.get(a.host) is None}
@@ -89,12 +91,13 @@ def defaults(system: System) -> tuple[Default, ...]:
 
 
 def _calls_by_default(system: System, activity: Activity) -> bool:
+    """Return whether an activity calls without saying how often."""
     requests = [arc for arc in system.out_of.get(activity.id, ()) if arc.role == "request"]
     return any(arc.output not in activity.calls for arc in requests)
 
 
 def contradictions(result: Result, analysis: Analysis) -> tuple[str, ...]:
-    """Say what is written and cannot be kept: there what is seen may exceed what follows from the words."""
+    """Return sentences on what is written but cannot hold: there an observed figure may exceed its bound."""
     return (*_rates(analysis), *_silences(result, analysis))
 
 
@@ -118,7 +121,7 @@ def _silences(result: Result, analysis: Analysis) -> Iterator[str]:
 
 
 def choosy(system: System, through: tuple[str, ...]) -> tuple[str, ...]:
-    """Say which elements of a chain do not send each input on, without a promise of when they do."""
+    """Return phrases for the elements of a chain that may not send each input on, and do not promise when they do."""
     found = (
         f"{source} {_SOMETIMES[arc.role]} {arc.topic}"
         for source, target in pairwise(through)

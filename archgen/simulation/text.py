@@ -1,4 +1,4 @@
-"""What was seen, for people: each figure beside its bound, and never one that exceeds it without a word."""
+"""Simulation results for people: each figure beside its bound, and a mark wherever it exceeds the bound."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from archgen.timing.value import Value
 _MS = 10**6
 _WIDTH = 110
 _NAMED = 3
-"""So many elements are named in a line; `--format json` has all."""
+"""The most elements that a line names; `--format json` lists all."""
 _NOTHING_RAN = (
     "Nothing ran: no element has a period or a rate, and so nothing begins. Write what is known, at the sources first:",
     "    timing: {period: 20 ms, wcet: 3 ms}",
@@ -24,7 +24,7 @@ _NOTHING_RAN = (
 
 
 def text(title: str, result: Result, analysis: Analysis, chains: Mapping[str, ChainResult]) -> str:
-    """Give everything for people."""
+    """Return the whole report as text."""
     lines = [
         title,
         "",
@@ -42,7 +42,7 @@ def text(title: str, result: Result, analysis: Analysis, chains: Mapping[str, Ch
 
 
 def _wrapped(words: str) -> Iterator[str]:
-    """Break a sentence; what follows the first line is indented."""
+    """Break a sentence into lines; all but the first are indented."""
     yield from wrap(words, _WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
 
@@ -80,7 +80,7 @@ def _chains(result: Result, analysis: Analysis, chains: Mapping[str, ChainResult
 
 
 def _is_marked(seen: ChainSeen, chain: ChainResult) -> bool:
-    """Tell whether a bound stands beside the figures that does not hold for all inputs."""
+    """Return whether the bound beside the figures does not hold for all inputs."""
     return seen.passing is not None and known(chain.bound) is not None
 
 
@@ -131,7 +131,8 @@ def _hosts(result: Result, analysis: Analysis) -> Iterator[str]:
 
 
 def _drops(result: Result, analysis: Analysis) -> Iterator[str]:
-    """Tell of lost work first; that a sampled input is overwritten is how sampling works."""
+    """Yield the lines on lost samples, those that fire their reader first: overwriting sampled inputs is normal."""
+    # Only an input that fires loses work when a sample is dropped.
     fires = {key: count for key, count in result.drops.items() if key[1] in analysis.system.activities[key[0]].triggers}
     if fires:
         yield from (
@@ -156,6 +157,7 @@ def _taken(result: Result, analysis: Analysis) -> Iterator[str]:
     yield from _wrapped(f"Drawn at random: {'; '.join(taken.drawn(analysis.system))}.")
     for default in taken.defaults(analysis.system):
         yield from _wrapped(f"Not written: {default.figure}, taken as {default.taken}: {_names(default.of)}.")
+    # These two are listed above, among the figures that were filled in.
     others = [said for said in result.unknown if not said.startswith(("execution time of", "latency from"))]
     if others:
         yield from _wrapped(f"Not known, so that nothing runs by it: {', '.join(others)}.")
@@ -172,7 +174,7 @@ def _figure(value: Fraction | None) -> str:
 
 
 def _cell(bound: Value | None, seen: Fraction | None) -> str:
-    """Show a bound; with a `!` where more was seen."""
+    """Format a bound, with a `!` if more than it was observed."""
     limit = known(bound)
     if limit is None:
         return "no bound"

@@ -1,4 +1,4 @@
-"""The chains that a simulation follows: their steps and wires, and what all runs together showed of each."""
+"""The chains that a simulation follows: their activities and wires, and what all runs together showed of each."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from archgen.simulation.series import Series, Span, Trace, quantiles, series
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A chain by numbers: its steps, the wires between each two of them, and what each run showed."""
+    """A chain by numbers: its activities, the parallel wires between each two of them, and the figures of each run."""
 
     steps: tuple[int, ...]
     wires: tuple[tuple[int, ...], ...]
@@ -26,7 +26,7 @@ class Track:
     passing: list[Series] = field(default_factory=list)
 
     def add(self, run: Run) -> None:
-        """Read one run's figures."""
+        """Add the figures of one run."""
         trace = Trace(
             run.steps.firings[self.steps[0]],
             [_stalest(run, wires) for wires in self.wires],
@@ -39,18 +39,18 @@ class Track:
             self.passing.append(series(trace, passing=True))
 
     def seen(self, through: Sequence[str], unit: Fraction) -> ChainSeen:
-        """Give what all runs showed."""
+        """Summarise all runs. `through` are the ids of the activities, `unit` is in ns."""
         passing = _figures(self.passing, unit) if self.selective else None
         return ChainSeen(tuple(through), _figures(self.every, unit), passing)
 
 
 def nothing(through: Sequence[str]) -> ChainSeen:
-    """Give what is seen of a chain that nothing can pass along."""
+    """Return the empty result of a chain along which nothing can pass."""
     return ChainSeen(tuple(through), _figures((), Fraction(1)), None)
 
 
 def route(plan: Plan, way: Sequence[str]) -> Track | None:
-    """Follow a way of activities; None where a step has no wire."""
+    """Find the wires along a list of activities; None where two neighbours have no wire."""
     number = {step.id: at for at, step in enumerate(plan.steps)}
     wires = tuple(
         tuple(at for at, arc in enumerate(plan.arcs) if (arc.source, arc.target) == pair) for pair in pairwise(way)
@@ -63,17 +63,20 @@ def route(plan: Plan, way: Sequence[str]) -> Track | None:
 
 
 def _stalest(run: Run, wires: Sequence[int]) -> list[int]:
-    """Tell for each job of an activity which job of the one before it has reached it by all of several arcs."""
+    """Return for each job of an activity the oldest job of the one before it whose data it read on any of several
+    wires.
+    """
     return list(map(min, *(run.wires.log[wire] for wire in wires))) if len(wires) > 1 else run.wires.log[wires[0]]
 
 
 def _passed(run: Run, wires: Sequence[int]) -> frozenset[int] | None:
-    """Tell which jobs sent something on all of several arcs; None where all do."""
+    """Return the jobs that sent something on all of several wires; None where every job does."""
     found = [frozenset(run.wires.passed[wire]) for wire in wires if run.wires.noted[wire]]
     return frozenset.intersection(*found) if found else None
 
 
 def _figures(found: Sequence[Series], unit: Fraction) -> Figures:
+    """Summarise the figures of all runs, converted to ns."""
     reduced = [one.reduced_reaction for one in found if one.reduced_reaction is not None]
     reduced_ages = [one.reduced_age for one in found if one.reduced_age is not None]
     return Figures(
@@ -86,11 +89,13 @@ def _figures(found: Sequence[Series], unit: Fraction) -> Figures:
 
 
 def _distribution(spans: Sequence[Span], unit: Fraction) -> Distribution | None:
+    """Summarise ranges as a distribution in ns; None where there are none."""
     if not spans:
         return None
     median, most = quantiles(spans, (0.5, 0.95))
     return Distribution(
         min(low for low, _ in spans) * unit,
+        # `compute_quantiles` works in floats; the rounded fraction keeps the result exact from here on.
         Fraction(median).limit_denominator(1000) * unit,
         Fraction(most).limit_denominator(1000) * unit,
         max(high for _, high in spans) * unit,

@@ -1,4 +1,4 @@
-"""What somebody who starts a project says: in flags or in answers to questions."""
+"""What the user decides when starting a project, by flags or by answers to questions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Forge = Literal["github", "gitlab", "none"]
 
 @dataclass(frozen=True, slots=True)
 class Partner:
-    """An organisation; `reviewers` is who its changes are shown to, as CODEOWNERS names them."""
+    """An organisation; `reviewers` is who reviews its changes, as CODEOWNERS names them."""
 
     id: str
     title: str
@@ -23,13 +23,13 @@ class Partner:
 
     @property
     def body(self) -> dict[str, str]:
-        """Give what stands below its id."""
+        """What is written below the partner's id."""
         return {"title": self.title} | ({"reviewers": self.reviewers} if self.reviewers else {})
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A first group; `owner` is the id of a partner, or empty."""
+    """One of the first groups; `owner` is the id of a partner, or empty."""
 
     id: str
     title: str
@@ -49,12 +49,13 @@ class Answers:
 
 
 ROBOT = ("sensing", "driving")
-"""The groups of the example that is written where nobody names any."""
+"""The groups of the example that is written where the user names none."""
 
 
 def partner(words: str) -> Partner:
-    """Read `certh=CERTH-ITI @certh/robotics`; id, title or handle may be left out. Raises ValueError."""
+    """Read `certh=CERTH-ITI @certh/robotics`; id, title or handle may be left out. Raise ValueError."""
     parts = words.split()
+    # A handle alone does not name a partner.
     handle = parts.pop() if len(parts) > 1 and "@" in parts[-1] else ""
     if handle and not HANDLE.match(handle):
         msg = f"'{handle}' is no handle: write @user, @organisation/team or an e-mail address"
@@ -64,7 +65,7 @@ def partner(words: str) -> Partner:
 
 
 def group(words: str, partners: Iterable[Partner]) -> Group:
-    """Read `perception=certh`: a group's id or title, and the partner who owns it, if one does. Raises ValueError."""
+    """Read `perception=certh`: a group's id or title, and the partner who owns it, if any. Raise ValueError."""
     left, _, owner = (part.strip() for part in words.partition("="))
     known = [partner.id for partner in partners]
     if owner and owner not in known:
@@ -76,7 +77,7 @@ def group(words: str, partners: Iterable[Partner]) -> Group:
 
 
 def _named(words: str, sort: str) -> tuple[str, str]:
-    """Give id and title of `id=Title`, of an id, or of a title."""
+    """Return id and title of `id=Title`, of an id, or of a title. Raise ValueError."""
     left, equals, title = (part.strip() for part in words.partition("="))
     if not left:
         msg = f"a {sort} has a name"
@@ -90,14 +91,14 @@ def _named(words: str, sort: str) -> tuple[str, str]:
 
 
 def with_partners(given: Answers, named: Mapping[str, str]) -> Answers:
-    """Add the partners that a table names (title by id) to those that were given with title and handle."""
+    """Add the partners that a table names (title by id) to those given with title and handle."""
     known = {one.id for one in given.partners}
     more = tuple(Partner(name, title) for name, title in named.items() if name not in known)
     return replace(given, partners=(*given.partners, *more))
 
 
 def distinct(found: Iterable[Partner | Group], sort: str) -> None:
-    """See to it that no id is given twice. Raises ValueError."""
+    """Check that no id is used twice. Raise ValueError."""
     seen = set[str]()
     for one in found:
         if one.id in seen:
@@ -115,12 +116,13 @@ def gathered(  # noqa: PLR0913 - one for each flag
     distro: str | None = None,
     forge: Forge = "github",
 ) -> Answers:
-    """Make answers of flags and the folder's name; what nobody said has its default. Raises ValueError."""
+    """Collect answers from flags and the folder's name, with defaults for the rest. Raise ValueError."""
     name = ids.made(folder, "robot")
     who = tuple(partner(words) for words in partners)
     what = tuple(group(words, who) for words in groups)
     distinct(who, "partner")
     distinct(what, "group")
+    # Example groups show two owners where there are two partners.
     owners = (who[0].id, who[-1].id) if who else ("", "")
     first = tuple(Group(id_, made_title(id_), owner) for id_, owner in zip(ROBOT, owners, strict=True))
     told = (title or "").strip() or name.replace("_", " ").capitalize()

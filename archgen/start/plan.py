@@ -1,4 +1,4 @@
-"""Which files a new project gets, where they go, and which of them are there already."""
+"""Decide which files a new project gets, where they go, and which of them exist already."""
 
 from __future__ import annotations
 
@@ -18,12 +18,14 @@ from archgen.syntax.folder import Folder
 from archgen.syntax.overlay import Overlay
 
 _OWNERS = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
-"""Where GitHub and GitLab look; the first that is there counts."""
+"""Where GitHub and GitLab look for the file; the first that exists counts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is written (by absolute path), what is kept because it is there, and the folder that holds all of it: the repository's."""
+    """Files to write (by absolute path), files kept because they exist, and the folder that holds all of them: the
+    repository's.
+    """
 
     files: Mapping[Path, bytes]
     kept: tuple[Path, ...]
@@ -32,7 +34,7 @@ class Plan:
 
 
 def other_yaml(folder: Path) -> bool:
-    """Tell whether YAML files lie below that are nobody's slices: the project then names its own."""
+    """Return whether there are YAML files below that are not slices of this project: it then has to name its own."""
     return bool(globs.expand(Folder(folder), "**/*.yaml"))
 
 
@@ -43,6 +45,7 @@ def judge(files: Mapping[str, bytes], name: str) -> Checked:
 
 def plan(folder: Path, answers: Answers, yaml_files: Mapping[str, bytes], checked: Checked) -> Plan:
     """Put the files together: the project's in its folder, what the forge reads at the top of the repository."""
+    # Resolved, so that it can be relative to the repository's folder even through a symbolic link.
     target = Path(os.path.realpath(folder))
     top = _repository(target) or target
     prefix = "" if target == top else target.relative_to(top).as_posix()
@@ -52,6 +55,7 @@ def plan(folder: Path, answers: Answers, yaml_files: Mapping[str, bytes], checke
     if any(partner.reviewers for partner in answers.partners):
         there = next((name for name in _OWNERS if os.path.lexists(top / name)), "CODEOWNERS")
         wanted[top / there] = ownership.codeowners(checked, prefix).text.encode()
+    # `lexists`: a broken symbolic link is kept as well.
     kept = tuple(path for path in wanted if os.path.lexists(path))
     return Plan({path: data for path, data in wanted.items() if path not in kept}, kept, top, reviewers_missing)
 
@@ -74,5 +78,5 @@ def _forge(answers: Answers, inner: str) -> dict[str, bytes]:
 
 
 def _repository(folder: Path) -> Path | None:
-    """Give the top of the git repository around a folder, by its `.git`; git itself is not asked."""
+    """Return the top of the git repository around a folder, by its `.git`; git itself is not called."""
     return next((above for above in (folder, *folder.parents) if os.path.lexists(above / ".git")), None)

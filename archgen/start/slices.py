@@ -11,7 +11,7 @@ from archgen.start import templates
 from archgen.start.answers import Answers
 
 _WIDE = 110
-"""Columns of a line; what is longer goes on below."""
+"""The columns of a line; what is longer continues below."""
 _R1 = "The robot touches neither people nor things that it should not touch"
 _HINTS = {
     "functionality": "  # what it does, in a sentence or two",
@@ -22,16 +22,17 @@ _HINTS = {
 
 
 def example(answers: Answers, others: bool) -> dict[str, bytes]:  # noqa: FBT001 - what `other_yaml` found
-    """Give the files of a project that begins with an example."""
+    """Return the files of a project that begins with an example."""
     top = templates.project(answers, {"R-1": _R1}, {}, sources=others)
     return {MARKER: top, **templates.groups(answers)}
 
 
 def imported(answers: Answers, data: Mapping[str, Any], others: bool) -> dict[str, bytes]:  # noqa: FBT001 - as above
-    """Give the files of a project whose groups, nodes, types and requirements come from elsewhere."""
+    """Return the files of a project whose groups, nodes, types and requirements were imported."""
     top = templates.project(answers, data.get("requirements", {}), data.get("types", {}), sources=others)
     files = {MARKER: top}
     for name, group in data.get("groups", {}).items():
+        # With the dot, so that the group `arm` does not take the nodes of `arm_left`.
         own = f"{name}."
         nodes = {key: node for key, node in data.get("nodes", {}).items() if _first(node).startswith(own)}
         files[f"groups/{name}.yaml"] = ("\n".join(_slice(name, group, nodes)) + "\n").encode()
@@ -39,6 +40,7 @@ def imported(answers: Answers, data: Mapping[str, Any], others: bool) -> dict[st
 
 
 def _first(node: Mapping[str, Any]) -> str:
+    """Return the first component that a node implements: it decides into which group's file the node goes."""
     found = node["implements"]
     return str(found if isinstance(found, str) else found[0])
 
@@ -63,7 +65,7 @@ def _slice(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) -> Ite
 
 
 def _component(body: Mapping[str, Any]) -> Iterator[str]:
-    """Write a component; what is not known stands there empty, with a word on what belongs there."""
+    """Yield the lines of a component; unknown keys are left empty, with a comment on what belongs there."""
     keys = dict.fromkeys((*(key for key in body if key not in {"inputs", "outputs"}), "functionality"))
     for key in keys:
         yield from _entry(key, body.get(key), "        ")
@@ -78,7 +80,7 @@ def _component(body: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _entry(key: str, value: object, indent: str, hint: str = "") -> Iterator[str]:
-    """Write one key: on its line where it fits, long text folded, long lists and mappings below."""
+    """Yield the lines of one key: on one line where it fits, long text folded, long lists and mappings below."""
     head = f"{indent}{yaml.scalar(key)}:"
     if value is None:
         yield f"{head}{_HINTS.get(hint or key, '')}"

@@ -1,4 +1,4 @@
-"""Fill in the files of `start/`, which hold the layout of all that a new project begins with."""
+"""Fill in the templates of `start/`, which hold the layout of everything that a new project begins with."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from archgen.emit.text.filters import markdown
 from archgen.start.answers import ROBOT, Answers, Group
 
 _PLAIN_PATH = re.compile(r"[A-Za-z0-9._/-]+\Z")
-"""Folders that mean themselves in a workflow's path filter."""
+"""Folders without characters that have a meaning in a workflow's path filter."""
 SCHEMA = ".archgen/archgen.schema.json"
 HINTS = {
     "inputs": "                      # where the data comes from: group.component.output",
@@ -33,6 +33,7 @@ def _environment() -> jinja2.Environment:
         keep_trailing_newline=True,
         trim_blocks=True,
         lstrip_blocks=True,
+        # Braces would clash with YAML's flow mappings and with GitHub's own `${{ }}`.
         variable_start_string="[[",
         variable_end_string="]]",
         block_start_string="[%",
@@ -45,19 +46,19 @@ def _environment() -> jinja2.Environment:
 
 
 def fill(name: str, **values: object) -> bytes:
-    """Give one template's text."""
+    """Return one template's text."""
     return _environment().get_template(name).render(values).encode()
 
 
 def plain(name: str) -> bytes:
-    """Give a file that is taken as it is."""
+    """Return a file that is used as it is."""
     return resources.path("start", *name.split("/")).read_bytes()
 
 
 def project(
     answers: Answers, requirements: Mapping[str, object], types: Mapping[str, object], *, sources: bool
 ) -> bytes:
-    """Give archgen.yaml; with `sources` it names its slices, since other YAML files lie beside them."""
+    """Return archgen.yaml; with `sources` it names its slices, since there are other YAML files beside them."""
     return fill(
         "archgen.yaml.j2",
         id=answers.id,
@@ -71,23 +72,24 @@ def project(
 
 
 def readme(answers: Answers) -> bytes:
-    """Give the project's README."""
+    """Return the project's README."""
     return fill("README.md.j2", title=answers.title, forge=answers.forge, partners=answers.partners)
 
 
 def workflow(folder: str) -> bytes:
-    """Give GitHub's workflow for a project in a folder of the repository (empty: the repository itself)."""
+    """Return GitHub's workflow for a project in a folder of the repository (empty: the repository itself)."""
     paths = [f"{folder}/**"] if _PLAIN_PATH.match(folder) else []
+    # A folder's name must not become an expression of GitHub; below, not a variable of GitLab.
     return fill("github.yml.j2", folder=folder.replace("${{", "${{ '${{' }}"), paths=paths)
 
 
 def pipeline(folder: str) -> bytes:
-    """Give GitLab's pipeline."""
+    """Return GitLab's pipeline."""
     return fill("gitlab.yml.j2", folder=folder.replace("$", "$$") or ".")
 
 
 def groups(answers: Answers) -> dict[str, bytes]:
-    """Give a file for each group, with a first component or two: a flow from a sensor to an actuator."""
+    """Return a file for each group, with a first component or two: a flow from a sensor to an actuator."""
     named = tuple(group.id for group in answers.groups) != ROBOT
     examples = pyyaml.safe_load(plain("examples.yaml"))["stubs" if named else "robot"]
     files, source = dict[str, bytes](), ""
@@ -104,7 +106,7 @@ def groups(answers: Answers) -> dict[str, bytes]:
 
 
 def _kinds(number: int, count: int) -> list[str]:
-    """Say what the example in a group is: sensor first, actuator last, steps between."""
+    """Return the kinds of example components in a group: sensor first, actuator last, steps between."""
     kinds = ["sensor"] if number == 0 else []
     if (count < 3 and number == count - 1) or 0 < number < count - 1:  # noqa: PLR2004 - first, middle, last
         kinds.append("step")
@@ -116,6 +118,7 @@ def _component(example: Mapping[str, Any], group: Group, kind: str, source: str)
     if source:
         body["inputs"] = {source.rpartition(".")[2]: source}
     node = {**example["node"]}
+    # An id has at most 64 characters (`ids.LONGEST`).
     name = node.pop("id", f"{group.id}_{kind}"[:64].strip("_"))
     return {
         "id": example["id"],
@@ -126,11 +129,11 @@ def _component(example: Mapping[str, Any], group: Group, kind: str, source: str)
 
 
 def _entry(value: object) -> str:
-    """Write what stands behind a key's colon: nothing for what is not known yet."""
+    """Return what follows a key's colon: nothing for what is not known yet."""
     return f" {yaml.flow(value)}" if value is not None else ""
 
 
 def schema() -> bytes:
-    """Give the JSON Schema for editors, smaller than it ships."""
+    """Return the JSON Schema for editors, more compact than it ships."""
     data = json.loads(resources.path("schemas", "archgen.schema.json").read_bytes())
     return (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode()

@@ -1,1 +1,1 @@
-"""Syntax: files become trees with positions. YAML, and the interface definitions of ROS."""
+"""Syntax: parse YAML files and ROS interface definitions into trees that know where each value was written."""

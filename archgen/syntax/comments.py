@@ -1,4 +1,4 @@
-"""What stands in a file beside its data: ignore comments, Git's conflict markers, and comments that swallow text."""
+"""Find what the YAML parser drops: ignore comments, Git's conflict markers, and comments that swallow text."""
 
 from __future__ import annotations
 
@@ -13,32 +13,35 @@ from archgen.syntax.tree import Ignore
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+# These patterns run over whole files, and none of them crosses the end of a line.
 _IGNORE = re.compile(r"#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)")
 _CONFLICT = re.compile(r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]+([^\r\n]*?))?[ \t]*\r?$", re.MULTILINE)
 _HASH = re.compile(r"#(?<=[ \t]#)[^\s]")
 _SWALLOWED = re.compile(r"[ \t]+#(?!\s*archgen:)[^\s][^\r\n]*")
+# After an empty value only `#12` and colours such as `#ff8800` count: those are values that somebody forgot to quote.
 _SWALLOWED_WHOLE = re.compile(r"[ \t]*#(?:[0-9]|[0-9a-fA-F]{6}\b)[^\r\n]*")
 
 
 class Lines:
-    """Finds the line and column of an offset in a text."""
+    """The offsets at which the lines of a text begin, to turn an offset into a line and a column."""
 
     __slots__ = ("_starts",)
 
     def __init__(self, text: str) -> None:
-        """Note where each line begins."""
+        """Record where each line of a text begins."""
         self._starts = [0, *(found.end() for found in re.finditer(r"\r\n?|\n", text))]
 
     def span(self, file: str, start: int, end: int) -> Span:
-        """Give the place of a stretch of text."""
+        """Return the span between two offsets (from 0, the end exclusive)."""
         line, last = bisect_right(self._starts, start), bisect_right(self._starts, end)
         return Span(file, line, start - self._starts[line - 1] + 1, last, end - self._starts[last - 1] + 1)
 
 
 def ignores(file: str, text: str, quoted: Sequence[tuple[int, int]]) -> Iterator[Ignore]:
-    """Give the comments `# archgen: ignore[rule] why`, but for what stands inside quoted or block text.
+    """Yield the comments `# archgen: ignore[rule] why`, except those inside quoted or block text.
 
-    `quoted` holds the offsets of such text, in order. A comment that names no rule has no rules: it silences nothing.
+    `quoted_ranges` are the start and end offsets of such text, in order. A comment without rules silences nothing; it
+    is yielded all the same, so that it can be reported.
     """
     starts = [start for start, _ in quoted]
     lines: Lines | None = None
@@ -46,6 +49,7 @@ def ignores(file: str, text: str, quoted: Sequence[tuple[int, int]]) -> Iterator
         before = bisect_right(starts, match.start()) - 1
         if before >= 0 and match.start() < quoted[before][1]:
             continue
+        # YAML needs a blank before `#`: without one the characters are a part of plain text.
         if match.start() and text[match.start() - 1] not in " \t\r\n":
             continue
         lines = lines or Lines(text)
@@ -55,12 +59,13 @@ def ignores(file: str, text: str, quoted: Sequence[tuple[int, int]]) -> Iterator
 
 
 def may_hold_ignores(text: str) -> bool:
-    """Say cheaply whether it is worth noting where quoted text stands."""
+    """Whether a text may hold ignore comments; a cheap test that decides if quoted ranges are recorded at all."""
     return "archgen:" in text and _IGNORE.search(text) is not None
 
 
 def conflicts(file: str, text: str) -> tuple[Diagnostic, ...]:
-    """Find Git's conflict markers, each conflict with both of its sides."""
+    """Find Git's conflict markers; one diagnostic for each conflict, labelled with both of its sides."""
+    # Two substring searches are much cheaper than the regular expression, and nearly every file ends here.
     if "<<<<<<<" not in text and ">>>>>>>" not in text:
         return ()
     return tuple(_conflicts(file, text))
@@ -69,6 +74,8 @@ def conflicts(file: str, text: str) -> tuple[Diagnostic, ...]:
 def _conflicts(file: str, text: str) -> Iterator[Diagnostic]:
     lines = Lines(text)
     ours: re.Match[str] | None = None
+    # A line of seven `=` alone is also a legal Markdown underline in a block of text: markers count only in their order
+    # `<`, `=`, `>`. The marker `|` of the diff3 style needs no action, it lies between the first two.
     middle: re.Match[str] | None = None
     for match in _CONFLICT.finditer(text):
         if match[1][0] == "<":
@@ -93,7 +100,7 @@ def _both(ours: str | None, theirs: str | None) -> str:
 
 
 def lines_with_hashes(text: str) -> frozenset[int]:
-    """Give the lines (from 0) on which a comment could have swallowed text."""
+    """Return the lines (from 0) on which ` #` is followed by a non-blank: a comment may have swallowed text there."""
     if "#" not in text or _HASH.search(text) is None:
         return frozenset()
     lines = re.split(r"\r\n|\r|\n", text)
@@ -101,9 +108,9 @@ def lines_with_hashes(text: str) -> frozenset[int]:
 
 
 def swallowed(source: str, at: Span, offset: int, *, empty: bool) -> Iterator[Diagnostic]:
-    """Say where a comment right after plain text, which ends at `offset`, looks like a part of it.
+    """Report a comment right after a plain value, which ends at `end_offset`, that looks like a part of the value.
 
-    After an empty value only what looks like a number or a colour counts: comments are common there.
+    After an empty value only a comment that looks like a number or a colour counts: other comments are common there.
     """
     match = (_SWALLOWED_WHOLE if empty else _SWALLOWED).match(source, offset)
     if match is None:

@@ -1,6 +1,7 @@
-"""Read one file of a project safely: whatever stands there, in bounded time and memory, as text or as a diagnostic.
+"""Read one file of a project safely: in bounded time and memory, as text or as a diagnostic, whatever the file is.
 
-A project lies in a folder on disk (`folder.py`) or in a commit of git (`committed.py`).
+A project lies in a folder on disk (`FolderFiles`), in a commit of git (`CommittedFiles`), or in either with some files
+replaced (`OverlaidFiles`).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _OTHER_ENCODINGS = ((b"\xff\xfe", "UTF-16"), (b"\xfe\xff", "UTF-16"))
 
 
 class Refusal(NamedTuple):
-    """Why a file is not used, and what to do."""
+    """Why a file cannot be used, what to do about it, and the rule that reports it."""
 
     message: str
     help: str | None = None
@@ -31,43 +32,44 @@ TOO_LARGE = Refusal(f"the file is larger than {MAX_BYTES // (1024 * 1024)} MiB",
 
 
 class Files(Protocol):
-    """The files of a project. Paths are relative to its folder and use `/`."""
+    """The files of a project. Paths are relative to its folder and use `/` on every platform."""
 
     @property
     def root(self) -> Path:
-        """Give the project's folder; where the files come from a commit, the folder that holds or held them on disk."""
+        """The project's folder; for files of a commit the folder that holds, or once held, them on disk."""
         ...
 
     @property
     def commit(self) -> str:
-        """Give the full hash of the commit that holds the files, empty for those on disk."""
+        """The full hash of the commit that holds the files; empty for files on disk."""
         ...
 
     def exists(self, path: str) -> bool:
-        """Say whether anything stands there, be it a broken link."""
+        """Whether there is anything at a path, even a broken link."""
         ...
 
     def walk(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
-        """Walk down from a folder, as `os.walk` does, with folders given relative to `top`; folders taken out of the list
-        are not entered, links to folders never.
+        """Walk down from a folder as `os.walk` does: yield (folder relative to `top`, its folders, its files).
+
+        A caller that removes folders from the second list keeps them from being entered. Links to folders never are.
         """
         ...
 
     def fetch(self, path: str) -> bytes | Refusal:
-        """Give the bytes of a regular file of a sane size inside the project."""
+        """Return the bytes of a regular file inside the project of at most `MAX_BYTES`, or why it cannot be used."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A file's text. `text` is what could be decoded for excerpts even where `problem` says why it is not used."""
+    """A file's text. Where `problem` says why the file is not used, `text` is what could be decoded, for excerpts."""
 
     text: str
     problem: Diagnostic | None = None
 
 
 def read(files: Files, file: str) -> Text:
-    """Read a file, refusing all that is not a UTF-8 text of the project."""
+    """Read a file as UTF-8 text; anything else becomes the `problem`."""
     data = files.fetch(file)
     if isinstance(data, Refusal):
         return Text("", Diagnostic(data.rule, data.message, Span.of_file(file), help=data.help))
@@ -75,10 +77,10 @@ def read(files: Files, file: str) -> Text:
 
 
 def read_bytes(files: Files, file: str) -> bytes | None:
-    """Read a picture or the like; None where no regular file of a sane size stands there."""
+    """Read a binary file such as a picture; None where it is absent, too large or no regular file."""
     try:
         data = files.fetch(file)
-    except ValueError:
+    except ValueError:  # a NUL or a lone surrogate in the path: the operating system refuses such names
         return None
     return data if isinstance(data, bytes) else None
 
@@ -93,9 +95,10 @@ def _decode(file: str, data: bytes) -> Text:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         shown = data.decode("utf-8", "replace")
-        before = data[: error.start].decode("utf-8")
+        before = data[: error.start].decode("utf-8")  # what precedes the first bad byte is sound
         message = f"the byte 0x{data[error.start]:02X} is not UTF-8"
         return Text(shown, Diagnostic("syntax-error", message, place(file, before), help="save the file as UTF-8"))
+    # A NUL is legal UTF-8, but it is the surest sign of a binary file, and YAML forbids it.
     nul = text.find("\0")
     if nul >= 0:
         at = place(file, text[:nul])
@@ -104,6 +107,6 @@ def _decode(file: str, data: bytes) -> Text:
 
 
 def place(file: str, before: str) -> Span:
-    """Give the place of the one character that follows `before`, the file's text up to there."""
+    """Return the span of the one character that follows `text_before`, the file's text up to there."""
     lines = before.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     return Span(file, len(lines), len(lines[-1]) + 1, len(lines), len(lines[-1]) + 2)

@@ -1,4 +1,4 @@
-"""A project's files as they lie in a folder on disk."""
+"""Read a project's files from a folder on disk."""
 
 from __future__ import annotations
 
@@ -21,24 +21,27 @@ _KINDS = (
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """The files below a folder."""
+    """The files below a folder on disk. Implements `ProjectFiles`."""
 
     root: Path
     commit: str = ""
 
     def exists(self, path: str) -> bool:
-        """Say whether anything stands there, be it a broken link."""
+        """Whether there is anything at a path, even a broken link."""
         return os.path.lexists(self.root / path)
 
     def walk(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
-        """Walk as `os.walk` does."""
+        """Walk as `os.walk` does, with folders relative to `top`; links to folders are not entered."""
         start = self.root / top
         for folder, folders, names in os.walk(start):
             below = os.path.relpath(folder, start).replace(os.sep, "/")
             yield "" if below == "." else below, folders, names
 
     def fetch(self, path: str) -> bytes | Refusal:
-        """Give a regular file's bytes. Never waits for a pipe's other end, never follows a link out of the folder."""
+        """Return a regular file's bytes, or why it cannot be used.
+
+        It never waits for the other end of a pipe and never follows a link out of the folder.
+        """
         full = self.root / path
         if not Path(os.path.realpath(full)).is_relative_to(os.path.realpath(self.root)):
             return Refusal("this link leads out of the project's folder", "copy the file into the project")
@@ -49,11 +52,14 @@ class Folder:
 
 
 def _bytes(path: Path) -> bytes | Refusal:
+    # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
+    # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as stream:
         mode = os.fstat(handle).st_mode
         if not stat.S_ISREG(mode):
             return Refusal(_not_a_file(mode))
+        # One byte more than allowed tells "too large" without trusting st_size, which may grow while it is read.
         data = stream.read(MAX_BYTES + 1)
         return data if len(data) <= MAX_BYTES else TOO_LARGE
 

@@ -1,4 +1,4 @@
-"""The type in front of a field's name in an interface definition: builtin or a message, bounded, an array."""
+"""Read the type of a field in an interface definition: builtin or a message, perhaps bounded, perhaps an array."""
 
 from __future__ import annotations
 
@@ -9,21 +9,27 @@ from archgen.frozen import dataclass
 from archgen.suggest import did_you_mean
 
 _NUMBERS = ("float32", "float64", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+# Types whose values can be written as text; time, duration and messages can have neither constants nor defaults.
 _LITERAL = frozenset({"bool", "byte", "char", "string", *_NUMBERS})
+# Names without a package that stand for a message; the key says whether the grammar is that of ROS 1.
 _ALIASES = {
     True: {"Header": "std_msgs/msg/Header"},
     False: {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"},
 }
+# Types of C, Protocol Buffers and other languages that people write by habit.
 _ELSEWHERE = {"float": "float32", "double": "float64", "int": "int32", "uint": "uint32", "boolean": "bool"}
 _SIZE = re.compile(r"\[(?:(<=)?([0-9]{1,19}))?\]\Z", re.ASCII)
 _BOUNDED = re.compile(r"(w?string)<=([0-9]{1,19})\Z", re.ASCII)
+# The two patterns of rosidl_adapter for the names of packages and messages. `Sample_` and the suffixes of generated
+# messages are the only underscores that ROS 2 allows in a message's name.
 _PACKAGE = re.compile(r"[a-z](?:_?[a-z0-9])*\Z", re.ASCII)
 _MESSAGE = re.compile(r"(?:Sample_)?[A-Z][A-Za-z0-9]*(?:_(?:Request|Response|Goal|Result|Feedback))*\Z", re.ASCII)
+# genmsg allows nearly anything.
 _LOOSE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 
 
 class Complaint(NamedTuple):
-    """What is wrong, and what to write instead."""
+    """What is wrong with a type, and what to write instead."""
 
     message: str
     help: str | None = None
@@ -31,8 +37,10 @@ class Complaint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FieldType:
-    """A type. `base` is the builtin type or the full name of a message; `bound` limits a string; `size` is what the
-    brackets of an array say: 3 for `[3]` and `[<=3]`, None for `[]`.
+    """A field's type. `base` is the builtin type or a message's full name; `bound` is the greatest length of a string.
+
+    `array` is the brackets as written, empty for a single value; `size` is the number in them: 3 for `[3]` and `[<=3]`,
+    None for `[]`.
     """
 
     base: str
@@ -48,15 +56,16 @@ class FieldType:
 
 
 def literal_types(*, ros1: bool) -> frozenset[str]:
-    """Name the builtin types of which values can be written: those that a constant may have."""
+    """Return the builtin types whose values can be written as literals: those that a constant may have."""
     return _LITERAL if ros1 else _LITERAL | {"wstring"}
 
 
 def read_type(text: str, package: str, *, ros1: bool) -> FieldType | Complaint:
-    """Read a type as it is written in a definition of `package`."""
+    """Read a type as it is written in a definition of `package`, or say what is wrong with it."""
     index = text.find("[")
     base, array = (text, "") if index < 0 else (text[:index], text[index:])
     size = _SIZE.match(array) if array else None
+    # ROS 1 knows no `[<=3]` but allows `[0]`; in ROS 2 it is the other way round.
     if array and (size is None or (size[1] and ros1) or (size[2] and not int(size[2]) and not ros1)):
         return _bad_array(array, ros1=ros1)
     if ros1 and array and base == "Header":
@@ -97,7 +106,7 @@ def _bounded(text: str, *, ros1: bool) -> FieldType | Complaint:
 
 
 def _message(text: str, package: str, *, ros1: bool) -> FieldType | Complaint:
-    """Resolve `Name` and `pkg/Name` to a full name."""
+    """Resolve `Name` and `package/Name` to the full name `package/msg/Name`."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] == "msg":  # noqa: PLR2004  # pkg/msg/Name
         return Complaint(f"inside definitions a message has two parts, not `{text}`", f"write `{parts[0]}/{parts[2]}`")

@@ -1,7 +1,7 @@
-"""Interface definitions of ROS: `.msg`, `.srv` and `.action` files, in the grammars of ROS 1 and of ROS 2.
+"""Parse interface definitions of ROS: `.msg`, `.srv` and `.action` files, in the grammars of ROS 1 and of ROS 2.
 
-Positions and all errors at once. What is refused is what the builds of ROS refuse (genmsg for ROS 1, rosidl_adapter
-for ROS 2), in words that say what to write; whether the messages that fields name exist is `link`'s question.
+All errors of a file are reported at once, each with its position. What is refused is what the builds of ROS refuse
+(genmsg for ROS 1, rosidl_adapter for ROS 2). Whether the messages that fields name exist is checked when linking.
 """
 
 from __future__ import annotations
@@ -53,13 +53,14 @@ Good:
 _PARTS = {"msg": 1, "srv": 2, "action": 3}
 _KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 _LINE_END = re.compile(r"\r\n|\r|\n")
+# Names in ROS 1 (genmsg) and in ROS 2 (rosidl_adapter), by what they name.
 _LOOSE = {"field": re.compile(r"[A-Za-z]\w*\Z", re.ASCII), "constant": re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)}
 _STRICT = {
     "field": re.compile(r"[a-z](?:_?[a-z0-9])*\Z", re.ASCII),
     "constant": re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z", re.ASCII),
 }
 _OPTIONAL = re.compile(r"@optional(?: +|\Z)")
-"""In front of a field, or on the line above it: rosidl 5.1 and newer."""
+"""The annotation `@optional`, in front of a field or on the line above it: rosidl 5.1 and newer."""
 _NAMES = {
     ("field", True): "letters, digits and underscores, a letter first",
     ("constant", True): "letters, digits and underscores, no digit first",
@@ -70,7 +71,7 @@ _NAMES = {
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """A definition that was read: what is sound of it, and the messages that its fields name, with their places."""
+    """A parsed definition: its sound fields, and the messages that they name, each with the span of the name."""
 
     interface: Interface
     references: tuple[tuple[str, Span], ...]
@@ -79,7 +80,7 @@ class Definition:
 
 @dataclass(slots=True)
 class _Reading:
-    """What is gathered on the way through one definition."""
+    """The state of reading one definition: what was found up to the current line."""
 
     file: str
     package: str
@@ -93,14 +94,14 @@ class _Reading:
         return Span(self.file, number, start + 1, number, max(start, end) + 1)
 
     def part(self) -> tuple[Field, ...]:
-        """Close a part of a service or an action: names begin anew."""
+        """Close a part of a service or an action and return its fields; the next part may use the same names again."""
         done = tuple(self.fields)
         self.fields.clear()
         self.names.clear()
         return done
 
     def name(self, what: str, name: str, at: Span) -> bool:
-        """Check the name of a field or a constant; say whether it can stand."""
+        """Check the name of a field or a constant; False, and a diagnostic, if it is malformed or already taken."""
         pattern = (_LOOSE if self.ros1 else _STRICT)[what]
         if not pattern.match(name):
             self.say(f"`{name}` is no name of a {what}", at, _NAMES[what, self.ros1])
@@ -108,6 +109,7 @@ class _Reading:
         first = self.names.setdefault((what, name), at)
         if first is not at:
             self.say(f"there are two {what}s `{name}`", at, labels=(Label(first, "the first one"),))
+        # Identity, not equality: setdefault gives back the very span that was passed in if the name is new.
         return first is at
 
     def say(self, message: str, at: Span, help_: str | None = None, labels: tuple[Label, ...] = ()) -> None:
@@ -115,11 +117,12 @@ class _Reading:
 
 
 def parse(text: str, name: str, file: str, *, ros1: bool) -> Definition:
-    """Read the definition of `pkg/msg/Name` (or srv, action). It never raises; unsound lines are left out."""
+    """Parse the definition of `package/msg/Name` (or srv, action). It never raises; unsound lines are left out."""
     package, kind = name.split("/")[:2]
     reading = _Reading(file, package, ros1)
     parts, separators = list[tuple[Field, ...]](), list[Span]()
     for number, line in enumerate(_LINE_END.split(text), 1):
+        # genmsg takes whatever follows the dashes as a comment, rosidl_adapter wants the bare line.
         if line.startswith("---") if ros1 else line == "---":
             separators.append(reading.place(number, 0, 3))
             parts.append(reading.part())
@@ -127,12 +130,13 @@ def parse(text: str, name: str, file: str, *, ros1: bool) -> Definition:
             _line(reading, number, line)
     parts.append(reading.part())
     _count(reading, kind, separators)
+    # Always as many parts as the kind has, so that later stages need not check.
     sound = tuple(parts[: _PARTS[kind]]) + ((),) * (_PARTS[kind] - len(parts))
     return Definition(Interface(name, sound), tuple(reading.references), tuple(reading.diagnostics))
 
 
 def _count(reading: _Reading, kind: str, separators: list[Span]) -> None:
-    """Compare the lines `---` with what the kind needs: none, one or two."""
+    """Report too many or too few lines `---`: a message has none, a service one, an action two."""
     wanted = _PARTS[kind] - 1
     if len(separators) > wanted:
         allowed = ("no line", "one line", "two lines")[wanted]
@@ -145,8 +149,9 @@ def _count(reading: _Reading, kind: str, separators: list[Span]) -> None:
 
 
 def _line(reading: _Reading, number: int, line: str) -> None:
-    """Read one line: nothing, a constant, or a field."""
+    """Read one line: blank, a constant, or a field."""
     code = line.split("#", 1)[0]
+    # rosidl_adapter turns tabs into blanks first, genmsg does not. One for one, so columns stay right.
     code = (code if reading.ros1 else code.replace("\t", " ")).rstrip()
     start = _skip(code, 0)
     if start == len(code):
@@ -168,7 +173,7 @@ def _line(reading: _Reading, number: int, line: str) -> None:
 
 
 def _skip(code: str, column: int) -> int:
-    """Give the column of the next word."""
+    """Return the column (from 0) of the next word at or after a column; the line's length if there is none."""
     return len(code) - len(code[column:].lstrip())
 
 
@@ -182,7 +187,7 @@ def _incomplete(reading: _Reading, written: str, at: Span) -> None:
 
 
 def _constant(reading: _Reading, number: int, code: str, line: str, columns: tuple[int, int]) -> None:
-    """Read `uint8 LIMIT=3`. A string of ROS 1 goes on to the end of the line, `#` and all."""
+    """Read `uint8 LIMIT=3`. The value of a string constant in ROS 1 is the whole rest of the line, even with a `#`."""
     start, end = columns
     type_, rest = code[start:end], _skip(code, end)
     equals = code.index("=", end)
@@ -205,7 +210,7 @@ def _builtin(type_: str, reading: _Reading) -> str | None:
 
 
 def _field(reading: _Reading, number: int, code: str, columns: tuple[int, int]) -> None:
-    """Read `float64 width`, in ROS 2 with a default."""
+    """Read `float64 width`, in ROS 2 perhaps with a default: `float64 width 0.1`."""
     start, end = columns
     at = reading.place(number, start, end)
     type_ = read_type(code[start:end], reading.package, ros1=reading.ros1)
@@ -215,6 +220,7 @@ def _field(reading: _Reading, number: int, code: str, columns: tuple[int, int]) 
         reading.references.append((type_.base, at))
     rest = _skip(code, end)
     name = code[rest:].split(" ", 1)[0]
+    # The name is registered even if the type is wrong, so that a second field of this name is still reported.
     named = reading.name("field", name, reading.place(number, rest, rest + len(name)))
     first = _skip(code, rest + len(name))
     if first < len(code):

@@ -1,4 +1,4 @@
-"""Literals in interface definitions: whether a text can be a value of a builtin type, in ROS 1 and in ROS 2.
+"""Check literals in interface definitions: whether a text is a value of a builtin type, in ROS 1 or in ROS 2.
 
 The two differ: ROS 1 reads integers in base ten only, `True` and `False` with capitals, and `byte` as signed.
 """
@@ -12,6 +12,7 @@ from archgen.syntax.interface_types import FieldType
 FLOATS = frozenset({"float32", "float64"})
 STRINGS = frozenset({"string", "wstring"})
 _BITS = {f"{sign}int{bits}": (sign == "u", bits) for sign in ("", "u") for bits in (8, 16, 32, 64)}
+# The number of digits is bounded: int() takes time that grows with their square, and no type holds as many.
 _INTEGER = {
     "ROS 1": re.compile(r"[+-]?[0-9]{1,40}\Z", re.ASCII),
     "ROS 2": re.compile(r"[+-]?(?:[0-9]{1,40}|0[xX][0-9a-fA-F]{1,40}|0[oO][0-7]{1,40}|0[bB][01]{1,80})\Z", re.ASCII),
@@ -21,7 +22,7 @@ _BARE = re.compile(r"([^,\"'][^,]*),?")
 
 
 def complaint(type_: str, text: str, bound: int | None, *, ros1: bool) -> str | None:
-    """Say what is wrong with a value of a builtin type, or None where nothing is. `bound` limits a string's length."""
+    """Return what is wrong with a value of a builtin type, or None. `bound` is the greatest length of a string."""
     if type_ in STRINGS:
         return None if ros1 else _string(text, bound)
     if type_ == "bool":
@@ -32,7 +33,7 @@ def complaint(type_: str, text: str, bound: int | None, *, ros1: bool) -> str | 
 
 
 def default_complaint(type_: FieldType, text: str) -> str | None:
-    """Say what is wrong with the default of a field (ROS 2): one literal, or as many as the array takes."""
+    """Return what is wrong with a field's default in ROS 2 (a literal, or an array of them in brackets), or None."""
     if not type_.array:
         return complaint(type_.base, text, type_.bound, ros1=False)
     if not (text.startswith("[") and text.endswith("]") and len(text) > 1):
@@ -52,7 +53,7 @@ def default_complaint(type_: FieldType, text: str) -> str | None:
 
 
 def _strings(inner: str) -> list[str] | None:
-    """Split a list of strings, quoted or bare; None where it is malformed."""
+    """Split a comma-separated list of strings, quoted or bare; None if it is malformed."""
     found = list[str]()
     place = 0
     while inner[place:].strip(" "):
@@ -70,6 +71,7 @@ def _strings(inner: str) -> list[str] | None:
 
 
 def _string(text: str, bound: int | None) -> str | None:
+    # As rosidl_adapter reads it: quotes are optional, and only the kind that encloses the text must be escaped in it.
     for quote in "\"'":
         if text.startswith(quote) and text.endswith(quote):
             text = text[1:-1]
@@ -97,7 +99,7 @@ def _float(text: str) -> str | None:
 
 
 def limits(type_: str, *, ros1: bool) -> tuple[int, int]:
-    """Give the smallest and the largest value of an integer type; `char` is unsigned, `byte` in ROS 2 only."""
+    """Return the smallest and the largest value of an integer type; `char` is unsigned, `byte` only in ROS 2."""
     unsigned, bits = _BITS.get(type_, (type_ == "char" or not ros1, 8))
     return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
 
@@ -107,6 +109,7 @@ def _integer(type_: str, text: str, *, ros1: bool) -> str | None:
         return "an integer is needed, in base ten" if ros1 else "an integer is needed"
     smallest, largest = limits(type_, ros1=ros1)
     sign, digits = text[: len(text) - len(text.lstrip("+-"))], text.lstrip("+-")
+    # int(text, 0) understands 0x, 0o and 0b, but refuses a leading zero such as 007, which is base ten in ROS.
     value = int(digits) if digits.isdigit() else int(digits, 0)
     value = -value if sign == "-" else value
     return None if smallest <= value <= largest else f"{type_} holds {smallest} to {largest}"

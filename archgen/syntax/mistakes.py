@@ -1,4 +1,7 @@
-"""What is wrong with a YAML file, in our own words: the parser's problem becomes a diagnostic that says what to do."""
+"""Phrase syntax errors of YAML files: what the parser reports becomes a diagnostic that says what to do.
+
+libyaml and PyYAML's own parser word some problems differently; the texts below match both.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,16 @@ from archgen.diagnostic import Diagnostic, Label
 from archgen.source import Span
 
 HALF = re.compile("[\ud800-\udfff]")
-"""Half of a character beyond U+FFFF, which no text may hold alone; libyaml refuses it itself."""
+"""Half of a character beyond U+FFFF (a surrogate), which no text may hold alone. libyaml refuses it by itself."""
 QUOTE = 'put the text in quotes: "..."'
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
 
 
 class Problem(NamedTuple):
-    """What the parser reports: its words, and offsets from 0; `begun` is where what it was reading begins."""
+    """What the parser reports: its message, and where, counted from 0.
+
+    `context_start` is the line and column at which the construct that it was reading begins.
+    """
 
     words: str
     line: int
@@ -25,7 +31,7 @@ class Problem(NamedTuple):
 
 
 class _Words(NamedTuple):
-    """Our words for a problem. `label` is for where it began; `at_start` points there first of all."""
+    """Our text for a problem. `label` is shown where the construct began; with `at_start` the finding itself is."""
 
     message: str
     help: str | None = None
@@ -34,7 +40,7 @@ class _Words(NamedTuple):
 
 
 def forbidden_character(file: str, text: str) -> Diagnostic | None:
-    """Find the first character that no YAML file may hold."""
+    """Report the first character that no YAML file may hold; None if there is none."""
     match = _FORBIDDEN.search(text)
     if match is None:
         return None
@@ -45,7 +51,7 @@ def forbidden_character(file: str, text: str) -> Diagnostic | None:
 
 
 def explain(file: str, text: str, problem: Problem) -> Diagnostic:
-    """Phrase what the parser found."""
+    """Phrase a problem that the parser reports."""
     lines = re.split(r"\r\n|\r|\n", text)
     at = _clamp(lines, problem.line, problem.column)
     words = _words(lines[at[0]], at[1], problem)
@@ -57,20 +63,21 @@ def explain(file: str, text: str, problem: Problem) -> Diagnostic:
 
 
 def duplicate(key: str, at: Span, first: Span) -> Diagnostic:
-    """Phrase a key that one mapping has twice."""
+    """Report a key that one mapping has twice."""
     labels = (Label(first, "first written here"),)
     return Diagnostic("duplicate-key", f"the key `{key}` is written twice", at, labels=labels, help="keep one of them")
 
 
 def recursive(anchor: str, at: Span, begun: Span) -> Diagnostic:
-    """Phrase an alias inside of its own anchor."""
+    """Report an alias inside the value that it stands for."""
     label = Label(Span(begun.file, begun.line, begun.column, begun.line, begun.column + 1), "begins here")
     message = f"`*{anchor}` stands inside of what it stands for"
     return Diagnostic("recursive-alias", message, at, labels=(label,), help="write out what is meant")
 
 
 def _clamp(lines: list[str], line: int, column: int) -> tuple[int, int]:
-    """Move a place at the end of the file onto the end of its last line that is not blank."""
+    """Move a position behind the end of the text to the end of its last line that is not blank."""
+    # The parser notices an unclosed bracket at the end of the file, which may be many blank lines below.
     last = len(lines) - 1
     while last > 0 and not lines[last].strip():
         last -= 1
@@ -143,6 +150,7 @@ def _unclosed(found: str, problem: Problem) -> _Words:
     return _Words(f"`,` or `{closing}` is missing before this", help_line, f"this `{opening}` is open")
 
 
+# Parts of the parser's message or context, and our text; the first match wins. "hexdecimal" is libyaml's spelling.
 _FIXED: tuple[tuple[str, _Words], ...] = (
     ("tab character", _TAB),
     (

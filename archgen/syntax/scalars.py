@@ -1,4 +1,7 @@
-"""What an unquoted scalar means: YAML 1.2's core schema, so that `no`, `on` and `1:30` are text."""
+"""Resolve unquoted scalars by YAML 1.2's core schema, so that `no`, `on` and `1:30` are text.
+
+PyYAML's own resolver follows YAML 1.1, where these are False, True and 90.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ if TYPE_CHECKING:
     from archgen.syntax.tree import Plain
 
 MAX_DIGITS = 30
-"""Longer integers stay text: no element needs them, and long ones cost time that grows with their square."""
+"""Longer integers stay text: no element needs them, and converting them takes time that grows with their square."""
 STARTS = frozenset("0123456789+-.~nNtTfF")
-"""What any scalar that is not text begins with; the reader asks nobody about the others."""
+"""The characters that a scalar other than text can begin with; `resolve_scalar` is not called for any other."""
 _WORDS: dict[str, Plain] = {
     "~": None,
     **dict.fromkeys(("null", "Null", "NULL"), None),
@@ -30,7 +33,7 @@ _BASES = {"int": 10, "oct": 8, "hex": 16}
 
 
 def resolve(text: str) -> Plain:
-    """Give the value of a plain scalar that is not empty."""
+    """Return the value of a plain scalar, which must not be empty."""
     if text in _WORDS:
         return _WORDS[text]
     match = _NUMBER.fullmatch(text)
@@ -38,6 +41,7 @@ def resolve(text: str) -> Plain:
         return text
     if match.lastgroup == "float":
         number = float(text)
+        # 1e999 would be infinite though nobody wrote .inf: it stays text, and the schema then refuses it.
         return number if math.isfinite(number) else text
     base = _BASES[match.lastgroup or "int"]
     return int(match[match.lastgroup or "int"], base) if len(text) <= MAX_DIGITS else text

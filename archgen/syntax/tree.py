@@ -1,4 +1,7 @@
-"""What a YAML file says: mappings, lists and scalars, each with its place. Made in one walk over the parser's events."""
+"""The tree of a YAML file: mappings, sequences and scalars, each with its span. Built by `yaml_parser` in one walk.
+
+Nodes are mutable: validation takes wrong values out of the tree, and short forms are replaced in place.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +15,10 @@ Plain = str | int | float | bool | None
 
 @dataclass(slots=True)
 class Scalar:
-    """A scalar. `text` is what was written (blocks and quotes resolved); `value` what the YAML 1.2 core schema makes of it
-    (quoted and block scalars are text; an empty plain scalar, `~` and `null` are None).
+    """A scalar. `text` is what was written, with quotes and blocks resolved.
+
+    `value` is what YAML 1.2's core schema makes of it: quoted and block scalars are text; an empty plain scalar, `~`
+    and `null` are None. `is_plain` is whether it was written without quotes and not as a block.
     """
 
     value: Plain
@@ -24,7 +29,7 @@ class Scalar:
 
 @dataclass(slots=True)
 class Listing:
-    """A list."""
+    """A sequence of nodes, in brackets or line by line."""
 
     items: list[Value]
     at: Span
@@ -32,7 +37,7 @@ class Listing:
 
 @dataclass(slots=True)
 class Entry:
-    """One key of a mapping with its value. `at` is the key's place."""
+    """One key of a mapping with its value. `key_span` is the span of the key alone."""
 
     key: str
     at: Span
@@ -41,18 +46,18 @@ class Entry:
 
 @dataclass(slots=True)
 class Table:
-    """A mapping, in the order in which it was written."""
+    """A mapping: its entries by key, in the order in which they were written."""
 
     entries: dict[str, Entry]
     at: Span
 
     def get(self, key: str) -> Value | None:
-        """Give the value at a key, or None."""
+        """Return the value at a key, or None."""
         entry = self.entries.get(key)
         return entry.value if entry else None
 
     def __iter__(self) -> Iterator[Entry]:
-        """Give the entries in order."""
+        """Iterate over the entries (not the keys), in order."""
         return iter(self.entries.values())
 
 
@@ -61,7 +66,7 @@ Value = Scalar | Listing | Table
 
 @dataclass(frozen=True, slots=True)
 class Ignore:
-    """A comment `# archgen: ignore[rule, other] why`, and the rules that it names."""
+    """A comment `# archgen: ignore[rule, other] why` with the rules that it names."""
 
     rules: tuple[str, ...]
     why: str
@@ -70,7 +75,7 @@ class Ignore:
 
 @dataclass(slots=True)
 class Document:
-    """One file, read."""
+    """One parsed file."""
 
     file: str
     root: Table
@@ -78,7 +83,7 @@ class Document:
 
 
 def plain(value: Value) -> object:
-    """Turn a tree into dicts, lists and scalars, as the core schema reads them."""
+    """Turn a tree into dicts, lists and plain values as the core schema reads them."""
     if isinstance(value, Table):
         return {entry.key: plain(entry.value) for entry in value}
     if isinstance(value, Listing):

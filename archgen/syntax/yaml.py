@@ -1,5 +1,6 @@
-"""YAML files become trees: data and places in one walk over the parser's events.
+"""Parse YAML files into trees: values and spans in one walk over PyYAML's events.
 
+PyYAML is used for its events only: its constructors would lose positions, allow duplicate keys and read YAML 1.1.
 Speed matters here more than anywhere: the walk is one function with local names, and it compares types by identity.
 """
 
@@ -25,11 +26,11 @@ if TYPE_CHECKING:
 MAX_VALUES = 1_000_000
 """How many values a file may hold. 10,000 components have about 400,000."""
 MAX_EXPANDED = 100_000
-"""How many of them may come from aliases."""
+"""How many of them may come from aliases: nested aliases multiply, ten lines can stand for billions of values."""
 MAX_DEPTH = 64
-"""How deep values may nest. The language itself needs 9; the rest is for parameters."""
+"""How deep values may nest, which also bounds every recursion over a tree. The language needs 9, parameters more."""
 _LINE_BREAKS = "\x85\u2028\u2029"
-"""Line breaks for libyaml, but not for YAML 1.2, editors or us: they are hidden from it."""
+"""Line breaks for libyaml but not for YAML 1.2 or editors: hidden from it, else all later line numbers would be off."""
 
 FAST = yaml.__with_libyaml__
 """Whether PyYAML was built with libyaml; without it the same events come from Python, thirty times slower."""
@@ -37,7 +38,7 @@ FAST = yaml.__with_libyaml__
 
 @dataclass(slots=True)
 class _Walk:
-    """What one walk found. `open` are the anchors of values that are not complete yet."""
+    """The state and result of parsing one file. `is_broken` means that nothing of the file is used."""
 
     file: str
     text: str
@@ -47,13 +48,14 @@ class _Walk:
     broken: bool = False
 
     def fault(self, message: str, help_line: str | None, at: Span, rule: str = "syntax-error") -> None:
-        """Note a mistake after which nothing of the file is used."""
+        """Report a mistake after which nothing of the file is used."""
         self.diagnostics.append(Diagnostic(rule, message, at, help=help_line))
         self.broken = True
 
 
 def parse(file: str, text: str) -> tuple[Document | None, tuple[Diagnostic, ...]]:
-    """Read a file's text. Where it has a syntax error there is no document; a wrong key or alias costs only itself."""
+    """Parse a file's text. A syntax error leaves no document; a duplicate key or recursive alias costs only itself."""
+    # Before the parser runs: its own complaint about a conflict marker would be about something else entirely.
     conflicts = comments.conflicts(file, text)
     if conflicts:
         return None, conflicts
@@ -83,7 +85,7 @@ def _root(walk: _Walk) -> Table | None:
 
 
 def _hide_line_breaks(text: str) -> tuple[str, dict[int, int]]:
-    """Put characters that the text does not hold in the place of odd line breaks; give the way back."""
+    """Replace odd line breaks by private-use characters that the text does not hold; return it and the way back."""
     odd = [character for character in _LINE_BREAKS if character in text]
     if not odd:
         return text, {}
@@ -103,7 +105,7 @@ def _parser(text: str) -> Any:  # noqa: ANN401 - two classes that share nothing 
 
 
 def _run(walk: _Walk, restore: dict[int, int]) -> None:
-    """Walk, and turn what the parser raises into a diagnostic."""
+    """Build the tree, and turn what the parser raises into a diagnostic."""
     try:
         _walk(walk, _parser(walk.text), restore)
     except yaml.MarkedYAMLError as error:
@@ -123,14 +125,19 @@ def _run(walk: _Walk, restore: dict[int, int]) -> None:
 
 def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: ANN401, C901, PLR0911, PLR0912, PLR0915
     """Build the tree, event by event. One long loop on purpose: calls for each event would double its time."""
+    # While a mapping is open, `entries` holds its entries and `items` is None; while a sequence is open it is the other
+    # way round; at the root both are None. The state of the containers around waits on `stack`.
     get: Callable[[], Any] = parser.get_event
     file, source, fault = walk.file, walk.text, walk.fault
     scalar_event, mapping_start, mapping_end = yaml.ScalarEvent, yaml.MappingStartEvent, yaml.MappingEndEvent
     sequence_start, sequence_end, alias_event = yaml.SequenceStartEvent, yaml.SequenceEndEvent, yaml.AliasEvent
     new, starts, quoted = tuple.__new__, STARTS, walk.quoted
+    # What only few files need is decided once here, not asked at every scalar: comments that may have swallowed text,
+    # ignore comments, anchors, tags and hidden line breaks.
     hashes = comments.lines_with_hashes(source)
     note = bool(hashes) or comments.may_hold_ignores(source)
     rare = not FAST or bool(restore) or "!" in source or "&" in source
+    # Anchor -> value and the number of values in it; None while the value is still open (an alias to it is recursive).
     anchors: dict[str, tuple[Value, int | None]] = {}
     stack: list[tuple[Any, ...]] = []
     entries: dict[str, Entry] | None = None
@@ -154,6 +161,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                 elif end.line in hashes and not wants_key and (not text or type(resolve(text)) is str):
                     walk.diagnostics.extend(comments.swallowed(source, at, end.index, empty=not text))
             if wants_key:
+                # The language has few keys, repeated thousands of times: interned, they are compared by identity.
                 key, key_at, key_end, wants_key = intern(text), at, end, False
                 if not text or (text == "<<" and not style):
                     fault(*_BAD_KEYS[text], at)
@@ -166,6 +174,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                 value = Scalar(resolve(text) if text[0] in starts else text, text, at)
             else:
                 value = Scalar(None, text, at)
+                # In braces YAML reads `{a, b}` as two keys without values. `key_end` is the mark of the last key.
                 if key_end is not None and items is None and ":" not in source[key_end.index : start.index]:
                     fault(
                         f"the key `{key}` has no `:`", "write `key: value`; a list stands in brackets: [a, b]", key_at
@@ -178,6 +187,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
             if end.index > start.index:  # a closing brace or bracket; without one it ends with what is last in it
                 line, column = end.line + 1, end.column + 1
             entries, items, key, key_at, key_end, value, anchor, before = stack.pop()
+            # So far the container's span covers its first character only; now its end is known.
             begun, wants_key = value.at, False
             value.at = new(Span, (file, begun.line, begun.column, line, column))
             if anchor is not None:
@@ -223,6 +233,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
                 walk.diagnostics.append(mistakes.recursive(event.anchor, at, held.at))
                 wants_key = entries is not None
                 continue
+            # Counted before it is copied: a file that multiplies its aliases is refused before it takes memory.
             count, expanded = count + size, expanded + size
             if expanded > MAX_EXPANDED:
                 fault(f"the file's aliases stand for more than {MAX_EXPANDED:,} values", None, at, "too-large")
@@ -242,6 +253,7 @@ def _walk(walk: _Walk, parser: Any, restore: dict[int, int]) -> None:  # noqa: A
             continue
         if entries is not None:
             entry = Entry(key, key_at, value)
+            # The first of two equal keys stays, the second costs only itself.
             if entries.setdefault(key, entry) is not entry:
                 walk.diagnostics.append(mistakes.duplicate(key, key_at, entries[key].at))
             wants_key = True
@@ -261,7 +273,7 @@ _BAD_KEYS = {
 
 
 def _rare(walk: _Walk, event: Any, at: Span, restore: dict[int, int]) -> str:  # noqa: ANN401
-    """Refuse a scalar's tag, and give its text as it was in the file."""
+    """Refuse a scalar's tag; return its text as it is in the file, with hidden line breaks put back."""
     if event.tag is not None:
         walk.fault(f"the tag `{event.tag}` is not read", f"take it out; if it is text, {mistakes.QUOTE}", at)
     text: str = event.value
@@ -271,7 +283,7 @@ def _rare(walk: _Walk, event: Any, at: Span, restore: dict[int, int]) -> str:  #
 
 
 def copy_of(value: Value, at: Span) -> Value:
-    """Copy a value for one more place, so that nobody who changes one of them changes the other."""
+    """Copy a node for an alias. Later stages change trees in place, so two places must never share a node."""
     if isinstance(value, Scalar):
         return Scalar(value.value, value.text, at, value.plain)
     if isinstance(value, Listing):

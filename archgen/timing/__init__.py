@@ -1,4 +1,18 @@
 """Timing: rates, response times, latency, load and bandwidth, from sources to sinks, with exact arithmetic.
 
-`system` reads the activities and the arcs between them off an architecture; `analysis` holds what follows from them.
+Read the folders in this order; each one imports only from those before it and from `analysis`:
+
+- `figures`: `timing_values` (a figure that says what it rests on), `value_arithmetic`, `tick_unit`, `figure_wording`.
+- `system`: what timing works on. `timing_system` holds activities and arcs, `system_builder` reads them off an
+  architecture (`activity_builder`, `arc_builder`, `message_sizes`); then who shares which cores (`core_placement`) and
+  who fires whom (`trigger_graph`).
+- `load`: event models and response times, in integer ticks. `event_streams` (how many events fit into a window),
+  `busy_windows` (how long work holds a core), `thread_work`, `response_times` and `multicore_response` (one resource),
+  `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); last `host_loads`.
+- `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
+  `triggered_rates`, `output_rates`; then `link_traffic`, `edge_fit`, `service_waiting`.
+- `chains`: end to end. `trigger_arrivals` and `step_delays` (what a step adds), `cost_network` and `path_search` (which
+  path is worst), `chain_bounds` (the result); then what is asked about it: reasons, sensitivity, measurements.
+
+`analysis` holds the results of one run, `run_analysis` makes them. docs/timing.md has the formulas and their sources.
 """

@@ -1,4 +1,4 @@
-"""Activities: what each node does for each of its components, with the behaviour inferred where it is left out."""
+"""Activities: what each node does for each of its components, with the behaviour inferred where it is not written."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from archgen.timing.system import Activity
 from archgen.timing.ticks import Ticks, period
 
 Names = Mapping[tuple[str, str | None], str]
-"""The activity's id, by node and component."""
+"""The activity's id, by node id and component id."""
 _NOTHING = Timing()
 _WRITES = frozenset({"publishes", "serves"})
 
 
 def names(architecture: Architecture) -> Names:
-    """Name each activity: as its node, or `node.component` where the node implements several.
+    """Return the id of each activity: that of its node, or `node.component` where the node implements several.
 
-    Where two components of one node share their own name, the complete id tells them apart.
+    The last part of the component's id is used, or the complete id where two components of the node share that part.
     """
     found: dict[tuple[str, str | None], str] = {}
     for node in architecture.nodes.values():
@@ -39,12 +39,12 @@ def names(architecture: Architecture) -> Names:
 
 
 def key(endpoint: Endpoint) -> str:
-    """Give the key under which an activity knows an endpoint: its port, or the name of an internal topic."""
+    """Return the key under which an activity knows an endpoint: its port, or the name of an internal topic."""
     return endpoint.port or endpoint.name
 
 
 def by_activity(architecture: Architecture, named: Names) -> dict[str, list[Endpoint]]:
-    """Give the endpoints of each activity; what no component accounts for is the first one's."""
+    """Return the endpoints of each activity; those that belong to no component are the first component's."""
     found: dict[str, list[Endpoint]] = {name: [] for name in named.values()}
     for endpoint in architecture.endpoints:
         found[owner(architecture, named, endpoint)].append(endpoint)
@@ -52,7 +52,7 @@ def by_activity(architecture: Architecture, named: Names) -> dict[str, list[Endp
 
 
 def owner(architecture: Architecture, named: Names, endpoint: Endpoint) -> str:
-    """Give the activity that uses an endpoint."""
+    """Return the id of the activity that uses an endpoint."""
     name = named.get((endpoint.node, endpoint.component))
     if name is not None:
         return name
@@ -61,7 +61,7 @@ def owner(architecture: Architecture, named: Names, endpoint: Endpoint) -> str:
 
 
 def activities(architecture: Architecture, named: Names, unit: Ticks) -> dict[str, Activity]:
-    """Make all activities, in the order of the nodes."""
+    """Return all activities by id, in the order of the nodes."""
     endpoints = by_activity(architecture, named)
     outside = _outside(architecture)
     made: dict[str, Activity] = {}
@@ -73,7 +73,7 @@ def activities(architecture: Architecture, named: Names, unit: Ticks) -> dict[st
 
 
 def _outside(architecture: Architecture) -> Mapping[str, list[str]]:
-    """Give the physical and external inputs of each component: nothing arrives there by ROS, but they may trigger."""
+    """Return the physical and external inputs of each component: nothing arrives there by ROS, but they may trigger."""
     found: dict[str, list[str]] = defaultdict(list)
     for port in architecture.inputs.values():
         if port.physical or port.external:
@@ -83,7 +83,7 @@ def _outside(architecture: Architecture) -> Mapping[str, list[str]]:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A node in its part for one component."""
+    """A node in its role for one component."""
 
     architecture: Architecture
     node: Node
@@ -94,6 +94,7 @@ class _Part:
 
     @property
     def timing(self) -> Timing:
+        """Return what is written of this component's timing at the node."""
         return self.node.timing.get(self.component or "", _NOTHING)
 
 
@@ -136,6 +137,7 @@ def _mode(timing: Timing) -> Literal["any", "all"]:
 
 
 def _place(part: _Part) -> Span:
+    """Return where the activity is written: its timing, else its node, else (for a planned node) its component."""
     if part.timing is not _NOTHING:
         return part.timing.at
     component = part.architecture.components.get(part.component or "")
@@ -147,7 +149,9 @@ def _keys(part: _Part, *, writes: bool) -> Iterator[str]:
 
 
 def _inferred(part: _Part) -> Behaviour | None:
-    """Infer the behaviour from what is written: first that fits."""
+    """Infer the behaviour from what is written; the first rule that fits counts."""
+    # The order matters. A written period beats subscriptions, since a periodic reader samples its inputs. A server that
+    # also publishes is not on demand: calls alone would not say how often it publishes.
     if period(part.timing) is not None:
         return "periodic"
     uses = {endpoint.use for endpoint in part.endpoints}
@@ -157,15 +161,17 @@ def _inferred(part: _Part) -> Behaviour | None:
 
 
 def _triggers(part: _Part) -> Iterator[str]:
-    """Name the inputs that fire: those written, or all that carry messages, but not what all nodes share."""
+    """Yield the inputs that fire: those written, or all subscriptions except topics that all nodes share."""
     trigger = part.timing.trigger
     if trigger and trigger.inputs is not None:
         yield from trigger.inputs
         return
+    # Shared topics such as /tf would otherwise fire every node that listens to them.
     found = dict.fromkeys(key(e) for e in part.endpoints if e.use == "subscribes" and not _common(part, e))
     yield from found
 
 
 def _common(part: _Part, endpoint: Endpoint) -> bool:
+    """Whether an endpoint reads a shared topic without naming a source."""
     topic = part.architecture.topics.get(endpoint.name)
     return bool(topic and topic.shared and not endpoint.sources)

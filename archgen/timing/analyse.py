@@ -1,4 +1,4 @@
-"""The whole analysis: from an architecture, or from a system of which some figures were changed."""
+"""The whole analysis: of an architecture, or of a system in which some figures were changed."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ from archgen.timing.traffic import link_loads, topic_loads
 
 
 def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
-    """Find all that follows from an architecture, chains aside.
+    """Analyse an architecture, chains aside.
 
-    For `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
+    With `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
     """
     system, notes = build(architecture)
     if not judging:
         return analyse_system(system, notes)
+    # Rules are run again and again for versions of one project that mostly leave timing as it was. Only the last
+    # analysis is kept, and it is used again only where every figure and every place is the same.
     global _judged  # noqa: PLW0603 - what was found last, for who judges many versions of one project
     if _judged is None or not _same(_judged, system, notes):
         _judged = analyse_system(system, notes, judging=True)
@@ -32,7 +34,7 @@ def analyse(architecture: Architecture, *, judging: bool = False) -> Analysis:
 
 
 def for_chains(architecture: Architecture) -> Analysis:
-    """Find what chains rest on, and no more: for who asks the same of many versions of one project."""
+    """Analyse what chains rest on and no more, for callers that ask the same of many versions of one project."""
     system, notes = build(architecture)
     return analyse_system(system, notes, judging=True)
 
@@ -41,7 +43,8 @@ _judged: Analysis | None = None
 
 
 def _same(found: Analysis, system: System, notes: tuple[Reason, ...]) -> bool:
-    """Say whether an analysis is that of this system: every figure is the same, and stands at the same place."""
+    """Whether an analysis is that of this system: every figure is equal, and written at the same place."""
+    # Spans take no part in the equality of systems (`compare=False`), but findings point to them.
     return (
         found.system == system
         and list(map(_activity_places, found.system.activities.values()))
@@ -56,7 +59,9 @@ _arc_places = attrgetter("at", "queue_at")
 
 
 def analyse_system(system: System, notes: tuple[Reason, ...] = (), *, judging: bool = False) -> Analysis:
-    """Find all that follows from a system."""
+    """Analyse a system, chains aside."""
+    # The order of the stages: links and event models in ticks, responses in ns, rates, and then what rests on all of
+    # them.
     system, firing, state = settled(system)
     places = resources(system)
     responses = all_responses(state, places)

@@ -15,29 +15,34 @@ from archgen.timing.value import UNKNOWN, Value
 from archgen.timing.wording import duration, told
 
 Tier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
-"""How a response time was found (A2): declared; assuming a core of its own; any work-conserving scheduler of the host;
-fixed priorities; a single-threaded executor; several cores."""
+"""How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
+of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
+single-threaded; `cores`, several.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Reason:
     """One step of the reasoning behind a figure: a sentence, and where in the files it rests on.
 
-    It is put into words only for those who ask: `words` is the sentence, with `{0}`, `{1}` for its `parts`.
+    It is put into words only when somebody asks for it: `template` is the sentence, with `{0}`, `{1}` for its
+    `arguments`.
     """
 
     words: str
+    # Places take no part in equality: a figure is the same wherever it is written (run_analysis compares them on its
+    # own).
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     parts: tuple[str | int | Fraction | Value, ...] = ()
 
     @property
     def text(self) -> str:
-        """Give the sentence."""
+        """Return the sentence."""
         return self.words.format(*map(_said, self.parts)) if self.parts else self.words
 
 
 def _said(part: str | int | Fraction | Value) -> str:
-    """Put a part of a sentence into words: a Value is a rate, a Fraction a duration in ns."""
+    """Format an argument of a sentence: a value is a rate, a Fraction a duration in ns."""
     if isinstance(part, Value):
         return told(part, "Hz")
     return duration(part) if isinstance(part, Fraction) else str(part)
@@ -47,8 +52,9 @@ def _said(part: str | int | Fraction | Value) -> str:
 class Pace:
     """How often an activity is activated, or an output published.
 
-    `rate` in Hz; `gap` is the largest gap between two, in ns. `inferred` is False where the rate was written.
-    `jitter` and `distance` (smallest gap), in ns, complete the event model (period 1/rate, J, d).
+    `rate` in Hz; `gap` is the largest gap between two events, in ns (not the inverse of the rate: see docs/timing.md).
+    `inferred` is False where the rate is written. `jitter` and `distance` (smallest gap), in ns, complete the event
+    model.
     """
 
     behaviour: Behaviour | None
@@ -62,7 +68,7 @@ class Pace:
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """From activation to completion, in ns: best and worst, and how the worst was found."""
+    """From activation to completion, in ns: best and worst case, and how the worst was found."""
 
     best: Value
     worst: Value
@@ -72,7 +78,7 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class HostLoad:
-    """A host's utilisation (of all its cores together), and the bounds that it is held against."""
+    """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
     utilisation: Value
     cores: int
@@ -81,7 +87,7 @@ class HostLoad:
     parts: tuple[tuple[str, Value], ...]
     """What each activity adds."""
     places: tuple[tuple[str, int, Value], ...] = ()
-    """The cores to which something is pinned, and those that all else shares: name, number of cores, utilisation."""
+    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation."""
     earliest_deadline_bound: Value = UNKNOWN
 
 
@@ -107,7 +113,11 @@ class TopicLoad:
 
 @dataclass(frozen=True, slots=True)
 class EdgePace:
-    """How producer and consumer of an arc fit: share of samples lost, reads of each sample, beats, queue needed (A6)."""
+    """How producer and consumer of an arc fit together.
+
+    `loss` is the share of samples never read, `rereads` how often each is read, `beat` the time between two slips (ns),
+    `queue` the messages that can wait.
+    """
 
     arc: Arc
     loss: Value
@@ -118,11 +128,10 @@ class EdgePace:
 
 @dataclass(frozen=True, slots=True)
 class ServiceLoad:
-    """A server (by activity id): who calls it, and how long an answer takes at most, in ns: with K callers, one call each
-    and nothing else in the way, K C.
+    """A server (by activity id): who calls it, and how long an answer takes at most, in ns.
 
-    `waits` is how long one activation of a caller waits if it waits for each answer: for each of its calls the answer and
-    the links both ways. `synchronous` is what its response becomes then: its own R and that.
+    `waits` is how long one activation of a caller waits if it waits for each answer: for each of its calls the answer
+    and the links both ways. `synchronous_responses` is what its response becomes then: its own R plus that.
     """
 
     callers: tuple[str, ...]
@@ -133,7 +142,10 @@ class ServiceLoad:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Everything but the chains, for one system. Keys are activity ids, `activity output-key` pairs, host and link ids."""
+    """All results for one system but the chains.
+
+    Keys are ids of activities, hosts and links, names of topics, or (activity, output key).
+    """
 
     system: System
     paces: Mapping[str, Pace]
@@ -144,12 +156,12 @@ class Analysis:
     topics: Mapping[str, TopicLoad]
     edges: tuple[EdgePace, ...]
     endless: tuple[tuple[str, ...], ...] = ()
-    """Rings of any-of triggers: an event that enters circulates for ever."""
+    """Rings of any-of triggers: an event that enters one circulates for ever."""
     deadlocked: tuple[tuple[str, ...], ...] = ()
     """Rings of all-of triggers without a first token: they never fire."""
     diverged: tuple[str, ...] = ()
     derived: Mapping[str, Pace] = field(default_factory=dict)
-    """What the inputs would give, of those event-driven or on-demand activities that state a period themselves."""
+    """What the inputs would give for those event-driven or on-demand activities that state a period themselves."""
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     notes: tuple[Reason, ...] = ()
 
@@ -168,7 +180,7 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class ChainResult:
-    """A chain: its safe bound (reaction time = data age), best case, the reduced figures, and the verdict; in ns."""
+    """A chain: its safe bound (reaction time = data age), best case, the reduced figures and the verdict; in ns."""
 
     id: str
     through: tuple[str, ...]

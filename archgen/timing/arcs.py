@@ -1,4 +1,4 @@
-"""Arcs: along which data passes between activities, over which link, and how long that takes."""
+"""Build the arcs: along which data passes between activities, over which link, and how long that takes."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from archgen.timing.system import Activity, Arc
 from archgen.timing.ticks import Ticks
 
 Route = tuple[str | None, int | None, int | None]
-"""A link (None on one host), and its best and worst latency in ticks."""
+"""A link (None on one host), with its best and worst latency in ticks (None where unknown)."""
 _HERE: Route = (None, 0, 0)
 _NO_WAY: Route = (None, None, None)
 
 
 def arcs(architecture: Architecture, named: Names, made: Mapping[str, Activity], unit: Ticks) -> tuple[Arc, ...]:
-    """Join writers with readers, topic by topic; services and actions both ways."""
+    """Join writers with readers, topic by topic; services and actions in both directions."""
     joining = _Joining(
         architecture,
         named,
         made,
+        # Cached by pair of hosts: there are far more arcs than pairs.
         cache(_Routes(architecture, unit)),
         {(edge.output, edge.input): edge.at for edge in architecture.edges},
         sizes.carried(architecture),
@@ -39,7 +40,7 @@ def arcs(architecture: Architecture, named: Names, made: Mapping[str, Activity],
 
 @dataclass(frozen=True, slots=True)
 class _Joining:
-    """What is looked up for each pair of a writer and a reader."""
+    """The look-ups that each pair of a writer and a reader needs."""
 
     architecture: Architecture
     named: Names
@@ -49,19 +50,22 @@ class _Joining:
     size: Callable[[Endpoint, sizes.Role], int | None]
 
     def of_topic(self, topic: Topic) -> Iterator[Arc]:
+        """Yield the arcs of one topic, service or action."""
         for reader in topic.readers:
             for writer in topic.writers:
-                # What all nodes share would join all of them: there only what an input names counts.
+                # A shared topic would join all nodes with all others: only what an input names counts.
                 if topic.shared and writer.port not in reader.sources:
                     continue
                 if topic.flow == "topic":
                     yield self._data(topic, writer, reader, self.size(writer, "data"))
                 else:
+                    # The server is the writer of a service, so that the arc from writer to reader is the answer.
                     data = self._data(topic, writer, reader, None)
                     yield replace(self._request(data), size=self.size(writer, "request"))
                     yield replace(data, role="answer", size=self.size(writer, "answer"))
 
     def _data(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
+        """Return the arc from a writer to a reader."""
         source, target = (owner(self.architecture, self.named, end) for end in (writer, reader))
         link, best, worst = self.route(self.made[source].host, self.made[target].host)
         port = self.architecture.inputs.get(reader.port or "")
@@ -85,6 +89,7 @@ class _Joining:
         )
 
     def _request(self, answer: Arc) -> Arc:
+        """Return the arc from client to server that belongs to an answer."""
         link, best, worst = self.route(self.made[answer.target].host, self.made[answer.source].host)
         return replace(
             answer,
@@ -99,7 +104,7 @@ class _Joining:
         )
 
     def _place(self, writer: Endpoint, reader: Endpoint) -> Span:
-        """Give the reference that joins the two; what only meets on a topic is joined where the reader was written."""
+        """Return the reference that joins the two; where they only meet on a topic, the place of the reader."""
         found = self.places.get((writer.port or "", reader.port or ""))
         if found is not None:
             return found
@@ -118,7 +123,10 @@ class _Routes:
                 self._joining[host][link.id] = link
 
     def __call__(self, here: str | None, there: str | None) -> Route:
-        """Give the way between hosts. Where neither end has a host, both are taken to be on one; where one has, nobody knows."""
+        """Return the link between two hosts and its latency.
+
+        Where neither end has a host, both are taken to be on one; where only one has, the latency is unknown.
+        """
         if here == there:
             return _HERE
         if here is None or there is None:
@@ -132,4 +140,5 @@ class _Routes:
 
 
 def _slowness(link: Link) -> tuple[bool, object]:
+    """Sort key for links: by worst latency, those without one last."""
     return (link.worst is None, link.worst.value if link.worst else 0)

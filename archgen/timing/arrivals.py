@@ -1,4 +1,4 @@
-"""What arrives at an activity's triggers: how far apart at most, how near at least, and what fires it."""
+"""What arrives at an activity's triggers: how far apart at most, how close at least, and what fires it."""
 
 from __future__ import annotations
 
@@ -15,50 +15,53 @@ from archgen.timing.value import UNKNOWN, ZERO, Value
 
 @dataclass(frozen=True, slots=True)
 class Arrivals:
-    """The streams into each activity; what was worked out for one is kept."""
+    """Answers questions about the arrivals of an analysis; the gaps of each activity's triggers are cached."""
 
     analysis: Analysis
     _streams: dict[str, dict[str, Value]] = field(default_factory=dict)
 
     def fires(self, arc: Arc) -> bool:
-        """Tell whether what arrives on an arc triggers its reader."""
+        """Whether what arrives on an arc triggers its reader."""
         reader = self.analysis.system.activities[arc.target]
         if arc.role != "data":
             return arc.role == "request" and reader.behaviour in {"event", "on_demand"}
         return reader.behaviour == "event" and arc.input in reader.triggers
 
     def sole(self, arc: Arc) -> bool:
-        """Tell whether nothing else fires an arc's reader."""
+        """Whether nothing else fires an arc's reader."""
         firing = [other for other in self.analysis.system.into.get(arc.target, ()) if self.fires(other)]
         outside = self.analysis.system.external.get(arc.target, ())
         reader = self.analysis.system.activities[arc.target]
         return len(firing) == 1 and not any(key in outside for key in reader.triggers)
 
     def gap(self, name: str) -> Value:
-        """Give the largest gap between two activations."""
+        """Return the largest gap between two activations."""
         pace = self.analysis.paces.get(name)
         return nameless(pace.gap if pace else UNKNOWN, name)
 
     def sent_gap(self, arc: Arc) -> Value:
-        """Give the largest gap between two messages, where they are sent."""
+        """Return the largest gap between two messages, where they are sent."""
         pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
         return nameless(pace.gap if pace else UNKNOWN, arc.source)
 
     def waits_for_all(self, activity: Activity) -> bool:
-        """Tell whether several triggers must have come before an activity fires."""
+        """Whether several triggers must have come before an activity fires."""
         return activity.mode == "all" and len(self._stream(activity)) > 1
 
     def others(self, activity: Activity, arc: Arc) -> Value:
-        """Give the largest gap of the other triggers of an all-of element; ZERO of any other, and where it is called."""
+        """Return the largest gap of the other triggers of an all-of activity.
+
+        `ZERO_VALUE` (the very object: callers compare with `is`) for any other activity, and for calls.
+        """
         if arc.role != "data" or not self.waits_for_all(activity):
             return ZERO
         return _largest(gap for key, gap in self._stream(activity).items() if key != arc.input)
 
     def thinned(self, activity: Activity) -> Value:
-        """Give how long `every`, `throttle` and `jitter` let a trigger wait.
+        """Return how long `every`, `throttle` and `jitter` let a trigger wait.
 
         Every n-th: (n - 1) gaps. A throttle q fires at the first (n-th) trigger that comes q after the last firing, so
-        within q + n gaps of it; what waits came a smallest gap after it at the soonest.
+        within q + n gaps of it; what waits came a smallest gap after it at the earliest.
         """
         if activity.behaviour != "event" or (activity.every == 1 and not activity.throttle):
             return self.time(activity.jitter) if activity.behaviour == "event" else ZERO
@@ -69,17 +72,17 @@ class Arrivals:
         return _less(bounded(kept), self._smallest_gap(activity))
 
     def time(self, ticks: int) -> Value:
-        """Give a duration of the system in ns."""
+        """Return a duration of the system (ticks) in ns."""
         return Value(ticks * self.analysis.system.tick) if ticks else ZERO
 
     def _firing_gap(self, activity: Activity) -> Value:
-        """Give the largest gap between two occasions to fire."""
+        """Return the largest gap between two occasions to fire."""
         gaps = self._stream(activity).values()
         merged = _largest(gaps) if activity.mode == "all" else _smallest(gaps)
         return nameless(merged, activity.id)
 
     def _stream(self, activity: Activity) -> dict[str, Value]:
-        """Give the largest gap of what arrives at each trigger; one that arrives once at the start is left out."""
+        """Return the largest gap at each trigger, except where something arrives only once, at the start."""
         found = self._streams.get(activity.id)
         if found is None:
             arcs = [a for a in self.analysis.system.into.get(activity.id, ()) if a.role == "data" and self.fires(a)]
@@ -94,15 +97,18 @@ class Arrivals:
         return found
 
     def _arriving(self, activity: Activity, outside: bool, arcs: Iterable[Arc]) -> Value:  # noqa: FBT001 - told by its name
+        """Return the largest gap at one trigger: the smallest of its sources' gaps."""
         gaps = [self._arriving_on(arc) for arc in arcs]
+        # Something outside may come at any time, or never: it is no bound, and named only if no arc gives one.
         return _smallest([*gaps, Value(None, complete=False, missing=(activity.id,))] if outside else gaps)
 
     def _arriving_on(self, arc: Arc) -> Value:
+        """Return the largest gap of what arrives on an arc: that of the output, and the spread of the link."""
         spread = unknown(*self.unlinked(arc)) if arc.worst is None else self.time(arc.worst - (arc.best or 0))
         return bounded((self.sent_gap(arc), spread))
 
     def unlinked(self, arc: Arc) -> tuple[str, ...]:
-        """Name what is missing where a link's latency is not known: the link, or whose host nobody wrote."""
+        """Return what is missing where a link's latency is unknown: the link, or whose host is not written."""
         if arc.link is not None:
             return (arc.link,)
         activities = self.analysis.system.activities
@@ -110,7 +116,7 @@ class Arrivals:
         return homeless or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
     def _smallest_gap(self, activity: Activity) -> Value:
-        """Give the smallest gap between two triggers: known of a single stream only, else 0."""
+        """Return the smallest gap between two triggers: known for a single stream only, else 0 (the safe side)."""
         arcs = [arc for arc in self.analysis.system.into.get(activity.id, ()) if self.fires(arc)]
         if len(arcs) != 1 or arcs[0].worst is None:
             return ZERO
@@ -122,6 +128,7 @@ class Arrivals:
 
 
 def _largest(values: Iterable[Value]) -> Value:
+    """Return the largest of the gaps, or their causes where one has no bound."""
     parts = tuple(values)
     if not parts:
         return ZERO
@@ -132,11 +139,13 @@ def _largest(values: Iterable[Value]) -> Value:
 
 
 def _smallest(values: Iterable[Value]) -> Value:
+    """Return the smallest of the gaps, unknown where there are none."""
     parts = tuple(values)
     return smallest(parts) if parts else UNKNOWN
 
 
 def _less(value: Value, off: Value) -> Value:
+    """Return a bound less something, where it is complete."""
     if value.value is None or not value.complete:
         return value
     return replace(value, value=value.value - (off.value or 0))

@@ -1,4 +1,4 @@
-"""Responses as others see them, and the load of hosts: utilisation against the bounds of Liu and Layland (1973)."""
+"""Response times in ns with their reasons, and the load of hosts against the bounds of Liu and Layland (1973)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from archgen.timing.value import ZERO, Value
 
 _DIGITS = 10**9
 _LN_2 = Fraction(693_147_180, _DIGITS)
-"""The bound for any number of elements, rounded down."""
+"""ln 2, the bound for any number of elements, rounded down."""
 _MANY = 64
 _ONE_CORE = Value(None, assumptions=("one core only",))
 Verdict = Literal["schedulable", "overload", "undecided", "unknown"]
@@ -35,12 +35,13 @@ _WORDS = {
 
 
 def all_responses(state: State, resources: Iterable[Resource]) -> dict[str, Response]:
-    """Give the best and worst response of every activity."""
+    """Return the best and worst response of every activity, in ns."""
     where = {name: resource for resource in resources for name in resource.members}
     return {name: _response(state, name, state.responses[name], where.get(name)) for name in state.system.activities}
 
 
 def _response(state: State, name: str, found: Found, resource: Resource | None) -> Response:
+    """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown(name) if activity.bcet is None else Value(activity.bcet * tick)
     shared = (_where(resource), resource.cores) if resource else ("", 1)
@@ -51,13 +52,14 @@ def _response(state: State, name: str, found: Found, resource: Resource | None) 
 
 
 def _where(resource: Resource | None) -> str:
-    """Name the cores whose work is counted."""
+    """Return the words for the cores whose work is counted."""
     if resource is None or not resource.joined:
         return resource.id if resource else ""
     return f"{resource.id} and on those that wait with it for a container's threads (one of them works while any waits)"
 
 
 def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource | None) -> Value:
+    """Return the worst response with what it assumes, or what is missing."""
     said = list(found.cause.notes)
     if found.tier == "declared":
         said.append("assumed")
@@ -71,6 +73,7 @@ def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource 
     nothing = Value(None, not found.cause.missing, found.cause.missing, assumptions)
     if not found.cause.missing or boundless(nothing):
         return nothing
+    # Figures of others are missing: its own execution time is still a bound from below.
     least = None if activity.wcet is None else activity.wcet * tick
     return Value(least, complete=False, missing=found.cause.missing, assumptions=assumptions, side="at least")
 
@@ -78,7 +81,7 @@ def _worst(activity: Activity, found: Found, tick: Fraction, resource: Resource 
 def host_loads(
     system: System, resources: Iterable[Resource], paces: Mapping[str, Pace], found: Mapping[str, Response]
 ) -> dict[str, HostLoad]:
-    """Give the utilisation of every host, place by place."""
+    """Return the load of every host, resource by resource."""
     by_host: dict[str, list[Resource]] = {host: [] for host in system.cores}
     for resource in resources:
         if resource.host is not None:
@@ -87,7 +90,7 @@ def host_loads(
 
 
 def share(system: System, name: str, pace: Pace) -> Value:
-    """Give the share of a core that an activity takes."""
+    """Return the share of a core that an activity takes."""
     activity = system.activities[name]
     if activity.behaviour == "once" or pace.rate.value == 0 or activity.wcet == 0:
         return Value(Fraction(0))
@@ -95,6 +98,7 @@ def share(system: System, name: str, pace: Pace) -> Value:
         return unknown(name)
     if pace.rate.value is None:
         return pace.rate
+    # One Fraction from four integers: each product of two Fractions would be reduced to lowest terms on its own.
     (often, per), (tick, parts) = pace.rate.value.as_integer_ratio(), system.tick.as_integer_ratio()
     return kept(pace.rate, Fraction(often * activity.wcet * tick, per * parts * SECOND))
 
@@ -102,9 +106,11 @@ def share(system: System, name: str, pace: Pace) -> Value:
 def _host(
     system: System, host: str, places: list[Resource], paces: Mapping[str, Pace], found: Mapping[str, Response]
 ) -> HostLoad:
+    """Return the load of one host."""
     parts = {name: share(system, name, paces[name]) for place in places for name in place.members}
     loads = tuple((place.id, place.cores, total(parts[name] for name in place.members)) for place in places)
     cores = system.cores.get(host) or 1
+    # Elements that add nothing to the load are no tasks in the sense of the bound, which falls with their number.
     working = sum(1 for part in parts.values() if part.value != 0)
     return HostLoad(
         utilisation=total(parts.values()),
@@ -124,8 +130,11 @@ def _verdict(
     paces: Mapping[str, Pace],
     found: Mapping[str, Response],
 ) -> Verdict:
+    """Judge a host: overloaded, schedulable, undecided, or unknown."""
     if any(_too_much(load, cores) for _, cores, load in loads):
         return "overload"
+    # The order matters. A load that is exactly full is bearable only where each response is proven to be within its
+    # period; where a figure is missing nothing can be proven, so full counts as overload.
     full = any(load.value == cores for _, cores, load in loads)
     if any(not load.complete or load.value is None for _, _, load in loads):
         return "overload" if full else "unknown"
@@ -138,12 +147,16 @@ def _verdict(
 
 
 def _too_much(load: Value, cores: int) -> bool:
+    """Whether a load is unbounded or above the number of cores."""
     unbounded = load.value is None and load.complete
     return unbounded or (load.value is not None and load.value > cores)
 
 
 def _below_bound(system: System, members: Iterable[str], load: Value, paces: Mapping[str, Pace]) -> bool:
-    """Say whether priorities by rate are sure to do, and nobody wrote others. Jitter is not in Liu and Layland's bound."""
+    """Whether priorities by rate are sure to do, and nobody wrote others.
+
+    Jitter is not in Liu and Layland's bound: with it nothing is sure.
+    """
     working = [system.activities[name] for name in members if paces[name].rate.value and system.activities[name].wcet]
     if any(paces[activity.id].jitter != ZERO for activity in working):
         return False
@@ -156,22 +169,24 @@ def _below_bound(system: System, members: Iterable[str], load: Value, paces: Map
 
 
 def _in_time(pace: Pace, response: Response) -> bool:
-    """Say whether an activity is done before it is activated again."""
+    """Whether an activity is done before it is activated again."""
     if pace.rate.value == 0:
         return True
     if response.worst.value is None or not response.worst.complete or not pace.rate.value:
         return False
     (worst, parts), (often, per) = response.worst.value.as_integer_ratio(), pace.rate.value.as_integer_ratio()
+    # R <= 1 / rate, multiplied out.
     return worst * often <= SECOND * parts * per
 
 
 @lru_cache(_MANY)
 def rate_monotonic_bound(number: int) -> Fraction:
-    """Give n (2^(1/n) - 1), rounded down to nine decimals (ln 2 beyond 64 elements)."""
+    """Return n (2^(1/n) - 1), rounded down to nine decimals (ln 2 beyond 64 elements)."""
     if number > _MANY:
         return _LN_2
     if number < 1:
         return Fraction(1)
+    # The n-th root by bisection in integers: no float, and surely rounded down.
     low, high = _DIGITS, 2 * _DIGITS
     while high - low > 1:
         middle = (low + high) // 2
@@ -180,7 +195,8 @@ def rate_monotonic_bound(number: int) -> Fraction:
 
 
 def is_below_bound(utilisation: Fraction, number: int) -> bool:
-    """Compare with the exact bound: U <= n (2^(1/n) - 1) where (1 + U/n)^n <= 2."""
+    """Whether a utilisation is within the exact bound: U <= n (2^(1/n) - 1) where (1 + U/n)^n <= 2."""
+    # ln 2 is below the bound for every n: stricter than need be, and without powers of large fractions.
     if number > _MANY:
         return utilisation <= _LN_2
     return number == 0 or (1 + utilisation / number) ** number <= 2  # noqa: PLR2004

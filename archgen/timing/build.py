@@ -1,4 +1,4 @@
-"""Build a system from an architecture: its activities and the arcs between them, with all durations in one unit."""
+"""Build a timing system from an architecture: activities and the arcs between them, all durations in one unit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BYTE = 8
 
 
 def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
-    """Read the system off an architecture whose low level was derived, with notes on what had to be assumed."""
+    """Build the system of a linked architecture, with notes on what had to be assumed."""
     unit = ticks(architecture)
     named = names(architecture)
     made = activities(architecture, named, unit)
@@ -51,9 +51,11 @@ def system(architecture: Architecture) -> tuple[System, tuple[Reason, ...]]:
 
 
 def _external(architecture: Architecture, made: Mapping[str, Activity]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Name the inputs into which something comes that the architecture does not contain, or does not name rightly."""
+    """Yield the inputs that something feeds from outside of the architecture."""
     for activity in made.values():
         ports = (architecture.inputs.get(port) for port in activity.inputs)
+        # An input whose `from` names something that does not exist counts as fed from outside: the wrong name is
+        # reported elsewhere, and an input that nothing feeds would keep an all-of reader from ever firing.
         fed = tuple(p.id for p in ports if p and (p.external or p.physical or (p.from_written and not p.connections)))
         if fed:
             yield activity.id, fed

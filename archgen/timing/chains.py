@@ -24,7 +24,7 @@ NO_WAY = Value(None, complete=False, assumptions=("no way leads through all elem
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """One way between two elements: its activities, its arcs, terms, and bound."""
+    """One path between two elements: its activities, terms, and bound."""
 
     through: tuple[str, ...]
     terms: tuple[Term, ...]
@@ -41,7 +41,7 @@ class Late:
 
 
 def chain(analysis: Analysis, architecture: Architecture, asked: Chain, network: Network | None = None) -> ChainResult:
-    """Bound one chain. Give the network to share its costs among many chains."""
+    """Bound one chain. Pass a network to share its costs among many chains."""
     network = network or Network.of(analysis)
     points = route.points(analysis.system, architecture, asked.through)
     regions = route.chain_route(network, points)
@@ -55,12 +55,13 @@ def chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainRes
 
 
 def missed(analysis: Analysis, architecture: Architecture) -> Iterator[Late]:
-    """Give the chains that may miss their deadlines; their other figures are left out."""
+    """Yield the chains that may miss their deadlines; their other figures are left out."""
     network = Network.of(analysis)
     for asked in architecture.chains.values():
         if asked.deadline is None or asked.unresolved:
             continue
         regions = route.chain_route(network, route.points(analysis.system, architecture, asked.through))
+        # Only the bound: the three other aims would each cost a graph of their own, and rules need none of them.
         found = _ways(network, regions, "bound") if regions else None
         way = next(found.best(), None) if found else None
         if found is not None and way is not None:
@@ -72,9 +73,10 @@ def missed(analysis: Analysis, architecture: Architecture) -> Iterator[Late]:
 def between(
     network: Network, architecture: Architecture, source: Waypoint, target: Waypoint, aim: Aim = "bound"
 ) -> Ways | None:
-    """Find all ways from one element to another: extremes, the next ones and their number can be asked of the answer.
+    """Return all paths from one element to another, None where an element has no activity.
 
-    None where an element has no activity. With the aim `best` the ways are sorted from the quickest best case on.
+    Extremes, the next ones and their number can be asked of the answer. With the aim `best`, the quickest best case is
+    first.
     """
     points = route.points(network.steps.analysis.system, architecture, (source, target))
     regions = route.free_route(network, points)
@@ -82,7 +84,7 @@ def between(
 
 
 def listed(network: Network, found: Ways, most: int) -> Iterator[Found]:
-    """Give the first ways, with their terms."""
+    """Yield the first paths, with their terms."""
     for way in found.best(most):
         arcs = [network.arcs[at] for at in way.arcs]
         names = (network.names[way.start], *(arc.target for arc in arcs))
@@ -91,7 +93,7 @@ def listed(network: Network, found: Ways, most: int) -> Iterator[Found]:
 
 
 def terms(network: Network, way: Way) -> tuple[Term, ...]:
-    """Give the terms of a way's bound: waiting, response, link, each with its reason and place."""
+    """Return the terms of a path's bound: waiting, response, link, each with its reason and place."""
     steps = network.steps
     name = network.names[way.start]
     start = steps.start(name)
@@ -103,6 +105,7 @@ def terms(network: Network, way: Way) -> tuple[Term, ...]:
 
 
 def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> ChainResult:
+    """Return all figures of a chain, with the terms of its worst path."""
     deadline = Value(asked.deadline.value) if asked.deadline else None
     found = _ways(network, regions, "bound") if regions else None
     way = next(found.best(), None) if found else None
@@ -125,11 +128,12 @@ def _result(network: Network, regions: Sequence[route.Region], asked: Chain) -> 
 
 
 def _nameless(words: tuple[str, ...]) -> Value:
+    """Return the value of a chain with words that name nothing."""
     return Value(None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words))
 
 
 def _from_event(network: Network, way: Way, bound: Value) -> Value:
-    """Say of a chain that an event starts that its two largest figures differ, by how much."""
+    """Note on a chain that begins with an event that reaction time and data age differ, and by how much."""
     first = network.names[way.start]
     if network.steps.analysis.system.activities[first].behaviour not in {"event", "on_demand"}:
         return bound
@@ -140,10 +144,10 @@ def _from_event(network: Network, way: Way, bound: Value) -> Value:
 
 
 def data_age(network: Network, result: ChainResult) -> Value:
-    """Give the largest age of what a chain makes of a sample, until the next one replaces it.
+    """Return the largest age of what a chain makes of a sample, until the next one replaces it.
 
-    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be a
-    gap away, and that comes on top.
+    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be
+    a gap away, which comes on top.
     """
     if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
         return result.bound
@@ -151,7 +155,7 @@ def data_age(network: Network, result: ChainResult) -> Value:
 
 
 def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "open"]:
-    """Hold a bound against a deadline. What is known may exceed it before all is known."""
+    """Compare a bound with a deadline. What is known may exceed it before everything is known."""
     if deadline is None or deadline.value is None:
         return "open"
     if boundless(bound):
@@ -162,17 +166,20 @@ def verdict(bound: Value, deadline: Value | None) -> Literal["met", "missed", "o
 
 
 def _ways(network: Network, regions: Sequence[route.Region], aim: Aim) -> Ways:
+    """Return the paths of a route, with the extreme one for an aim first."""
     graph, first = network.graph(aim)
     return ways(graph, first, regions, longest=aim != "best")
 
 
 def _extreme(network: Network, regions: Sequence[route.Region], aim: Aim) -> Value:
+    """Return the extreme figure of a route for an aim."""
     found = _ways(network, regions, aim)
     way = next(found.best(), None)
     return _whole(network, found, way, aim) if way else UNKNOWN
 
 
 def _sum(network: Network, way: Way, aim: Aim) -> Value:
+    """Return the sum of a path's costs for an aim."""
     parts = list(network.start(network.names[way.start], aim))
     for at in way.arcs:
         parts += network.step(network.arcs[at], aim)
@@ -180,12 +187,14 @@ def _sum(network: Network, way: Way, aim: Aim) -> Value:
 
 
 def _whole(network: Network, found: Ways, way: Way, aim: Aim) -> Value:
-    """Give the extreme way's sum; it is a bound for all ways only where the other ways are known too."""
+    """Return the extreme path's sum; it bounds all paths only where the costs of the others are known too."""
     value = _sum(network, way, aim)
     if found.cut:
         value = replace(value, assumptions=(*value.assumptions, _cut_text([network.arcs[at] for at in found.cut])))
     if aim == "best" or found.count == 1 or boundless(value):
         return value
+    # Costs of unknown figures count as 0 in the network, so that a path with a gap may seem shorter than it is: if any
+    # arc on any path lacks a figure, the bound is open.
     others = bounded([part for at in found.arcs() for part in network.step(network.arcs[at], aim)])
     if others.complete:
         return value

@@ -27,7 +27,7 @@ class Task:
 def reaction(tasks: Sequence[Task], ahead: Sequence[bool]) -> Fraction:
     """Bound the reaction time: T_1 + R_n + sum over i < n of max(R_i, T_(i+1) + p_i R_i).
 
-    `ahead[i]` says that i and its successor share a processor and i has the higher priority: then p_i is 0.
+    `precedence[i]` says that i and its successor share a processor and i has the higher priority (p_i = 0).
     """
     waits = (
         max(one.response, after.period + (Fraction(0) if first else one.response))
@@ -43,7 +43,7 @@ def reduced_age(tasks: Sequence[Task], ahead: Sequence[bool]) -> Fraction:
 
 
 def of_chain(analysis: Analysis, through: Sequence[str]) -> tuple[Fraction, Fraction] | None:
-    """Give reaction time and reduced data age, in ns, of a chain that the bounds hold for; None of any other."""
+    """Return reaction time and reduced data age, in ns, of a chain that the bounds hold for; None for any other."""
     activities = [analysis.system.activities[name] for name in through]
     tasks: list[Task] = []
     for activity in activities:
@@ -60,12 +60,13 @@ def of_chain(analysis: Analysis, through: Sequence[str]) -> tuple[Fraction, Frac
 
 
 def _local(analysis: Analysis, one: Activity, other: Activity) -> bool:
-    """Tell whether data passes at once."""
+    """Whether data passes from one activity to another without taking time."""
     arcs = [arc for arc in analysis.system.out_of.get(one.id, ()) if arc.target == other.id]
     return bool(arcs) and all(arc.worst == 0 for arc in arcs)
 
 
 def _ahead(one: Activity, other: Activity) -> bool:
+    """Whether two activities share a core and the first one has the higher priority."""
     if one.host is None or one.host != other.host or one.core != other.core:
         return False
     return one.priority is not None and other.priority is not None and one.priority > other.priority

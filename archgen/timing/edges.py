@@ -21,21 +21,22 @@ _ONE = Value(Fraction(1))
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What the edges are judged by."""
+    """What edges are judged by, and figures that many of them share."""
 
     state: State
     paces: Mapping[str, Pace]
     outputs: Mapping[tuple[str, str], Pace]
     responses: Mapping[str, Response]
     windows: dict[tuple[str, bool], int | Value] = field(default_factory=dict)
-    """Found once for each reader."""
+    """Time (ticks) in which messages gather, by reader and whether it is fired by each message."""
     fits: dict[tuple[tuple[int, int], tuple[int, int], int], tuple[Fraction, Fraction, Value]] = field(
         default_factory=dict
     )
-    """Loss, reads of each sample, and the beat of exact rates: once for each pair of rates and number of messages read at once."""
+    """Loss, rereads and beat, by both rates (as ratios) and the number of messages read at once."""
     counts: dict[int, Value] = field(default_factory=dict)
+    """Values of queue lengths."""
     dropped: dict[str, Value] = field(default_factory=dict)
-    """By each reader."""
+    """Loss by reader, where messages fire it."""
 
 
 def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
@@ -46,21 +47,23 @@ def edge_paces(known: Known, *, judging: bool = False) -> tuple[EdgePace, ...]:
 
 
 def _judged(system: System, arc: Arc) -> bool:
-    """Say whether the rules on lost samples and short queues look at an arc at all."""
+    """Whether the rules on lost samples and short queues look at an arc at all."""
     target = system.activities[arc.target]
+    # Must name no fewer arcs than analyses/timing looks at: what is left out here is never reported.
     return (target.mode == "all" and arc.input in target.triggers) or (
         arc.depth_written and (target.behaviour == "periodic" or fires(system, arc))
     )
 
 
 def fires(system: System, arc: Arc) -> bool:
-    """Say whether each message on an arc fires its reader."""
+    """Whether each message on an arc fires its reader (before `every` and `throttle`)."""
     target = system.activities[arc.target]
     alone = target.mode == "any" or target.triggers == (arc.input,)
     return target.behaviour == "event" and arc.input in target.triggers and alone
 
 
 def _edge(known: Known, arc: Arc) -> EdgePace:
+    """Return how the two ends of an arc fit together."""
     if known.state.system.activities[arc.source].behaviour == "once":
         return EdgePace(arc, ZERO, _ONE, ZERO, _ONE)
     is_fired = fires(known.state.system, arc)
@@ -76,30 +79,32 @@ def _edge(known: Known, arc: Arc) -> EdgePace:
     if sent.value == read.value and not sent.assumptions and not read.assumptions:
         return EdgePace(arc, ZERO, _ONE, ZERO, queue)
     loss, again, beat = _fit(known, sent.value, read.value, _at_once(known, arc))
+    # A beat is the difference of two rates: one that is only bounded says nothing of it.
     if sent.side != "exact" or read.side != "exact":
         beat = ZERO
     return EdgePace(arc, _like(loss, sent, read), _like(again, sent, read), beat, queue)
 
 
 def _fit(known: Known, sent: Fraction, read: Fraction, at_once: int) -> tuple[Fraction, Fraction, Value]:
-    """Give the share of samples that is lost, how often each is read, and the beat."""
+    """Return the share of samples lost, how often each is read, and the beat."""
     key = sent.as_integer_ratio(), read.as_integer_ratio(), at_once
     fit = known.fits.get(key)
     if fit is None:
         each = read / sent if sent else Fraction(1)
+        # Reading `at_once` messages at a time loses none as long as that many reads keep up with what is sent.
         loss, again = max(1 - at_once * each, Fraction(0)), max(each, Fraction(1))
         fit = known.fits[key] = loss, again, _beat(sent, read)
     return fit
 
 
 def _at_once(known: Known, arc: Arc) -> int:
-    """Give how many messages a reader takes at a time: only the newest, or all of a queue that somebody asked for."""
+    """Return how many messages a reader takes at a time: the newest only, or all of a queue that somebody asked for."""
     polls = known.state.system.activities[arc.target].behaviour == "periodic"
     return arc.depth if polls and arc.depth_written and arc.depth else 1
 
 
 def _dropped(known: Known, reader: str) -> Value:
-    """Give the share of triggers that `every` and `throttle` leave out."""
+    """Return the share of triggers that `every` and `throttle` leave out."""
     system = known.state.system
     target = system.activities[reader]
     if not target.throttle:
@@ -112,19 +117,23 @@ def _dropped(known: Known, reader: str) -> Value:
 
 
 def _either(sent: Value, read: Value) -> Value:
+    """Return the unknown value that names what is missing of either rate."""
     return total(
         replace(one, value=None, side="exact") for one in (sent, read) if one.value is None or not one.complete
     )
 
 
 def _like(value: Fraction, sent: Value, read: Value) -> Value:
-    """Mark a figure that rests on a bound."""
+    """Return a figure with the assumptions of the rates that it rests on."""
     said = (*sent.assumptions, *read.assumptions)
     return Value(value, assumptions=tuple(dict.fromkeys(said)) if said else ())
 
 
 def _beat(sent: Fraction, read: Fraction) -> Value:
-    """Give the time (ns) from one beat to the next, 0 where the rates fit: 1 / |fast - n slow|, n slow being nearest to fast."""
+    """Return the time (ns) from one slip of two clocks to the next, 0 where they never slip.
+
+    It is 1 / |fast - n slow|, with n slow nearest to fast.
+    """
     if not sent or not read:
         return ZERO
     fast, slow = max(sent, read), min(sent, read)
@@ -133,8 +142,9 @@ def _beat(sent: Fraction, read: Fraction) -> Value:
 
 
 def _queue(known: Known, arc: Arc, *, is_fired: bool) -> Value:
-    """Give how many messages can wait: what comes until the reader has been through once more, eta+(its gap + R)."""
+    """Return how many messages can wait: what comes until the reader has been through once more, eta-plus(gap + R)."""
     events = left(known.state, arc)
+    # Without the link's latency nothing is known of arrivals: `arriving_model` returns the cause that names the link.
     if events and arc.worst is None:
         events = arriving(known.state, arc, known.state.events[arc.source])
     if isinstance(events, Cause):
@@ -152,8 +162,9 @@ def _queue(known: Known, arc: Arc, *, is_fired: bool) -> Value:
 
 
 def _window(known: Known, reader: str, *, is_fired: bool) -> int | Value:
-    """Give how long (in ticks) messages can gather before a reader."""
+    """Return how long (in ticks) messages can gather before a reader."""
     response = known.responses[reader].worst
+    # A reader that each message fires lets them wait for one response; any other for its gap as well.
     waiting = response if is_fired else total((known.paces[reader].gap, response))
     if waiting.value is None or not waiting.complete:
         return replace(waiting, value=None, side="exact")

@@ -24,9 +24,9 @@ KEYS = {
     "wcet": "duration",
     "response": "duration",
 }
-"""What can be observed, and its dimension. Periods are gaps between two messages or activations: mean, least, largest."""
+"""What can be observed, and its dimension. Periods are gaps between two events: mean, smallest, largest."""
 TOLERANCE = Fraction(1, 10)
-"""A measured mean rate may differ by this share before it is an outlier."""
+"""A measured mean may differ by this share before it is an outlier."""
 
 _BROKEN_ABOVE = {
     "max_period": "gaps are larger than the bounds rest on",
@@ -50,7 +50,7 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One figure, designed and measured. `verdict` says whether the design holds; `why` what it means where not."""
+    """One figure, designed and measured. `verdict` says whether the design holds, `why` what it means if not."""
 
     id: str
     key: str
@@ -61,16 +61,17 @@ class Comparison:
 
     @property
     def ratio(self) -> Fraction | None:
-        """Give measured by designed."""
+        """Return measured by designed, None where nothing (or zero) is designed."""
         return self.measured / self.designed.value if self.designed.value else None
 
 
 def compare(
     analysis: Analysis, observed: tuple[Observation, ...]
 ) -> tuple[tuple[Comparison, ...], tuple[Diagnostic, ...]]:
-    """Hold observations against the design; ids that the design does not have are findings."""
+    """Compare observations with the design; ids that the design does not have are findings."""
     made: list[Comparison] = []
     found: list[Diagnostic] = []
+    # Of several publishers of a topic the last one counts; an observation of a topic does not say which one it saw.
     topics = {arc.topic: (arc.source, arc.output) for arc in analysis.system.arcs}
     for each in observed:
         topic = each.id in topics
@@ -84,6 +85,7 @@ def compare(
 
 
 def _compared(analysis: Analysis, name: str, key: str, measured: Fraction, pace: Pace | None) -> Comparison:
+    """Compare one figure with what the design has for it."""
     if key in {"rate", "period"}:
         return _paced(name, key, measured, pace)
     activity, response = analysis.system.activities.get(name), analysis.responses.get(name)
@@ -100,6 +102,7 @@ def _compared(analysis: Analysis, name: str, key: str, measured: Fraction, pace:
 
 
 def _paced(name: str, key: str, measured: Fraction, pace: Pace | None) -> Comparison:
+    """Compare a mean rate or period: outlier if it is off by more than the tolerance."""
     rate = designed = pace.rate if pace else UNKNOWN
     if key == "period":
         designed = Value(10**9 / rate.value, rate.complete) if rate.value else UNKNOWN
@@ -112,6 +115,7 @@ def _paced(name: str, key: str, measured: Fraction, pace: Pace | None) -> Compar
 
 
 def _bounded(name: str, key: str, designed: Value, measured: Fraction) -> Comparison:
+    """Compare an extreme: outlier only if it breaks the bound. A measurement never proves one."""
     above = key in _BROKEN_ABOVE
     if designed.value is None or not known(designed, "at most" if above else "at least"):
         return Comparison(name, key, designed, measured, "not designed")
@@ -121,5 +125,6 @@ def _bounded(name: str, key: str, designed: Value, measured: Fraction) -> Compar
 
 
 def _unknown(each: Observation, known_ids: list[str]) -> Diagnostic:
+    """Report an id that the design does not have."""
     message = f"no node, activity or topic is called `{each.id}`"
     return Diagnostic("unknown-reference", message, each.at, help=did_you_mean(each.id, known_ids))

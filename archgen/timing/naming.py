@@ -1,4 +1,4 @@
-"""What a word from the command line means in timing: an activity, a node, a component, an output, a host, a chain."""
+"""What a word from the command line means in timing: an activity, a node, a component, an output."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from archgen.timing.system import System
 
 
 class UnknownNameError(ValueError):
-    """A word names nothing that timing knows of, or several things; the text says what."""
+    """A word names nothing that timing knows of, or several things; the text says which."""
 
 
 def waypoint(architecture: Architecture, system: System, word: str) -> Waypoint:
-    """Find the element of a chain that a word means: complete ids first, then the ends of components and outputs."""
+    """Return the element of a chain that a word means: complete ids first, then the last parts of ids."""
     if word in system.activities or word in architecture.nodes:
         return Waypoint("node", word)
     if word in architecture.components:
@@ -34,7 +34,7 @@ def waypoint(architecture: Architecture, system: System, word: str) -> Waypoint:
 
 
 def activities(architecture: Architecture, system: System, word: str) -> tuple[str, ...]:
-    """Find the activities that a word means: one activity, all of a node, all of a component."""
+    """Return the ids of the activities that a word means: one, all of a node, or all of a component."""
     from archgen.timing import route
 
     if word in system.activities:
@@ -44,17 +44,18 @@ def activities(architecture: Architecture, system: System, word: str) -> tuple[s
 
 
 def ending(ids: Iterable[str], word: str) -> list[str]:
-    """Give the dotted ids that end in some words."""
+    """Return the dotted ids that end in the given words."""
     return [name for name in ids if name == word or name.endswith(f".{word}")]
 
 
 def nothing(word: str, known: Iterable[str]) -> str:
-    """Say that a word names nothing, with a guess at what it meant."""
+    """Say that a word names nothing, with a guess at what was meant."""
     names = {part: name for name in known for part in (name.rpartition(".")[2], name)}
     guess = did_you_mean(word, names) if closest(word, names) else None
     return f"nothing is called `{word}`; {guess or '`archgen list` gives the names of all elements'}"
 
 
 def _either(found: list[str], most: int = 6) -> str:
+    """List possible meanings, at most so many."""
     shown = ", ".join(f"`{name}`" for name in found[:most])
     return shown + (f" and {len(found) - most} more" if len(found) > most else "")

@@ -17,8 +17,12 @@ from archgen.timing.value import UNKNOWN, ZERO, Cause, Value
 
 
 def paces(state: State, responses: Mapping[str, Response]) -> Paces:
-    """Find the pace of every activity and output, sources first; last what the inputs of those give that state their own."""
+    """Find the pace of every activity and output, sources first.
+
+    Last comes what the inputs would give those activities that state a period of their own (`RateTable.derived`).
+    """
     found = Paces(state, responses)
+    # Looked at after the loop, since they do not wait for their inputs in the order, which may come later in it.
     later: list[Activity] = []
     for name in state.triggers.order:
         activity = state.system.activities[name]
@@ -38,6 +42,7 @@ def paces(state: State, responses: Mapping[str, Response]) -> Paces:
 
 
 def _pace(found: Paces, activity: Activity, beat: Beat, asked: Value | None, reasons: tuple[Reason, ...]) -> Pace:
+    """Return the pace of an activity; calls that it answers count as activations."""
     rate, gap = beat
     everything = rate if asked is None else asked if activity.behaviour == "on_demand" else total((rate, asked))
     jitter, distance = _shape(found, found.state.events[activity.id])
@@ -45,7 +50,7 @@ def _pace(found: Paces, activity: Activity, beat: Beat, asked: Value | None, rea
 
 
 def _stated(found: Paces, activity: Activity) -> Pace:
-    """Give the pace that an element states although its inputs fire it."""
+    """Return the pace that an activity states although its inputs fire it."""
     beat = periodic(found, activity)
     jitter, distance = _shape(found, found.state.events[activity.id])
     reasons = (periodic_reason(found, activity),)
@@ -53,11 +58,13 @@ def _stated(found: Paces, activity: Activity) -> Pace:
 
 
 def _shape(found: Paces, events: Streams | Cause) -> tuple[Value, Value]:
+    """Return jitter and smallest gap of an event model, in ns."""
     if isinstance(events, Cause):
         return because(events), because(events)
     if not events:
         return ZERO, UNBOUNDED
     one = single(events)
+    # The spacing of a collapsed stream says nothing of the streams it was made of.
     distance = one.spacing if len(events) == 1 else 0
     return found.time(one.jitter), found.time(distance)
 
@@ -67,9 +74,10 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
     pace, name = found.of[activity.id], activity.id
     spread = _spread(found, activity) if activity.outputs else ZERO
     shape = _shifted(found, activity, pace, spread) if activity.outputs else (ZERO, ZERO)
+    # Made once for all plain outputs: they are equal.
     usual: Pace | None = None
     if asked is not None and activity.behaviour == "event":
-        beat = total((beat[0], asked)), beat[1]  # whoever asks activates it as well
+        beat = total((beat[0], asked)), beat[1]  # a call activates it as well, and publishes
     for key in activity.outputs:
         serves = (name, key) in found.state.system.served
         now = (asked or unknown(name), unknown(name)) if serves else beat
@@ -83,7 +91,7 @@ def _publish(found: Paces, activity: Activity, beat: Beat, asked: Value | None) 
 
 
 def _shifted(found: Paces, activity: Activity, pace: Pace, spread: Value) -> tuple[Value, Value]:
-    """Give jitter and smallest gap of what comes up to `spread` later: in ticks, where all is known."""
+    """Return jitter and smallest gap of what comes up to `spread` later; in ticks, where everything is known."""
     events, worst = found.state.events[activity.id], found.state.responses[activity.id].value
     if isinstance(events, Cause) or not events or worst is None:
         return total((pace.jitter, spread)), _closer(pace, spread)
@@ -94,7 +102,7 @@ def _shifted(found: Paces, activity: Activity, pace: Pace, spread: Value) -> tup
 
 
 def _later(pace: Pace, beat: Beat, spread: Value, shape: tuple[Value, Value]) -> Pace:
-    """Give the pace of what comes up to `spread` later than it might."""
+    """Return the pace of what comes up to `spread` later than it might."""
     rate, gap = beat
     if spread.value == 0:
         return Pace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
@@ -103,6 +111,7 @@ def _later(pace: Pace, beat: Beat, spread: Value, shape: tuple[Value, Value]) ->
 
 
 def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, sent: Beat) -> Pace:
+    """Return the pace of a conditional output: between never and the given rate, with the promised gap, if any."""
     rate, spread = sent
     promised = activity.max_gaps.get(key)
     gap = UNBOUNDED if promised is None else _promise(found.time(promised), pace.gap, spread)
@@ -113,7 +122,10 @@ def _conditional(found: Paces, activity: Activity, key: str, pace: Pace, sent: B
 
 
 def _promise(promised: Value, gap: Value, spread: Value) -> Value:
-    """Give the gap that an output promises; but it is never sent more often than its activity works."""
+    """Return the gap that an output promises, unless the activity's own gap is larger.
+
+    Nothing is sent more often than its activity works.
+    """
     done = spread if boundless(spread) else total((gap, spread))
     if boundless(spread) or (done.value is not None and done.value > (promised.value or 0)):
         return done
@@ -121,7 +133,7 @@ def _promise(promised: Value, gap: Value, spread: Value) -> Value:
 
 
 def _spread(found: Paces, activity: Activity) -> Value:
-    """Give how much later than the earliest an output can be, R - B. A best case that nobody wrote is taken as 0."""
+    """Return how much later than the earliest an output can be, R - B. A best case that nobody wrote counts as 0."""
     ticks = found.state.responses[activity.id].value
     if ticks is None:
         return replace(found.responses[activity.id].worst, value=None)
@@ -129,6 +141,7 @@ def _spread(found: Paces, activity: Activity) -> Value:
 
 
 def _closer(pace: Pace, spread: Value) -> Value:
+    """Return the smallest gap, reduced by a spread."""
     if pace.distance.value is None:
         return UNKNOWN if not pace.distance.complete else pace.distance
     return ZERO if spread.value is None else Value(max(pace.distance.value - spread.value, Fraction(0)))

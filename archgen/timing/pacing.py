@@ -1,4 +1,4 @@
-"""The paces found so far: what each further one rests on."""
+"""The rates found so far, which each further one rests on."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from archgen.timing.system import Activity
 from archgen.timing.value import Value
 
 Beat = tuple[Value, Value]
-"""A rate and the largest gap."""
+"""A rate in Hz, and the largest gap in ns."""
 
 
 @dataclass(slots=True)
 class Paces:
-    """The paces found so far."""
+    """The rates found so far. It is filled by `find_rates`, sources first, and by link_traffic."""
 
     state: State
     responses: Mapping[str, Response]
@@ -26,14 +26,15 @@ class Paces:
     outputs: dict[tuple[str, str], Pace] = field(default_factory=dict)
     derived: dict[str, Pace] = field(default_factory=dict)
     beats: dict[tuple[int, int], Beat] = field(default_factory=dict)
-    """Of each period and jitter."""
+    """Rate and gap by period and jitter (ticks)."""
     times: dict[int, Value] = field(default_factory=dict)
+    """Durations in ns by ticks."""
 
     carried: dict[tuple[str, str, str, int | None], Value] = field(default_factory=dict)
-    """Bytes a second of an output (activity and key) on a topic, with messages of a size."""
+    """Traffic in B/s by activity, output key, topic, and message size."""
 
     def time(self, ticks: int) -> Value:
-        """Give a duration in ns."""
+        """Return a duration in ns."""
         found = self.times.get(ticks)
         if found is None:
             above, below = self.state.system.tick.as_integer_ratio()
@@ -42,5 +43,5 @@ class Paces:
 
 
 def trigger_place(activity: Activity) -> Span:
-    """Say where it is written what fires an activity."""
+    """Return where it is written what fires an activity."""
     return activity.places.get("trigger", activity.at)

@@ -1,7 +1,7 @@
-"""Who shares a processor with whom: activities in units (threads), units on cores.
+"""Who shares a processor with whom: activities in units (one thread each), units on cores.
 
-A core to which something is pinned is kept for what is pinned there; all else shares the cores that are left. Where none
-is left, what is not pinned may run anywhere, and gets in the way everywhere.
+A core to which something is pinned is kept for what is pinned there; everything else shares the remaining cores. Where
+none remains, what is not pinned may run anywhere, and interferes everywhere.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ Unit = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Resource:
-    """Cores that some units share. `foreign` are units that are analysed elsewhere, and may run here.
+    """Cores that some units share. `foreign_units` are analysed elsewhere, but may run here.
 
-    `joined`: some wait for the threads of a container that units on other cores hold. All that runs on any of these cores is
-    `foreign` then, and only this is sure: while one of them waits, one of the cores works.
+    `joined`: some unit here waits for a thread of a container that units on other cores hold. Then all that runs on any
+    of these cores is foreign, for only one thing is sure: while one of them waits, one of the cores works.
     """
 
     id: str
@@ -35,14 +35,15 @@ class Resource:
 
     @property
     def members(self) -> tuple[str, ...]:
-        """Name the activities whose responses are found here."""
+        """Return the ids of the activities whose responses are found here."""
         return tuple(activity for unit in self.units for activity in unit)
 
 
 def resources(system: System) -> tuple[Resource, ...]:
-    """Give the cores of all hosts, then those of containers without one.
+    """Return the resources of all hosts, then those of crowded containers without a host.
 
-    What has neither has a core of its own, and stands in none of them; so has each thread of a container without a host.
+    An activity with neither has a core of its own and belongs to no resource; so does one whose container has a thread
+    for each member.
     """
     by_host: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():
@@ -53,17 +54,19 @@ def resources(system: System) -> tuple[Resource, ...]:
 
 
 def homeless(system: System) -> dict[str, list[Activity]]:
-    """Give the members of each container without a host that has fewer threads than members."""
+    """Return the members of each container without a host that has fewer threads than members."""
     found: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():
         if activity.host is None and activity.container is not None:
             found[activity.container].append(activity)
+    # Where `threads` is not written, there is one for each member, and none waits for another.
     return {
         name: members for name, members in found.items() if len(members) > (system.threads.get(name) or len(members))
     }
 
 
 def _of_threads(system: System) -> Iterable[Resource]:
+    """Yield a resource for each crowded container without a host, with as many dedicated cores as it has threads."""
     for name, members in homeless(system).items():
         threads = system.threads.get(name) or 1
         units = (tuple(one.id for one in members),) if threads == 1 else tuple((one.id,) for one in members)
@@ -72,6 +75,7 @@ def _of_threads(system: System) -> Iterable[Resource]:
 
 
 def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable[Resource]:
+    """Return the resources of a host: one for its only core, else one per pinned core and one for the rest."""
     cores = system.cores.get(host)
     units = pins(system, members)
     if cores is None or cores <= 1:
@@ -85,8 +89,11 @@ def _of_host(system: System, host: str, members: Iterable[Activity]) -> Iterable
 
 
 def _shared(system: System, host: str, pinned: Mapping[int, list[Unit]], loose: tuple[Unit, ...]) -> Iterable[Resource]:
+    """Yield the pinned cores, then the cores that everything else shares."""
     cores = system.cores.get(host) or 1
     free = cores - len(pinned)
+    # With a pin on every core nothing is left for the unpinned units. They may land on any core, so they interfere on
+    # each one, and everything pinned interferes with them.
     foreign = () if free > 0 else loose
     for core, units in pinned.items():
         yield Resource(f"{host} core {core}", host, 1, tuple(units), foreign, tuple(_torn(system, units)))
@@ -98,7 +105,7 @@ def _shared(system: System, host: str, pinned: Mapping[int, list[Unit]], loose: 
 
 
 def _torn(system: System, units: Iterable[Unit]) -> Iterable[str]:
-    """Name the threads whose members are pinned to several cores."""
+    """Yield an assumption for each single-threaded container whose members are pinned to several cores."""
     for unit in units:
         activities = [system.activities[name] for name in unit]
         if len({one.core for one in activities if _is_pinned(system, one)}) > 1:
@@ -106,7 +113,10 @@ def _torn(system: System, units: Iterable[Unit]) -> Iterable[str]:
 
 
 def _joined(system: System, found: tuple[Resource, ...]) -> Iterable[Resource]:
-    """Join cores over which members of a container with fewer threads than members are spread."""
+    """Join the cores over which the members of a container with fewer threads than members are spread."""
+    # A member may wait for a thread that is held by a member on another core, and that one for its core: the wait
+    # crosses cores, so that the work of all joined cores bounds it (tests/timing/test_shared_threads.py has an example
+    # of 11 ms).
     spread = _spread(system, found)
     groups = {at: group for group in components(spread, spread.__getitem__) for at in group}
     for at, resource in enumerate(found):
@@ -119,7 +129,7 @@ def _joined(system: System, found: tuple[Resource, ...]) -> Iterable[Resource]:
 
 
 def _spread(system: System, found: tuple[Resource, ...]) -> dict[int, list[int]]:
-    """Say which cores share a container's threads with which others."""
+    """Return for each resource, by position, those that share the threads of a container with it."""
     where: dict[str, list[int]] = defaultdict(list)
     for at, resource in enumerate(found):
         for name in resource.members:
@@ -135,10 +145,12 @@ def _spread(system: System, found: tuple[Resource, ...]) -> dict[int, list[int]]
 
 
 def pins(system: System, members: Iterable[Activity]) -> dict[Unit, int | None]:
-    """Gather what containers with one thread run; all else runs by itself. A unit is pinned where its first pinned member is.
+    """Return the units of some activities, each with the core it is pinned to, or None.
 
-    What is pinned to a core that is not there may run anywhere.
+    A container with one thread is one unit, pinned where its first pinned member is; everything else is a unit by
+    itself. A pin to a core that does not exist counts as none.
     """
+    # Keys are prefixed, since an activity and a container may have the same id.
     threads: dict[str, list[Activity]] = {}
     for activity in members:
         alone = activity.container is None or system.threads.get(activity.container) != 1

@@ -1,7 +1,8 @@
 """Event models from sources to sinks, and with them the response times, to a fixed point.
 
-Responses make outputs later by R - B, which makes the event models of those who read them burstier, which makes responses
-longer. Only what depends on itself that way is iterated, from below, so that the first repetition is the least fixed point.
+Responses make outputs later by R - B, which makes the event models of their readers burstier, which makes responses
+longer. Only what depends on itself that way is iterated, from below, so that the first repetition is the least fixed
+point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 """
 
 from __future__ import annotations
@@ -21,9 +22,10 @@ from archgen.timing.value import Cause, alike, united
 from archgen.timing.windows import Budget
 
 _SWEEPS = 300
+"""Sweeps over a loop before it is given up as diverged."""
 _ONCE = Fraction(1)
 _LATER = {"overload": "unbounded"}
-"""What an overload is to those who read what comes out of it."""
+"""What a note becomes for those who read the output: what reads from an overload is not overloaded itself."""
 
 
 @dataclass(slots=True)
@@ -36,11 +38,14 @@ class State:
     responses: dict[str, Found] = field(default_factory=dict)
     diverged: set[str] = field(default_factory=set)
     left: dict[str, Streams | Cause] = field(default_factory=dict)
-    """What leaves each activity, as far as anybody asked once all was found."""
+    """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
 
 
 def propagate(system: System, triggers: Triggers, budget: Budget | None = None) -> State:
-    """Find the event model and the worst response of every activity. Who looks several times gives one budget for all."""
+    """Find the event model and the worst response of every activity.
+
+    A caller that propagates several times passes one budget for all runs.
+    """
     return _Propagation(State(system, triggers), resources(system), budget or Budget()).run()
 
 
@@ -54,6 +59,7 @@ class _Propagation:
         self.runs_on: dict[str, list[str]] = {}
         self.interferes: dict[str, list[str]] = {}
         for number, resource in enumerate(shared):
+            # Resources get keys that no activity has: both are steps of one graph.
             key = f"{number} {resource.id}"
             self.resources[key] = resource
             for unit in resource.units:
@@ -67,7 +73,10 @@ class _Propagation:
         self.after = self._after()
 
     def run(self) -> State:
+        """Take the strong components of the dependencies in order, and iterate only those that are loops."""
         for steps in components([*self.state.triggers.order, *self.resources], self.after.__getitem__):
+            # The strong components come in the order of dependency: what is outside of loops is found once, in one
+            # pass.
             if len(steps) == 1 and steps[0] not in self.after[steps[0]]:
                 self._step(steps[0])
             else:
@@ -75,6 +84,7 @@ class _Propagation:
         return self.state
 
     def _after(self) -> dict[str, list[str]]:
+        """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
         after: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
         for step, resource in self.resources.items():
@@ -85,11 +95,13 @@ class _Propagation:
             if not states_itself(activity) and name not in triggers.unknown:
                 for arc in self._arcs(name):
                     after[arc.source].append(name)
+                    # What arrives rests on the source's response as well, and that is found by its resource.
                     for step in self.runs_on.get(arc.source, ()):
                         after[step].append(name)
         return after
 
     def _arcs(self, name: str) -> Iterator[Arc]:
+        """Yield the arcs on which an activity's event model rests."""
         triggers = self.state.triggers
         for key, arcs in triggers.inputs[name].items():
             if (name, key) not in triggers.open:
@@ -97,7 +109,7 @@ class _Propagation:
         yield from triggers.requests[name]
 
     def _iterate(self, steps: tuple[str, ...]) -> None:
-        """Repeat until nothing changes. Started from the execution times alone, all that is found stays below the truth."""
+        """Repeat until nothing changes. Started from the execution times, it approaches the truth from below."""
         self._start(steps)
         waiting = set(steps)
         for _ in range(_SWEEPS):
@@ -112,17 +124,20 @@ class _Propagation:
         self._give_up(steps)
 
     def _start(self, steps: tuple[str, ...]) -> None:
+        """Set the least response (the execution time) and no events for all activities of a loop."""
         for name in self._names(steps):
             activity = self.state.system.activities[name]
+            # The cause is read only where the value is None, that is, where no execution time is known.
             self.state.responses.setdefault(name, Found(activity.wcet, "unknown", Cause((name,))))
             self.state.events.setdefault(name, ())
 
     def _names(self, steps: tuple[str, ...]) -> Iterator[str]:
+        """Yield the activities whose figures some steps find."""
         for step in steps:
             yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up(self, steps: tuple[str, ...]) -> None:
-        """Past the cap nothing is said at all: the last round is no bound."""
+        """Mark everything in a loop as diverged: the last iterate is below the truth, so it is no bound."""
         state = self.state
         for name in self._names(steps):
             state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED)
@@ -132,7 +147,7 @@ class _Propagation:
                 state.events[step] = DIVERGED
 
     def _step(self, step: str) -> bool:
-        """Find one step's figures anew, and tell whether they changed."""
+        """Find the figures of one step anew, and return whether they changed."""
         state = self.state
         if step in self.resources:
             found = responses(
@@ -149,31 +164,35 @@ class _Propagation:
         if step in state.responses and _is_known(state.events.get(step), events):
             return False
         state.events[step] = events
+        # On no resource: a core of its own, so that its response rests on nothing but its own events.
         if step not in self.runs_on:
             state.responses[step] = alone(state.system, step, state.events, self.budget)
         return True
 
     def _stale(self, step: str) -> frozenset[str] | None:
-        """Name what has another event model than when a resource was looked at last; None the first time."""
+        """Return what has another event model than when a resource was last looked at; None the first time."""
         resource, events = self.resources[step], self.state.events
         now = {name: events[name] for unit in (*resource.units, *resource.foreign) for name in unit}
         before = self.seen.get(step)
+        # Compared by identity below: `_update_step` stores an event model only where it differs from the old one.
         self.seen[step] = now
         return None if before is None else frozenset(name for name in now if now[name] is not before[name])
 
 
 def _differs(old: Found | None, new: Found) -> bool:
+    """Whether a response changed. Causes are compared without regard to order (see `is_same_cause`)."""
     if old is None or old.value != new.value or old.tier != new.tier:
         return True
     return old.cause is not new.cause and not alike(old.cause, new.cause)
 
 
 def _is_known(old: Streams | Cause | None, new: Streams | Cause) -> bool:
+    """Whether an event model is the same as before."""
     return alike(old, new) if isinstance(old, Cause) and isinstance(new, Cause) else old == new
 
 
 def activation(state: State, name: str) -> Streams | Cause:
-    """Give the event model of an activity's activations, from what fires it."""
+    """Return the event model of an activity's activations, from what fires it."""
     activity = state.system.activities[name]
     own = written(activity)
     if own is not None:
@@ -190,6 +209,7 @@ def activation(state: State, name: str) -> Streams | Cause:
 
 
 def _event(state: State, activity: Activity) -> Streams | Cause:
+    """Return the event model of an event-driven activity: what its inputs fire, and the calls that it serves."""
     inputs = state.triggers.inputs[activity.id]
     asked = tuple(requests(state, activity.id))
     if not inputs and not asked:
@@ -197,11 +217,13 @@ def _event(state: State, activity: Activity) -> Streams | Cause:
     data = _fired(state, activity, inputs) if inputs else ()
     if isinstance(data, Cause):
         return data
+    # Calls are not thinned: `every`, `throttle` and `jitter` are about triggers.
     fired = late(throttled(every(data, activity.every), activity.throttle), activity.jitter) if data else ()
     return _any((fired, *asked))
 
 
 def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]) -> Streams | Cause:
+    """Return the event model of what triggers fire, before `every`, `throttle` and `jitter`."""
     if activity.mode == "any":
         return _any(arrival(state, activity, key, arcs) for key, arcs in inputs.items())
     needed = [key for key, arcs in inputs.items() if not is_kept(state.system, arcs)]
@@ -209,12 +231,14 @@ def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...
         fed = renewed(state.system, inputs)
         return _any(arrival(state, activity, key, arcs) for key, arcs in fed.items()) if fed else ()
     found = [
+        # An input that closes a ring: how often it comes rests on this activity itself. The others bound the rate.
         Cause((activity.id,))
         if (activity.id, key) in state.triggers.open
         else arrival(state, activity, key, inputs[key])
         for key in needed
     ]
     known = [streams for streams in found if not isinstance(streams, Cause)]
+    # One input on which nothing ever comes is enough for all-of never to fire.
     if any(not streams for streams in known):
         return ()
     if not known:
@@ -223,12 +247,12 @@ def _fired(state: State, activity: Activity, inputs: Mapping[str, tuple[Arc, ...
 
 
 def is_kept(system: System, arcs: Iterable[Arc]) -> bool:
-    """Say whether something sent once stands on an input: it is always there."""
+    """Whether something sent once stands on an input, so that it is always there."""
     return any(system.activities[arc.source].behaviour == "once" for arc in arcs)
 
 
 def renewed(system: System, inputs: Mapping[str, tuple[Arc, ...]]) -> dict[str, tuple[Arc, ...]]:
-    """Give the inputs that something else feeds beside what is sent once: where everything is always there, they fire."""
+    """Return the inputs that something feeds beside what is sent once: where everything is always there, they fire."""
     return {
         key: arcs
         for key, arcs in inputs.items()
@@ -237,14 +261,14 @@ def renewed(system: System, inputs: Mapping[str, tuple[Arc, ...]]) -> dict[str, 
 
 
 def arrival(state: State, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> Streams | Cause:
-    """Give the event model of what arrives at one input."""
+    """Return the event model of what arrives at one input."""
     if not arcs or key in state.system.external.get(activity.id, ()):
         return Cause((key,))
     return _any(arriving(state, arc, state.events[arc.source]) for arc in arcs)
 
 
 def requests(state: State, name: str) -> Iterator[Streams | Cause]:
-    """Give the event models of the calls that arrive: they come at any time while their caller runs."""
+    """Yield the event models of the calls that arrive: they may come at any time while their caller runs."""
     for arc in state.triggers.requests[name]:
         events = state.events[arc.source]
         caller = state.system.activities[arc.source]
@@ -255,7 +279,10 @@ def requests(state: State, name: str) -> Iterator[Streams | Cause]:
 
 
 def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool = False) -> Streams | Cause:
-    """Give what is left of an event model behind its source's response and a link."""
+    """Return the event model behind a source's response and a link.
+
+    With `from_start` the event may leave as soon as the source starts, not only after its best case.
+    """
     if isinstance(events, Cause) or not events:
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
@@ -267,7 +294,7 @@ def arriving(state: State, arc: Arc, events: Streams | Cause, *, from_start: boo
 
 
 def leaving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool = False) -> Streams | Cause:
-    """Give what is left of an event model behind its source's response, before any link."""
+    """Return the event model behind a source's response, before any link."""
     if isinstance(events, Cause) or not events:
         return events
     source, response = state.system.activities[arc.source], state.responses[arc.source]
@@ -277,17 +304,20 @@ def leaving(state: State, arc: Arc, events: Streams | Cause, *, from_start: bool
 
 
 def _done(source: Activity, response: int, events: Streams, *, from_start: bool) -> Streams:
+    """Return the event model of completions: up to R - B later than activations, and at least B apart."""
     best = 0 if from_start else source.bcet or 0
     done = late(events, max(response - best, 0))
-    # What is only declared may rest on several cores at once.
+    # A declared response may rest on several executions at once: its completions are not known to be B apart.
     return apart(done, best) if source.response is None else done
 
 
 def _unanswered(cause: Cause) -> Cause:
+    """Return the cause as those see it who read the output."""
     return Cause(cause.missing, tuple(_LATER.get(note, note) for note in cause.notes))
 
 
 def _any(inputs: Iterable[Streams | Cause]) -> Streams | Cause:
+    """Merge event models: any of them fires. One unknown makes all unknown."""
     causes: list[Cause] = []
     found: list[Stream] = []
     for one in inputs:

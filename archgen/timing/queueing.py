@@ -1,7 +1,8 @@
-"""How long messages are on a link of which only the bandwidth is written: until all that can wait in front of it is sent.
+"""How long messages are on a link of which only the bandwidth is written: until all that can wait before it is sent.
 
-In whatever order messages are sent, each has left at the end of the longest busy period. That makes what comes next later,
-and what it sends in turn burstier; so links and all else are looked at in turns, from below, until nothing changes.
+In whatever order messages are sent, each has left at the end of the longest busy period. That delays what comes next,
+and makes what this sends in turn burstier; so links and everything else are looked at in turns, from below, until
+nothing changes.
 """
 
 from __future__ import annotations
@@ -19,14 +20,16 @@ from archgen.timing.value import Cause, summed, united
 from archgen.timing.windows import Budget, DivergedError, Load, Work, busy
 
 _TURNS = 24
+"""Turns after which links that still change are given up."""
 _LONGEST = 20 * SECOND
-"""A link that needs more turns, or longer than this, has no latency that could be told."""
+"""A computed latency (ns) above this is not given: the link counts as unknown."""
 SATURATED, DIVERGED = Cause(notes=("unbounded",)), Cause(notes=("diverged",))
 
 
 def settled(system: System) -> tuple[System, Triggers, State]:
-    """Find the state of a system, with the latency of those links that state none but could."""
+    """Return the system with the latencies of its links, where only the bandwidth is written, and its state."""
     waits: dict[str, int | None] = {arc.link: 0 for arc in system.arcs if _asks(system, arc) and arc.link is not None}
+    # One budget for all turns: a search that never ends must not begin anew with each of them.
     budget = Budget()
     for turn in count(1):
         tried = _with(system, waits) if waits else system
@@ -36,16 +39,19 @@ def settled(system: System) -> tuple[System, Triggers, State]:
         found = {link: None if was is None else _wait(state, link, crossing[link]) for link, was in waits.items()}
         if found == waits:
             break
+        # Every so many turns whatever still changes is given up, so that the others can settle without it. None stays
+        # None, thus the loop ends.
         waits = found if turn % _TURNS else {link: was if was == waits[link] else None for link, was in found.items()}
     return tried, firing, state
 
 
 def _asks(system: System, arc: Arc) -> bool:
+    """Whether an arc's latency is to be computed from its link's bandwidth."""
     return arc.link is not None and arc.worst is None and bool(system.bandwidths.get(arc.link))
 
 
 def _with(system: System, waits: Mapping[str, int | None]) -> System:
-    """Lay latencies into a system, beside the best ones that are written."""
+    """Return the system with computed latencies, on top of the best ones that are written."""
 
     def laid(arc: Arc) -> Arc:
         wait = waits.get(arc.link) if arc.link is not None and arc.worst is None else None
@@ -62,15 +68,17 @@ def _with(system: System, waits: Mapping[str, int | None]) -> System:
 
 
 def _wait(state: State, link: str, arcs: Iterable[Arc]) -> int | None:
+    """Return the computed wait for a link in ticks, None where there is none."""
     found = longest(state, link, arcs)
     return None if isinstance(found, Cause) or found * state.system.tick > _LONGEST else found
 
 
 def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
-    """Give the longest busy period of a link in ticks (rounded up), or why there is none."""
+    """Return the longest busy period of a link in ticks (rounded up), or why there is none."""
     bandwidth = state.system.bandwidths[link]
     if not bandwidth:
         return Cause((link,))
+    # Ticks per byte. A bandwidth is in B/s here: one byte takes 1 / bandwidth seconds.
     above, below = (SECOND / (bandwidth * state.system.tick)).as_integer_ratio()
     works: list[Work] = []
     causes: list[Cause] = []
@@ -83,6 +91,7 @@ def longest(state: State, link: str, arcs: Iterable[Arc]) -> int | Cause:
         elif arc.size:
             works.append(Work(-(-arc.size * above // below), events))
     sent_, room = summed((stream.ratio[0] * work.cost, stream.ratio[1]) for work in works for stream in work.streams)
+    # Before the causes: what is known fills the link already, whatever else comes.
     if sent_ >= room:
         return SATURATED
     if causes:

@@ -1,4 +1,4 @@
-"""Strongly connected components and loops, without recursion (R. Tarjan, 1972, with a stack of its own)."""
+"""Strongly connected components and loops, without recursion (R. Tarjan, 1972, with an explicit stack)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ T = TypeVar("T", bound=Hashable)
 
 
 def components(elements: Iterable[T], after: Callable[[T], Iterable[T]]) -> list[tuple[T, ...]]:
-    """Give the components, each behind all that lead to it. Within one, elements stand in the order of `elements`."""
+    """Return the strong components, each behind all that lead to it; members are in the order of `elements`."""
     order = list(elements)
     place = {element: number for number, element in enumerate(order)}
     search = _Search(after)
     for element in order:
         if element not in search.number:
             search.run(element)
+    # Tarjan closes a component only after all that it leads to, so that the reverse is a topological order.
     return [tuple(sorted(found, key=lambda one: place.get(one, len(place)))) for found in reversed(search.found)]
 
 
 def rings(after: Mapping[T, Sequence[T]]) -> list[tuple[T, ...]]:
-    """Give the components that hold a loop, in order of appearance."""
+    """Return the components that hold a loop, in order of appearance."""
     found = components(after, lambda element: after.get(element, ()))
     place = {element: number for number, element in enumerate(after)}
     looped = (ring for ring in found if len(ring) > 1 or ring[0] in after.get(ring[0], ()))
@@ -39,6 +40,8 @@ class _Search(Generic[T]):
         self._is_open: set[T] = set()
 
     def run(self, start: T) -> None:
+        # Recursion would end at Python's limit: paths through an architecture can be thousands of activities long.
+        """Search everything that can be reached from an element and has not been searched yet."""
         path: list[tuple[T, Iterator[T]]] = [self._enter(start)]
         while path:
             here, following = path[-1]
@@ -57,12 +60,14 @@ class _Search(Generic[T]):
                     self._close(here)
 
     def _enter(self, element: T) -> tuple[T, Iterator[T]]:
+        """Assign the next number to an element, and put it on the stack."""
         self._low[element] = self.number[element] = len(self.number)
         self._open.append(element)
         self._is_open.add(element)
         return element, iter(self._after(element))
 
     def _close(self, root: T) -> None:
+        """Take a complete component, whose root is the given element, off the stack."""
         members: list[T] = []
         while not members or members[-1] != root:
             members.append(self._open.pop())

@@ -17,8 +17,8 @@ from archgen.timing.value import Value
 class Round:
     """One round of a loop, in ns: the sum of (link worst + S_i + R_i) over its arcs.
 
-    The activities that feed one another (`members`) may make many rounds; this one is the shortest (in steps) through
-    the first of them. A service's answer does not close a loop.
+    The activities that feed one another (`members` of them) may make many rounds; this is the shortest one (in steps)
+    through the first of them. A service's answer does not close a loop.
     """
 
     through: tuple[str, ...]
@@ -27,7 +27,7 @@ class Round:
 
 
 def rounds(network: Network) -> tuple[Round, ...]:
-    """Give a round of each loop, in order of appearance."""
+    """Return a round of each loop, in order of appearance."""
     system = network.steps.analysis.system
     after = {
         name: [arc.target for arc in system.out_of.get(name, ()) if arc.role != "answer"] for name in system.activities
@@ -41,10 +41,11 @@ def rounds(network: Network) -> tuple[Round, ...]:
 
 
 def _round(network: Network, ring: Sequence[str]) -> tuple[Arc, ...]:
-    """Give the arcs of the shortest round through the first activity of a ring."""
+    """Return the arcs of the shortest round through the first activity of a ring."""
     members, first = frozenset(ring), ring[0]
     came: dict[str, Arc] = {}
     queue = deque([first])
+    # Breadth first, until the first activity is reached again; `arriving_arcs` holds the arc by which each was reached.
     while queue and first not in came:
         here = queue.popleft()
         for arc in network.steps.analysis.system.out_of.get(here, ()):

@@ -1,4 +1,4 @@
-"""Which arcs carry something of some activations only."""
+"""Which arcs carry something only for some of the activations of their source."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from archgen.timing.system import Arc, System
 
 
 def selective(system: System, arc: Arc) -> bool:
-    """Tell whether an activation of the source may send nothing on an arc, with no promise of when one does.
+    """Whether an activation of the source may send nothing on an arc, with no promise of when one does.
 
-    So do a conditional output without `max_gap`, less than one call for each activation, and the answers of a server that
-    something else than this caller activates too.
+    That is so for a conditional output without `max_gap`, for fewer than one call per activation, and for the answers
+    of a server that something other than this caller activates too.
     """
     source = system.activities[arc.source]
     if arc.role == "request":

@@ -1,4 +1,4 @@
-"""What is sent along an arc, before any link: samples, requests, answers, with the event model that they have there."""
+"""What is sent along an arc, before any link: samples, requests, answers, each with its event model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from archgen.timing.value import Cause
 
 
 def sent(state: State, arc: Arc) -> Streams | Cause:
-    """Give the event model of what is sent along an arc, at its source."""
+    """Return the event model of what is sent along an arc, at its source."""
     if arc.role == "answer":
         return _answers(state, arc)
     events = state.events[arc.source]
@@ -23,7 +23,10 @@ def sent(state: State, arc: Arc) -> Streams | Cause:
 
 
 def left(state: State, arc: Arc) -> Streams | Cause:
-    """Give the event model of the samples that leave an arc's source; found once for all its arcs, when all else is."""
+    """Return the event model of the samples that leave an arc's source.
+
+    Cached by source in the state, so it must be asked only once propagation is done.
+    """
     found = state.left.get(arc.source)
     if found is None:
         found = state.left[arc.source] = leaving(state, arc, state.events[arc.source])
@@ -31,12 +34,12 @@ def left(state: State, arc: Arc) -> Streams | Cause:
 
 
 def calls(caller: Activity, request: Arc) -> Fraction:
-    """Give the calls that a client makes in each of its activations."""
+    """Return how many calls a client makes in each of its activations."""
     return caller.calls.get(request.output, Fraction(1))
 
 
 def _answers(state: State, answer: Arc) -> Streams | Cause:
-    """Give the answers to one client: as many as it asked, each at most as much later as the server needs."""
+    """Return the answers to one client: as many as it asked for, each at most as much later as the server needs."""
     server, response = state.system.activities[answer.source], state.responses[answer.source]
     asking = state.system.into.get(server.id, ())
     request = next(a for a in asking if a.role == "request" and a.source == answer.target and a.topic == answer.topic)
@@ -48,6 +51,7 @@ def _answers(state: State, answer: Arc) -> Streams | Cause:
     if request.best is None or request.worst is None:
         return Cause((request.link or request.source,))
     spread = max(response.value - (server.bcet or 0), 0) + request.worst - request.best
+    # A periodic server looks for calls when it runs: an answer waits up to one more of its gaps.
     if server.behaviour in {"event", "on_demand"}:
         return late(asked, spread)
     return Cause((server.id,)) if server.period is None else late(asked, spread + server.period + server.jitter)

@@ -16,8 +16,9 @@ from archgen.timing.arrivals import Arrivals
 from archgen.timing.chains import chain
 
 BETTER = Fraction(9, 10)
+"""What is left of a duration that is improved by a tenth."""
 MOST = 200
-"""How many figures are tried; each one takes an analysis of the whole. What is left out is counted."""
+"""How many figures are tried: each takes an analysis of the whole. The rest is counted in `untried`."""
 _KEYS = ("wcet", "response", "period", "rate", "throttle", "jitter")
 
 
@@ -33,7 +34,7 @@ class Gain:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A figure that is not known: how many terms of the chain lack it, how many chains, and what may hide there (ns)."""
+    """An unknown figure: how many terms of the chain lack it, how many chains, and what may hide there (ns)."""
 
     element: str
     what: str
@@ -57,12 +58,16 @@ def sensitivity(
     analyse: Callable[[Architecture], Analysis],
     results: Mapping[str, ChainResult],
 ) -> Sensitivity:
-    """Try each figure that may bear on a chain, the largest gain first. `results` are all chains as they stand."""
+    """Try each figure that may bear on a chain; the largest gain comes first.
+
+    `results` are all chains as they are now.
+    """
     analysis = analyse(architecture)
     now = results[asked.id]
     candidates = list(_candidates(architecture, analysis, now))
     gains: list[Gain] = []
     for figure, written, at, changed in candidates[:MOST]:
+        # The whole analysis anew: a neighbour on the same host bears on the chain through responses and jitter only.
         after = chain(analyse(changed), changed, asked).bound
         if now.bound.value is not None and after.value is not None and after.value < now.bound.value:
             gains.append(Gain(figure, written, now.bound.value - after.value, at))
@@ -73,7 +78,7 @@ def sensitivity(
 def _candidates(
     architecture: Architecture, analysis: Analysis, result: ChainResult
 ) -> Iterator[tuple[str, str, Span, Architecture]]:
-    """Give each written figure that may bear on a chain, and the architecture with it improved."""
+    """Yield each written figure that may bear on a chain, with the architecture in which it is improved."""
     for name in _near(analysis, result):
         activity = analysis.system.activities[name]
         node = architecture.nodes[activity.node]
@@ -94,6 +99,7 @@ def _candidates(
 def _links(
     architecture: Architecture, analysis: Analysis, result: ChainResult
 ) -> Iterator[tuple[str, str, Span, Architecture]]:
+    """Yield the written latencies of links along a chain, with the architecture in which each is improved."""
     used = {
         arc.link
         for one, other in zip(result.through, result.through[1:], strict=False)
@@ -103,6 +109,7 @@ def _links(
     for name in sorted(used):
         link = architecture.links[name]
         if link.worst is not None and link.worst.value:
+            # A worst latency below the best one would be a mistake in the files.
             value = max(link.worst.value * BETTER, link.best.value if link.best else Fraction(0))
             changed = replace(link, worst=Quantity(value, link.worst.text))
             links = {**architecture.links, name: changed}
@@ -110,7 +117,7 @@ def _links(
 
 
 def _better(timing: Timing, figure: str, quantity: Quantity) -> Timing:
-    """Take a tenth off a duration (a rate grows by the same measure); what cannot be above it goes down with it."""
+    """Take a tenth off a duration (a rate grows accordingly); what cannot be above it goes down with it."""
     value = quantity.value / BETTER if figure == "rate" else quantity.value * BETTER
     changes = {figure: Quantity(value, quantity.text)}
     if figure == "wcet" and timing.bcet is not None and timing.bcet.value > value:
@@ -119,7 +126,7 @@ def _better(timing: Timing, figure: str, quantity: Quantity) -> Timing:
 
 
 def _near(analysis: Analysis, result: ChainResult) -> list[str]:
-    """Name the activities that bear on a chain: its own, what fires them, and what shares their hosts."""
+    """Return the activities that bear on a chain: its own, what fires them, and what shares their hosts."""
     arrivals, activities = Arrivals(analysis), analysis.system.activities
     found = dict.fromkeys(result.through)
     queue = list(found)
@@ -134,7 +141,7 @@ def _near(analysis: Analysis, result: ChainResult) -> list[str]:
 
 
 def _gaps(analysis: Analysis, result: ChainResult, results: Mapping[str, ChainResult]) -> list[Gap]:
-    """Rank what is not known: by the terms that lack it, by what may hide there (its gap), by the chains that lack it."""
+    """Rank unknown figures: by the terms that lack them, by what may hide there, by the chains that lack them."""
     lacking: dict[tuple[str, str], int] = {}
     for term in result.terms:
         for what, value in (
@@ -158,5 +165,6 @@ def _gaps(analysis: Analysis, result: ChainResult, results: Mapping[str, ChainRe
 
 
 def _plausible(analysis: Analysis, name: str) -> Fraction | None:
+    """Return what may hide in an unknown figure: the activity's gap, since what works rarely may take long."""
     pace = analysis.paces.get(name)
     return pace.gap.value if pace else None

@@ -1,4 +1,4 @@
-"""Response times on several cores that share their work, under any scheduler that leaves none idle while somebody waits."""
+"""Response times on several cores that share their work, under any global work-conserving scheduler."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def several(
     wanted: Sequence[Thread],
     budget: Budget,
 ) -> Iterable[tuple[Thread, Found]]:
-    """Find the responses of the threads that are wanted, among those of a resource and the foreign ones."""
+    """Yield the responses of the wanted threads, among those of a resource and the foreign ones."""
     everything = (*threads[0], *threads[1])
     total = added(thread.share for thread in everything)
     cause = united(causes) if (causes := [thread.cause for thread in everything if thread.cause]) else None
@@ -58,6 +58,7 @@ class _Whole(NamedTuple):
 
 
 def _carried(threads: Iterable[Thread]) -> Demand:
+    """Return the demand of threads, with the jobs that may be carried into the window."""
     load = Load()
     for thread in threads:
         load.add_carried(thread.works)
@@ -72,8 +73,9 @@ def _undisturbed(thread: Thread, budget: Budget) -> Found:
 
 
 def _is_unbounded(thread: Thread, beside: Sequence[Thread], narrow: int, whole: tuple[Fraction, int]) -> bool:
-    """Say whether a thread and its part of all other work fill a core."""
+    """Whether a thread and its part of all other work fill a core, so that no window is long enough."""
     total, cores = whole
+    # share + (total - share) / cores >= 1, multiplied out.
     if not beside:  # in whole numbers: this is asked of each thread
         (share, part), (all_, parts) = thread.share.as_integer_ratio(), total.as_integer_ratio()
         return share * (cores - 1) * parts + all_ * part >= cores * part * parts
@@ -85,6 +87,8 @@ def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, b
     """Bound the response on several cores: while a job waits, all cores (or its container's threads) do other work."""
     everything, total, carried = whole
     threads = system.threads.get(thread.container) if thread.container else None
+    # Work of the same container interferes by holding its threads: it must be divided by their number, if that is
+    # smaller.
     narrow = min(threads, resource.cores) if threads else resource.cores
     beside = [t for t in everything if t is not thread and t.container == thread.container and threads]
     if len(everything) <= resource.cores and len(beside) < (threads or resource.cores):
@@ -96,6 +100,8 @@ def _global(system: System, resource: Resource, thread: Thread, whole: _Whole, b
     own = _carried((thread,))
     if beside:
         near = _carried(beside)
+        # The lower bound of the difference needs `own_demand` and `sibling_demand` to be terms of `carried_demand` (see
+        # `subtract_demand`): all three are made of the same threads.
         others = shared(((near, narrow), (without(carried, together(own, near)), resource.cores)))
     else:
         others = shared(((without(carried, own), resource.cores),))

@@ -1,4 +1,4 @@
-"""How many bytes a message takes: as written at its type, else computed from the definitions where the size is fixed.
+"""How many bytes a message takes: as written at its type, else computed from its definition where the size is fixed.
 
 ROS 2 puts a header of 4 bytes in front, and a dummy byte into a message without fields (rosidl's
 `structure_needs_at_least_one_member`); ROS 1 sends the fields and nothing else.
@@ -21,9 +21,9 @@ from archgen.timing import encoding
 from archgen.timing.encoding import Shape
 
 HEADER = 4
-"""The encapsulation header of ROS 2: which representation follows."""
+"""The encapsulation header of ROS 2, which says in which representation the message follows."""
 LARGEST = 2**63 - 1
-"""No message is larger; the size of a definition that asks for more is unknown."""
+"""No message is larger; a definition that asks for more has no known size."""
 _TIMES = frozenset({"time", "duration", "builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"})
 """ROS 1 has these built in: two numbers of 4 bytes."""
 _STRING = re.compile(r"(w?)string(?:<=([0-9]+))?\Z")
@@ -32,7 +32,7 @@ _MADE = re.compile(
     r"(.+/(?:srv|action)/.+?)_"
     r"(Request|Response|Goal|Result|Feedback|FeedbackMessage|(?:SendGoal|GetResult)_(?:Request|Response))\Z"
 )
-"""The messages that ROS 2 makes of services and actions."""
+"""The messages that ROS 2 generates from services and actions."""
 _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 _GOAL_ID = Field("goal_id", "uint8", "[16]")
 _WRAPPED = {
@@ -47,7 +47,7 @@ _DUMMY = (Field("structure_needs_at_least_one_member", "uint8"),)
 
 @dataclass(frozen=True, slots=True)
 class MessageSize:
-    """A message's bytes on the wire, None where nobody can know; with `exact` False they are an upper bound.
+    """A message's bytes on the wire, None where unknown; with `exact` False they are an upper bound.
 
     `why` says where the figure comes from, or which field leaves it open.
     """
@@ -56,30 +56,30 @@ class MessageSize:
     exact: bool
     why: str
     written: bool = False
-    """The project wrote it at the type; nothing was computed."""
+    """Whether the project wrote the size at the type, so that nothing was computed."""
 
     def __str__(self) -> str:
-        """Say the size in words: `52 B (computed)`; nothing where it is unknown."""
+        """Return the size in words, such as `52 B (computed)`; an empty text where it is unknown."""
         if self.bytes is None:
             return ""
         return f"{'' if self.exact else 'at most '}{self.bytes} B{'' if self.written else ' (computed)'}"
 
 
 Role = Literal["data", "request", "answer"]
-"""What passes: samples of a topic; what a client asks of a server; what the server answers."""
+"""What passes: a sample of a topic, a client's request, or a server's answer."""
 Asked = Callable[[str | None, str | None], MessageSize]
-"""A message and the conceptual type that it carries, either of them None where nobody named it."""
+"""Maps a message and the conceptual type that it carries (None where not named) to a size."""
 
 
 def size(message: str, interfaces: Interfaces) -> MessageSize:
-    """Compute the size of `pkg/msg/Name`, or of what ROS 2 makes of a service or action (`pkg/srv/Name_Request`)."""
+    """Compute the size of `pkg/msg/Name`, or of a message that ROS 2 generates (`pkg/srv/Name_Request`)."""
     return _Computed(interfaces).size(message)
 
 
 def known(architecture: Architecture) -> Asked:
-    """Give the function that answers with a size and its reason. A `size` written at the type wins.
+    """Return the function that finds a message's size and its reason. A `size` written at the type takes precedence.
 
-    What was computed is kept: ask as often as you like.
+    Computed sizes are cached in the returned function, so that it may be asked often.
     """
     computed = _Computed(architecture.interfaces)
 
@@ -95,15 +95,16 @@ def known(architecture: Architecture) -> Asked:
 
 
 def of(architecture: Architecture) -> Callable[[str | None, str | None], int | None]:
-    """Give the function that answers with the bytes alone: exact, or an upper bound, or None."""
+    """Return the function that finds a message's bytes alone: exact, an upper bound, or None."""
     answer = known(architecture)
     return cache(lambda message, type_: answer(message, type_).bytes)
 
 
 def carried(architecture: Architecture) -> Callable[[Endpoint, Role], int | None]:
-    """Give the function that answers how many bytes pass from a writer (publisher or server) in each role.
+    """Return the function that finds how many bytes pass from a writer (publisher or server) in each role.
 
-    What an action answers is its result and any number of feedbacks: of a size only where its type has one written.
+    An action answers with its result and any number of feedbacks, which has a size only where one is written at its
+    type.
     """
     answer = of(architecture)
 
@@ -116,7 +117,7 @@ def carried(architecture: Architecture) -> Callable[[Endpoint, Role], int | None
 
 
 def of_topics(architecture: Architecture) -> dict[str, int | None]:
-    """Give the bytes of a sample of each topic: the largest of its writers' samples, None where one is not known."""
+    """Return the bytes of a sample on each topic: the largest of its writers', None where one is unknown."""
     of_writer = carried(architecture)
     found: dict[str, int | None] = {}
     for name, topic in architecture.topics.items():
@@ -134,10 +135,11 @@ _SUFFIXES: dict[tuple[Flow, Role], str | None] = {
     ("action", "request"): "_SendGoal_Request",
     ("action", "answer"): None,
 }
+"""How ROS 2 names the message of each role; None where there is no single one."""
 
 
 class _Computed:
-    """The shapes of messages, each worked out once. Definitions may be nested deeper than Python's calls."""
+    """Computes sizes bottom-up from definitions, each message once."""
 
     def __init__(self, interfaces: Interfaces) -> None:
         """Take the definitions."""
@@ -146,7 +148,7 @@ class _Computed:
         self._shapes: dict[str, Shape] = {}
 
     def size(self, message: str) -> MessageSize:
-        """Answer for one message."""
+        """Return the size of one message, header included."""
         shape = self._shape(message)
         if shape.room is None:
             return MessageSize(None, exact=False, why=shape.why)
@@ -155,7 +157,8 @@ class _Computed:
         return MessageSize(taken, shape.exact, why if shape.exact else f"{why}, which bounds {shape.why}")
 
     def _shape(self, message: str) -> Shape:
-        """Work out a message after all that it holds."""
+        """Return a message's shape, after those of all messages that it holds."""
+        # An explicit stack: recursion would end at Python's limit; `open_names` finds those that hold themselves.
         inside: set[str] = set()
         waiting = [message]
         while waiting:
@@ -175,10 +178,11 @@ class _Computed:
         return self._shapes[message]
 
     def _builtin(self, type_: str) -> bool:
+        """Whether a field's type needs no definition."""
         return "/" not in type_ or (self._ros1 and type_ in _TIMES)
 
     def _fields(self, name: str) -> tuple[Field, ...] | None:
-        """Give what stands on the wire, None where the definition is not held."""
+        """Return the fields on the wire, None where the definition is not known."""
         made = _MADE.match(name)
         base, part = (made[1], made[2]) if made else (name, "")
         found = self._interfaces.definitions.get(base)
@@ -187,11 +191,14 @@ class _Computed:
         parts = _PARTS.get(base.split("/")[1], ("",))
         if part in parts:
             return found.parts[parts.index(part)] or (() if self._ros1 else _DUMMY)
+        # What remains are the wrappers that ROS 2 puts around an action's goal, result and feedback (with the goal's
+        # id).
         if part not in _WRAPPED or len(parts) != len(_PARTS["action"]):
             return None
         return tuple(Field(f.name, f.type.format(base), f.array) for f in _WRAPPED[part])
 
     def _struct(self, name: str) -> Shape:
+        """Return the shape of a message from those of its fields."""
         fields = self._fields(name)
         if fields is None:
             return Shape(None, why=_not_held(name))
@@ -206,18 +213,20 @@ class _Computed:
         return Shape(room, not bounded, bounded)
 
     def _field(self, field: Field) -> Shape:
+        """Return the shape of a field, its brackets included."""
         one = self._element(field)
         array = _ARRAY.match(field.array)
         if array is None or one.room is None:
             return one
         if not array[2]:
             return Shape(None, why=f"the field `{field.name}` may have any length (`{field.type}[]`)")
+        # `[<=n]` is a bounded sequence, its length written in front; `[n]` an array of fixed length.
         if array[1]:
             return Shape(encoding.sequence(one.room, int(array[2])), exact=False, why=f"the field `{field.name}`")
         return Shape(encoding.array(one.room, int(array[2])), one.exact, one.why)
 
     def _element(self, field: Field) -> Shape:
-        """Give the shape of a field without its brackets."""
+        """Return the shape of a field without its brackets."""
         if self._ros1 and field.type in _TIMES:
             return Shape(encoding.number(8, aligned=False))
         if field.type in encoding.WIDTHS:
@@ -229,10 +238,11 @@ class _Computed:
         if text:
             return Shape(None, why=f"the field `{field.name}` may have any length (`{field.type}`)")
         inner = self._shapes.get(field.type, Shape(None, why=f"nobody knows the type `{field.type}`"))
-        # What leaves `stamp` open inside `header` is `header.stamp`.
+        # What leaves `stamp` open inside `header` is reported as `header.stamp`.
         return Shape(inner.room, inner.exact, inner.why.replace("the field `", f"the field `{field.name}.", 1))
 
 
 def _not_held(name: str) -> str:
+    """Say why a message has no fields: it is a whole service or action, or its definition is unknown."""
     several = name.split("/")[1] in _PARTS and not _MADE.match(name)
     return f"`{name}` is several messages" if several else f"the fields of `{name}` are not known"

@@ -1,8 +1,8 @@
-"""What each step of a way adds to a latency: waiting to be read, the response, the link (chains are sums of these).
+"""What each step of a path adds to a latency: waiting to be read, the response, the link; chains are sums of these.
 
-Largest reaction time = largest data age: M. Guenzel et al., "On the Equivalence of Maximum Reaction Time and Maximum Data
-Age for Cause-Effect Chains", ECRTS 2023. For periodic chains the sum is A. Davare et al., "Period Optimization for Hard
-Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each element.
+Largest reaction time = largest data age: M. Guenzel et al., "On the Equivalence of Maximum Reaction Time and Maximum
+Data Age for Cause-Effect Chains", ECRTS 2023. For periodic chains the sum is A. Davare et al., "Period Optimization for
+Hard Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each element.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _SENT = {
     "request": "{0} calls {1} in this very activation",
     "answer": "{0} answers {2} on {1} in this very activation",
 }
-"""What is assumed of an activity that does not send at each activation."""
+"""What is assumed of an activity that does not send at each activation, by the arc's role."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Delay:
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """The delays of a system's steps."""
+    """The delays of a system's steps. S, H and R are as in docs/timing.md."""
 
     analysis: Analysis
     arrivals: Arrivals
@@ -51,23 +51,25 @@ class Steps:
         return cls(analysis, Arrivals(analysis))
 
     def start(self, name: str) -> Delay:
-        """Give S0: the gap of an element that samples the world, 0 where its activation is the stimulus."""
+        """Return S0: the gap of an activity that samples the world, 0 where its activation is the stimulus."""
         activity = self.analysis.system.activities[name]
         if activity.behaviour == "periodic":
             gap = self.arrivals.gap(name)
             return Delay(gap, f"samples the world{_each(gap)}", _place(activity, "period", "rate"))
         if activity.behaviour in {"event", "on_demand"}:
+            # An event that `every` or `throttle` lets wait is a stimulus all the same: it waits for others to come.
             thinned = self.arrivals.thinned(activity)
             return Delay(thinned, f"its event is the stimulus{_thinning(activity)}", activity.at)
         return _strange(activity)
 
     def sampling(self, arc: Arc) -> Value:
-        """Give S of a step: how long a sample may lie before the reader takes it, and before it is sent at all."""
+        """Return S of a step: how long a sample may lie until the reader takes it, and until it is sent at all."""
         waited, held = self._reading(arc), self._condition(arc)
+        # Compared with `is`: adding up is slow, and nearly all arcs have no condition.
         return waited if held is ZERO else bounded((waited, held))
 
     def delay(self, arc: Arc) -> Delay:
-        """Give S of a step with its reason and its place."""
+        """Return S of a step with its reason and its place."""
         reader, value = self.analysis.system.activities[arc.target], self.sampling(arc)
         if arc.role == "request":
             return Delay(value, f"called by {arc.topic}", arc.at)
@@ -81,23 +83,27 @@ class Steps:
         return Delay(value, why, _place(reader, "period", "rate"))
 
     def holding(self, arc: Arc) -> Value:
-        """Give H of a step: how old a sample may have become when it is used (again), since it was sent."""
+        """Return H of a step: how old a sample may have become, since it was sent, when it is used (again)."""
         reader = self.analysis.system.activities[arc.target]
         gap = self.arrivals.sent_gap(arc)
         if not self.arrivals.fires(arc):
             return gap
         late = self.arrivals.time(reader.jitter) if arc.role == "data" else ZERO
+        # All-of uses a sample once, when the set is complete: it is no older than the gap of its output (a newer one
+        # would have replaced it), nor than the wait for the others. Calls make it work again with the same set, so that
+        # both add up.
         if self.arrivals.waits_for_all(reader):
             options = [value for value in (gap, self.arrivals.others(reader, arc)) if known(value)]
             waited = min(options, key=lambda value: value.value or Fraction(0)) if options else gap
             if any(other.role == "request" for other in self.analysis.system.into.get(reader.id, ())):
                 waited = bounded((gap, self.arrivals.others(reader, arc)))  # a call finds what last came together
         else:
+            # Any-of: another trigger sends on what this one brought last, which may be a gap old.
             waited = ZERO if self.arrivals.sole(arc) else gap
         return waited if late is ZERO else bounded((waited, late))
 
     def response(self, name: str, *, worst: bool = True) -> Value:
-        """Give R, the largest response time, or the smallest."""
+        """Return R, the largest response time, or the smallest."""
         found = self.analysis.responses.get(name)
         value = (found.worst if worst else found.best) if found else UNKNOWN
         if worst and found and found.tier == "declared":
@@ -105,7 +111,7 @@ class Steps:
         return nameless(value, name)
 
     def link(self, arc: Arc, *, worst: bool = True) -> Value:
-        """Give a link's largest (or smallest) latency, as it is written; its own queueing is not in it."""
+        """Return a link's largest (or smallest) latency, as it is written; its own queueing is not added."""
         ticks = arc.worst if worst else arc.best
         if ticks is None:
             return Value(None, complete=False, missing=self.arrivals.unlinked(arc))
@@ -117,6 +123,7 @@ class Steps:
         return self._links[key]
 
     def _linked(self, arc: Arc, ticks: int, *, worst: bool) -> Value:
+        """Return a latency with what it assumes about the link's queueing."""
         value = self.arrivals.time(ticks)
         if worst and arc.link in self.analysis.system.queued:
             return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
@@ -132,6 +139,7 @@ class Steps:
         return replace(value, assumptions=(said,))
 
     def _reading(self, arc: Arc) -> Value:
+        """Return how long the reader leaves a sample that has arrived."""
         reader = self.analysis.system.activities[arc.target]
         if self.arrivals.fires(arc):
             if arc.role == "request":
@@ -143,7 +151,7 @@ class Steps:
         return self.arrivals.gap(reader.id)
 
     def _condition(self, arc: Arc) -> Value:
-        """Give what an output adds that is not published each time: its promised gap, or the assumption that it is."""
+        """Return what an output that is not always published adds: its promised gap, or an assumption."""
         system = self.analysis.system
         if selective(system, arc):
             return Value(Fraction(0), assumptions=(_SENT[arc.role].format(arc.source, arc.topic, arc.target),))
@@ -154,6 +162,7 @@ class Steps:
 
 
 def _strange(activity: Activity) -> Delay:
+    """Return the delay at an activity that nothing later reaches, or whose behaviour is unknown."""
     if activity.behaviour == "once":
         return Delay(UNBOUNDED, "works once, at the start: nothing later reaches it", _place(activity, "behaviour"))
     missing = Value(None, complete=False, missing=(activity.id,))
@@ -161,10 +170,12 @@ def _strange(activity: Activity) -> Delay:
 
 
 def _each(gap: Value) -> str:
+    """Return the words for a reader's gap, where it is a bound."""
     return f" every {wording.duration(gap.value)} at the latest" if gap.value is not None and known(gap) else ""
 
 
 def _thinning(activity: Activity) -> str:
+    """Return the words for what lets a trigger wait."""
     said = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
     if activity.throttle:
         said.append("keeps a smallest gap")
@@ -174,4 +185,5 @@ def _thinning(activity: Activity) -> str:
 
 
 def _place(activity: Activity, *keys: str) -> Span:
+    """Return where the first of some keys is written, else the activity's place."""
     return next((activity.places[key] for key in keys if key in activity.places), activity.at)

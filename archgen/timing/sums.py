@@ -1,4 +1,4 @@
-"""Sums, smallest and largest of figures that may not be known: what is known adds up, and what is missing stays named."""
+"""Sums, minima and maxima of figures that may be unknown: what is known adds up, and what is missing stays named."""
 
 from __future__ import annotations
 
@@ -11,25 +11,30 @@ from archgen.timing.value import Cause, Value, added, united
 
 UNBOUNDED = Value(None, assumptions=("unbounded",))
 NEVER = Value(Fraction(0), assumptions=("never fires",))
+"""The rate of what never fires: a known zero, unlike a rate that nobody wrote."""
 BOUNDLESS = ("overload", "unbounded")
-"""The assumptions of values that grow beyond any bound (a value that merely diverged, or is missing, is not known)."""
+"""Assumptions of values that grow beyond any bound. `diverged` is none of them: there the search was given up."""
 
 
 def unknown(*missing: str) -> Value:
-    """Give what is not known for want of some elements' figures."""
+    """Return the value of a figure that is unknown because these elements' figures are missing."""
     return Value(None, complete=False, missing=missing)
 
 
 def because(cause: Cause) -> Value:
-    """Give what is not known for a cause: unbounded (complete, as nothing is missing), or missing figures."""
+    """Return the value for a cause: complete (nothing to fill in) where only notes say why, else missing figures."""
     return Value(None, complete=not cause.missing, missing=cause.missing, assumptions=cause.notes)
 
 
 def total(values: Iterable[Value]) -> Value:
-    """Add up. What is not known is left out, and the sum is at least what the rest gives; one unbounded makes it so."""
+    """Return the sum; one unbounded term makes it unbounded.
+
+    Unknown terms are left out, and make the sum a bound from below.
+    """
     found = tuple(values)
     if len(found) == 1:
         return found[0]
+    # Fast path: nearly all sums are of exact figures without assumptions, and need no merging of reasons.
     exact: list[Fraction] = []
     for one in found:
         if one.value is None or one.assumptions or one.side != "exact":
@@ -38,6 +43,7 @@ def total(values: Iterable[Value]) -> Value:
     else:
         return Value(added(exact))
     reasons = _reasons(found)
+    # An unbounded term outweighs the unknown ones, which stay named in `missing`.
     if any(one.value is None and (one.complete or boundless(one)) for one in found):
         return replace(reasons, value=None, side="exact")
     known = [one.value for one in found if one.value is not None]
@@ -45,9 +51,10 @@ def total(values: Iterable[Value]) -> Value:
 
 
 def smallest(values: Iterable[Value]) -> Value:
-    """Give the smallest of bounds, any of which holds: one complete bound is enough.
+    """Return the smallest of several bounds of which any one suffices.
 
-    What is only known from below may be smaller than it seems once all is known, so that it counts where all others are.
+    A complete bound counts even where others are unknown. A figure known only from below may turn out larger, so that
+    it counts only where no complete bound is there.
     """
     found = tuple(values)
     bounds = [one for one in found if known(one)]
@@ -63,7 +70,7 @@ def smallest(values: Iterable[Value]) -> Value:
 
 
 def largest(values: Iterable[Value]) -> Value:
-    """Give the largest of bounds, all of which are needed."""
+    """Return the largest of several bounds, all of which are needed: one unknown makes the result unknown."""
     found = tuple(values)
     reasons = _reasons(found)
     if any(one.value is None for one in found):
@@ -72,22 +79,22 @@ def largest(values: Iterable[Value]) -> Value:
 
 
 def times(value: Value, factor: Fraction | int) -> Value:
-    """Multiply, keeping what it rests on."""
+    """Return the value times a factor, resting on the same assumptions."""
     if value.value is None or factor == 1:
         return value
     return kept(value, value.value * factor)
 
 
 def kept(value: Value, figure: Fraction) -> Value:
-    """Give another figure that rests on the same."""
+    """Return another figure with the same completeness, missing elements, assumptions and side."""
     return Value(figure, value.complete, value.missing, value.assumptions, value.side)
 
 
 def bounded(values: Iterable[Value], side: Literal["at least", "at most"] = "at most") -> Value:
-    """Add figures up, as a bound from the side that is asked for, which is stricter than `total`.
+    """Return the sum as a bound from the given side; stricter than `add_values`, which accepts terms of either side.
 
-    Where a part has no bound of that side the sum is incomplete: it holds what is known, and is a bound from below. Where
-    nothing but zeros is known it is None, since zero says nothing. One boundless part makes the sum boundless.
+    Where a term has no bound from that side the sum is incomplete and holds what is known, as a bound from below. It is
+    None where nothing but zeros is known, since zero says nothing. One boundless term makes the sum boundless.
     """
     parts = tuple(values)
     missing = tuple(dict.fromkeys(name for part in parts for name in part.missing))
@@ -100,21 +107,23 @@ def bounded(values: Iterable[Value], side: Literal["at least", "at most"] = "at 
         return Value(
             known_sum, complete=True, missing=missing, assumptions=assumptions, side="exact" if exact else side
         )
+    # `or None`: a sum of zero would be printed as ">= 0 ms".
     return Value(known_sum or None, complete=False, missing=missing, assumptions=assumptions, side="at least")
 
 
 def known(value: Value, side: Literal["at least", "at most"] = "at most") -> bool:
-    """Tell whether a figure is a bound from a side: complete, or incomplete on the harmless side."""
+    """Whether a figure is a bound from a side: complete, or incomplete on the harmless side."""
     return value.value is not None and (value.complete or value.side == side)
 
 
 def boundless(value: Value) -> bool:
-    """Tell whether a figure grows beyond any bound, which is more than that it is not known."""
+    """Whether a figure grows beyond any bound, which is more than being unknown."""
+    # An assumption may go on after a colon; only the word before it is compared.
     return value.value is None and any(text.split(":")[0].strip() in BOUNDLESS for text in value.assumptions)
 
 
 def nameless(value: Value, element: str) -> Value:
-    """Name an element where a figure that is not known names none."""
+    """Return the value, with `element` as what is missing if it is unknown and names nothing itself."""
     if known(value) or value.missing or boundless(value):
         return value
     return replace(value, complete=False, missing=(element,))

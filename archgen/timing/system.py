@@ -1,6 +1,6 @@
 """What timing works on: activities (what a node does for one component) and the arcs along which data passes.
 
-All durations are integers of one unit for each project (`System.tick`, in ns): exact, and fast. None is unknown.
+All durations are integers of one unit for each project (`TimingSystem.tick`, in ns): exact, and fast. None is unknown.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Activity:
     """One activity: a node's id, or `node.component` (the component's own name) where a node implements several.
 
     `behaviour` is as written or inferred (`behaviour_inferred`), None where neither is possible. `triggers` are the
-    keys of the inputs that fire it (see `Arc.input`), `mode` whether any or all of them; the other inputs are sampled.
-    Durations are in ticks. `wcet`, `bcet` None are unknown; `response` is a declared worst case.
+    keys of the inputs that fire it (see `Arc.input`), `mode` whether any or all of them do; other inputs are sampled.
+    Durations are in ticks. `wcet` and `bcet` None are unknown; `response` is a declared worst case.
     """
 
     id: str
@@ -32,7 +32,7 @@ class Activity:
     behaviour: Behaviour | None
     behaviour_inferred: bool = False
     period: int | None = None
-    """Written, as a period or as a rate."""
+    """As written, as a period or as a rate."""
     jitter: int = 0
     wcet: int | None = None
     bcet: int | None = None
@@ -42,29 +42,30 @@ class Activity:
     every: int = 1
     throttle: int = 0
     conditional: frozenset[str] = frozenset()
-    """Output keys that are not published at each activation."""
+    """Keys of outputs that are not published at each activation."""
     max_gaps: Mapping[str, int] = field(default_factory=dict)
-    """The largest gap that is promised of a conditional output."""
+    """The largest gap promised for a conditional output."""
     calls: Mapping[str, Fraction] = field(default_factory=dict)
-    """Calls for each activation, by input key; one where nothing is written."""
+    """Calls in each activation, by input key; 1 where nothing is written."""
     priority: int | None = None
     host: str | None = None
     container: str | None = None
     core: int | None = None
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
+    # Not compared either: moving text in a file changes no figure.
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """Data from one activity's output to another's input (a topic), or between a client and a server (both ways).
+    """Data from one activity's output to another's input (a topic), or between client and server (both ways).
 
-    `output` and `input` are keys: a port's complete id, or the absolute name of an internal topic. For a service or
-    action there is one arc from client to server (`role` request: it triggers the server), and one back (`answer`: it
-    triggers nobody). `best`, `worst` are the link's latency in ticks: 0 on one host, None where it is not known.
-    `depth` is the reader's queue, `size` the message's bytes.
+    `output` and `input` are keys: a port's complete id, or the absolute name of an internal topic. A service or action
+    has one arc from client to server (`role` request: it triggers the server) and one back (`answer`: it triggers
+    nobody). `best` and `worst` are the link's latency in ticks: 0 on one host, None where unknown. `depth` is the
+    reader's queue (None: unlimited), `size` the message's bytes.
     """
 
     source: str
@@ -81,10 +82,10 @@ class Arc:
     size: int | None = None
     optional: bool = False
     depth_written: bool = False
-    """The reader asks for another depth than its profile has."""
+    """Whether the reader asks for another depth than its profile has."""
     at: Span = field(default=NOWHERE, compare=False, repr=False)
     queue_at: Span = field(default=NOWHERE, compare=False, repr=False)
-    """Where the reader's quality of service was written."""
+    """Where the reader's quality of service is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,27 +98,27 @@ class System:
     into: Mapping[str, tuple[Arc, ...]]
     out_of: Mapping[str, tuple[Arc, ...]]
     external: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Inputs of each activity that are fed from outside of the architecture."""
+    """Keys of the inputs of each activity that are fed from outside of the architecture."""
     optional: frozenset[str] = frozenset()
-    """Input keys that need not be connected: nobody waits for those that are not."""
+    """Input keys that need not be connected: nobody waits for one that is not."""
     cores: Mapping[str, int | None] = field(default_factory=dict)
-    """Cores of each host, None where nobody wrote them."""
+    """Cores of each host, None where not written."""
     threads: Mapping[str, int | None] = field(default_factory=dict)
-    """Threads of each container."""
+    """Threads of each container, None where not written."""
     bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
-    """Bandwidth of each link, in B/s."""
+    """Bandwidth of each link in B/s, None where not written."""
     served: frozenset[tuple[str, str]] = frozenset()
     """Outputs (activity, key) that are services or actions."""
     writers: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
     """Who publishes on each topic: activities and output keys."""
     sizes: Mapping[str, int | None] = field(default_factory=dict)
-    """Bytes of a message on each topic."""
+    """Bytes of a message on each topic, None where unknown."""
     queued: frozenset[str] = frozenset()
-    """Links whose latency nobody wrote: it was computed from bandwidth and traffic."""
+    """Links whose latency is not written, but was computed from bandwidth and traffic."""
 
 
 def grouped(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
-    """Gather arcs by one of their ends."""
+    """Group arcs by a name, such as that of one of their ends."""
     found: dict[str, list[Arc]] = defaultdict(list)
     for name, arc in pairs:
         found[name].append(arc)

@@ -1,4 +1,4 @@
-"""What topics and links carry: bytes a second, and how much can wait in front of a link."""
+"""What topics and links carry: bytes per second, and how much can wait in front of a link."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from archgen.timing.ticks import SECOND
 from archgen.timing.value import ZERO, Cause, Value, summed
 
 _MOST = 50_000
-"""Arrivals in one busy period of a link that are looked at; beyond, nothing is said of its queue."""
+"""Most arrivals in one busy period of a link that are followed; beyond, nothing is said of its backlog."""
 Outputs = Mapping[tuple[str, str], Pace]
 
 
 def topic_loads(system: System, outputs: Outputs) -> dict[str, TopicLoad]:
-    """Give what is published on each topic, and what all its readers receive."""
+    """Return what is published on each topic, and what all its readers receive."""
     reading: dict[str, list[Arc]] = defaultdict(list)
     for arc in system.arcs:
         if arc.role == "data":
@@ -36,6 +36,7 @@ def topic_loads(system: System, outputs: Outputs) -> dict[str, TopicLoad]:
 def _topic(
     system: System, name: str, writers: Iterable[tuple[str, str]], readers: Iterable[Arc], outputs: Outputs
 ) -> TopicLoad:
+    """Return the load of one topic."""
     size = system.sizes.get(name)
     written = [outputs[writer].rate for writer in writers]
     read = [outputs[arc.source, arc.output].rate for arc in readers]
@@ -48,7 +49,9 @@ def _topic(
 
 
 def _bytes(name: str, size: int | None, rates: Sequence[Value]) -> Value:
+    """Return the traffic of messages of one size at some rates."""
     rate = rates[0] if len(rates) == 1 else total(rates)
+    # Before the size is asked for: what is never sent is no traffic, of whatever size.
     if rate.value == 0 and rate.complete:
         return ZERO
     if size is None or rate.value is None:
@@ -58,12 +61,15 @@ def _bytes(name: str, size: int | None, rates: Sequence[Value]) -> Value:
 
 @lru_cache(1 << 12)
 def _product(often: int, per: int, size: int) -> Fraction:
-    """Multiply: many topics have the same rate, and messages of the same size."""
+    """Return numerator * size / denominator, cached: many topics share a rate and a message size."""
     return Fraction(often * size, per)
 
 
 def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
-    """Give the traffic of each link. Each reader on another host has its own copy sent; calls and answers count as well."""
+    """Return the traffic of each link; calls and answers count as well.
+
+    Each reader on another host has its own copy sent.
+    """
     crossing: dict[str, list[Arc]] = {link: [] for link in state.system.bandwidths}
     for arc in state.system.arcs:
         if arc.link is not None:
@@ -72,6 +78,7 @@ def link_loads(state: State, found: Paces) -> dict[str, LinkLoad]:
 
 
 def _link(state: State, link: str, arcs: Sequence[Arc], found: Paces) -> LinkLoad:
+    """Return the load of one link."""
     by_topic: dict[str, list[Value]] = defaultdict(list)
     for arc in arcs:
         by_topic[arc.topic].append(_carried(found, arc))
@@ -85,6 +92,7 @@ def _link(state: State, link: str, arcs: Sequence[Arc], found: Paces) -> LinkLoa
 
 
 def _carried(found: Paces, arc: Arc) -> Value:
+    """Return the traffic along an arc, cached for data by output, topic and size."""
     if arc.role != "data":
         return _bytes(arc.topic, arc.size, (_rate(found, arc),))
     key = arc.source, arc.output, arc.topic, arc.size
@@ -95,7 +103,7 @@ def _carried(found: Paces, arc: Arc) -> Value:
 
 
 def _rate(found: Paces, arc: Arc) -> Value:
-    """Give how often something is sent: an answer as often as its client asks."""
+    """Return how often something is sent along an arc: an answer as often as its client asks."""
     if arc.role == "data":
         return found.outputs[arc.source, arc.output].rate
     client, asked = (arc.source, arc.output) if arc.role == "request" else (arc.target, arc.input)
@@ -103,7 +111,7 @@ def _rate(found: Paces, arc: Arc) -> Value:
 
 
 def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Value:
-    """Give the most bytes that can wait in front of a link, over its longest busy period."""
+    """Return the most bytes that can wait in front of a link, over its longest busy period."""
     missing: dict[str, None] = {}
     known: list[tuple[int, Streams]] = []
     for arc in arcs:
@@ -115,19 +123,25 @@ def _burst(state: State, arcs: Sequence[Arc], bandwidth: Fraction | None) -> Val
         else:
             known.append((arc.size, events))
     if missing or bandwidth is None:
+        # Not all is known: what all come with at once at the start is a bound from below.
         first = Fraction(sum(size * eta(events, 1) for size, events in known))
         return Value(first, complete=False, missing=tuple(missing), side="at least")
     return _backlog(known, bandwidth * state.system.tick / SECOND)
 
 
 def _backlog(known: Sequence[tuple[int, Streams]], speed: Fraction) -> Value:
-    """Follow a busy period in which all comes as early as it can; `speed` is in bytes a tick."""
+    """Return the largest backlog of a busy period in which everything comes as early as it can.
+
+    `speed` is in bytes per tick.
+    """
     several = [(stream, size * stream.size) for size, events in known if size for stream in events]
     sent, whole = summed((size * stream.ratio[0], stream.ratio[1] * stream.size) for stream, size in several)
     fast, per = speed.as_integer_ratio()
     if sent * per >= fast * whole:
         return UNBOUNDED
-    # All first ones come together, at 0; bytes are counted in parts of 1/`per`.
+    # All first batches come together, at 0; bytes are counted in parts of 1/`speed_denominator`. Arrivals are taken
+    # from a heap in order of time. `arrived_bytes` counts all that has come, and speed_numerator * time is what was
+    # sent by then; the busy period ends where nothing is left.
     waiting = most = per * sum(size for _, size in several)
     number = sum(stream.size for stream, _ in several)
     coming = [(stream.time_of(1), place, 1) for place, (stream, _) in enumerate(several)]

@@ -1,4 +1,4 @@
-"""Figures that say what they rest on: exact, or a bound of one side, or unknown, and why."""
+"""Figures that say what they rest on: exact, a bound from one side, or unknown and why."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from archgen.frozen import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A figure: durations in ns, rates in Hz, sizes in B, traffic in B/s, shares without unit; always exact.
+    """A figure: durations in ns, rates in Hz, sizes in B, traffic in B/s, shares without a unit; always exact.
 
-    `value` None is unknown or unbounded; then an assumption says `overload`, `unbounded` or `diverged`, or `missing`
-    names the elements whose figures are not known. With `complete` False a value is a sum of what is known: a bound
-    from the side that `side` names.
+    `value` None means unknown or unbounded: then an assumption says `overload`, `unbounded` or `diverged`, or `missing`
+    names the elements whose figures are not written. With `complete` False, `value` is the sum of what is known, a
+    bound from the side that `side` names.
     """
 
     value: Fraction | None
@@ -32,15 +32,17 @@ MOST_NAMED = 12
 
 
 def added(parts: Iterable[Fraction]) -> Fraction:
-    """Add up over one denominator: to bring each partial sum to lowest terms takes most of the time of all analyses."""
+    """Return the sum of fractions over one common denominator."""
+    # Reducing each partial sum to lowest terms, as Fraction.__add__ does, took most of the time of a whole analysis.
     found = list(parts)
-    if 0 < len(found) <= 2:  # noqa: PLR2004 - nothing is laid together twice
+    if 0 < len(found) <= 2:  # noqa: PLR2004 - two terms need no grouping
         return found[0] if len(found) == 1 else found[0] + found[1]
     return Fraction(*summed([part.as_integer_ratio() for part in found]))
 
 
 def summed(parts: Iterable[tuple[int, int]]) -> tuple[int, int]:
-    """Add up what is given as numerator and denominator; the sum is not in lowest terms."""
+    """Return the sum of (numerator, denominator) pairs as such a pair, not in lowest terms."""
+    # Terms of equal denominator first: in practice there are few distinct periods, so the lcm below stays small.
     found: dict[int, int] = {}
     for above, below in parts:
         found[below] = found.get(below, 0) + above
@@ -51,14 +53,17 @@ def summed(parts: Iterable[tuple[int, int]]) -> tuple[int, int]:
 
 
 class Cause(NamedTuple):
-    """Why something cannot be said: the elements whose figures are missing, or a word for it."""
+    """Why there is no figure: the elements whose figures are missing, or a word for it (such as `overload`)."""
 
     missing: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 def united(causes: Iterable[Cause]) -> Cause:
-    """Lay causes together. The first dozen of what is missing is named; more would only grow along a chain."""
+    """Merge causes, keeping the order of first mention.
+
+    At most `MAX_NAMED_MISSING` elements are named: more would only grow along a chain.
+    """
     found = tuple(causes)
     missing = tuple(dict.fromkeys(one for cause in found for one in cause.missing))
     notes = tuple(dict.fromkeys(note for cause in found for note in cause.notes))
@@ -68,7 +73,9 @@ def united(causes: Iterable[Cause]) -> Cause:
 
 
 def alike(one: Cause, other: Cause) -> bool:
-    """Say whether two causes name the same. Round a loop the order of names turns for ever, and so does which dozen is named."""
+    """Whether two causes name the same elements and notes, in any order."""
+    # Compared as sets: the fixed point in event_propagation asks this round a loop, where the order of names rotates
+    # for ever. Two causes that are both cut at the cap count as equal, since which dozen survives rotates as well.
     if set(one.notes) != set(other.notes):
         return False
     return set(one.missing) == set(other.missing) or len(one.missing) == len(other.missing) == MOST_NAMED

@@ -24,7 +24,7 @@ _WRITERS: Mapping[str, Callable[[Fraction], str]] = {
 
 
 class Line(NamedTuple):
-    """One step of the reasoning; the deeper ones support the one above them."""
+    """One step of the reasoning; deeper lines support the one above them."""
 
     depth: int
     text: str
@@ -32,8 +32,9 @@ class Line(NamedTuple):
 
 
 def of_activity(analysis: Analysis, name: str) -> Iterator[Line]:
-    """Explain an activity: how often it works, and how long it takes; then what triggers it, back to the sources."""
+    """Explain an activity: how often it works and how long it takes; then what triggers it, back to the sources."""
     yield from _activity(analysis, name, 0)
+    # Each activity is explained once: triggers may form a loop, or reach the same source on many ways.
     shown = {name}
     stack = [(source, 1) for source in _triggering(analysis, name)]
     while stack:
@@ -89,6 +90,7 @@ def of_link(analysis: Analysis, name: str) -> Iterator[Line]:
 
 
 def _activity(analysis: Analysis, name: str, depth: int, *, rate_only: bool = False) -> Iterator[Line]:
+    """Explain the rate of an activity, and its response unless only the rate is wanted."""
     pace, response = analysis.paces[name], analysis.responses[name]
     how = behaviour(analysis.system.activities[name], pace)
     text = f"{name}: {how}, rate {_said(pace.rate, 'rate')}, largest gap {_said(pace.gap)}"
@@ -101,28 +103,31 @@ def _activity(analysis: Analysis, name: str, depth: int, *, rate_only: bool = Fa
 
 
 def behaviour(activity: Activity, pace: Pace) -> str:
-    """Name a behaviour, and say where nobody wrote it (a written period is as good)."""
+    """Return the name of a behaviour, marked where it is inferred (a written period is as good as a behaviour)."""
     inferred = activity.behaviour_inferred and activity.period is None and pace.behaviour
     return f"{pace.behaviour or 'unknown'}{' (inferred)' if inferred else ''}"
 
 
 def _reasons(reasons: Iterable[Reason], depth: int) -> Iterator[Line]:
+    """Yield reasons as lines of one depth."""
     return (Line(depth, reason.text, reason.at) for reason in reasons)
 
 
 def _triggering(analysis: Analysis, name: str) -> list[str]:
-    """Give who fires an activity, the last first; nobody where its own clock does."""
+    """Return what fires an activity, the last first; nothing where its own clock does."""
     arrivals = Arrivals(analysis)
     arcs = analysis.system.into.get(name, ())
     return list(dict.fromkeys(arc.source for arc in reversed(arcs) if arrivals.fires(arc) and arc.source != name))
 
 
 def _place(analysis: Analysis, name: str) -> Span:
+    """Return where an activity is written."""
     activity = analysis.system.activities.get(name)
     return activity.at if activity else NOWHERE
 
 
 def _said(value: Value, kind: str = "duration") -> str:
+    """Format a figure with the sign of its side, or what is missing of it."""
     if value.value is None:
         missing = f" ({wording.listed(value.missing)})" if value.missing else ""
         return f"{wording.reason(value)}{missing}"
@@ -133,7 +138,7 @@ def _said(value: Value, kind: str = "duration") -> str:
 
 
 def explain(analysis: Analysis, chains: Mapping[str, ChainResult], word: str) -> tuple[Line, ...]:
-    """Explain what a complete id names: a chain, a host, a link, a topic or an activity; nothing for any other word."""
+    """Explain what a complete id names: a chain, host, link, topic or activity; nothing for any other word."""
     if word in chains:
         return tuple(of_chain(chains[word]))
     for kind, explained in ((analysis.hosts, of_host), (analysis.links, of_link), (analysis.topics, of_topic)):

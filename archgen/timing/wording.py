@@ -1,4 +1,4 @@
-"""Figures as people write them: durations, rates, shares, sizes; rounded only here, and told apart from exact ones."""
+"""Figures as people write them: durations, rates, shares, sizes. Only this module rounds; `~` marks rounding."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from archgen.timing.value import Value
 
 _DURATIONS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 _LARGEST_MS = 10**4
+"""Durations below this many ms are written in ms, above in s."""
 _DIGITS, _MOST_DIGITS = 3, 12
 
 
 @lru_cache(4096)
 def duration(ns: Fraction) -> str:
-    """Write a duration: milliseconds from 1 ms to 10 s, then seconds; smaller ones in their unit."""
+    """Write a duration (ns): in ms from 1 ms to 10 s, then in s; smaller ones in us or ns."""
     for factor, unit in _DURATIONS:
         if abs(ns) >= (_LARGEST_MS * 10**6 if unit == "s" else factor):
             return f"{number(ns / factor)} {unit}"
@@ -27,7 +28,7 @@ def rate(hertz: Fraction) -> str:
 
 
 def share(part: Fraction) -> str:
-    """Write a share in per cent."""
+    """Write a fraction in per cent."""
     tenths = round(1000 * part)
     return f"{number(Fraction(tenths, 10)) if tenths else number(100 * part)} %"
 
@@ -42,7 +43,8 @@ def size(count: Fraction) -> str:
 
 @lru_cache(4096)
 def number(value: Fraction) -> str:
-    """Write a number with three digits behind the point at most, more where it is small; `~` says that it was rounded."""
+    """Write a number with at most three decimals, more where it is small; `~` says that it was rounded."""
+    # Small numbers get decimals until three significant digits are shown, so that 0.00042 does not become 0.
     digits = _DIGITS
     while digits < _MOST_DIGITS and value and abs(value) * 10**digits < 100:  # noqa: PLR2004 - three digits that count
         digits += 1
@@ -56,13 +58,13 @@ def number(value: Fraction) -> str:
 
 
 def listed(names: tuple[str, ...], most: int = 6) -> str:
-    """Write a list of names, the rest of a long one counted."""
+    """Write the first names separated by commas, and count the others."""
     shown = ", ".join(names[:most])
     return shown + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def reason(value: Value) -> str:
-    """Say in a word why a figure is not known; empty where it is."""
+    """Return why a figure is unknown: `overload`, `unbounded`, `diverged` or `unknown`; empty if it is known."""
     for word in ("overload", "unbounded", "diverged"):
         if value.value is None and any(text.split(":")[0].strip() == word for text in value.assumptions):
             return word
@@ -70,7 +72,7 @@ def reason(value: Value) -> str:
 
 
 def told(value: Value, unit: str) -> str:
-    """Give a figure in words: with its side where it is a bound, or why there is none."""
+    """Write a figure with its side where it is a bound, or why there is none. The unit is "Hz" or "ns"."""
     if value.value is None:
         return next(iter(value.assumptions), "unknown") if value.complete else "unknown"
     text = rate(value.value) if unit == "Hz" else duration(value.value)

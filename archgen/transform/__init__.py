@@ -1,4 +1,4 @@
-"""Transform: architecture in, architecture out."""
+"""Passes that complete a linked architecture before it is judged and shown: architecture in, architecture out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from archgen.transform.derive import derive
 Pass = Callable[[Architecture], Architecture]
 
 PASSES: tuple[Pass, ...] = (derive,)
-"""What is done to an architecture before it is judged and shown, in this order."""
+"""All passes, in the order in which they run."""
 
 
 def transform(architecture: Architecture) -> Architecture:

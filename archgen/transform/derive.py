@@ -1,4 +1,4 @@
-"""Derive the low level where it is left out: planned nodes, endpoints under their absolute names, topics."""
+"""Derive the low level where it is not written: planned nodes, endpoints with their absolute names, and topics."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from archgen.transform.writers import carriers, written_endpoints
 
 
 def derive(architecture: Architecture) -> Architecture:
-    """Add a planned node for each component without one, and what all nodes publish, read, serve and call."""
+    """Add a planned node for each component without any, and the endpoints and topics of all nodes."""
     nodes = dict(architecture.nodes) | {node.id: node for node in planned_nodes(architecture)}
     whole = replace(architecture, nodes=nodes)
     shared = ros_names.shared_names(architecture.shared_topics)
@@ -25,6 +25,8 @@ def derive(architecture: Architecture) -> Architecture:
 
 
 def _endpoints(architecture: Architecture, shared: frozenset[str]) -> tuple[Endpoint, ...]:
+    """Derive the endpoints of all nodes, in the order of nodes."""
+    # All writing endpoints come first: a reader takes its topic's name and message from those that write it.
     parts, shared_keys = carriers(architecture), partners(architecture)
     written = {
         name: [endpoint for carrier in parts[name] for endpoint in written_endpoints(architecture, carrier)]
@@ -33,6 +35,7 @@ def _endpoints(architecture: Architecture, shared: frozenset[str]) -> tuple[Endp
     portless = {name: list(portless_endpoints(node, shared_keys)) for name, node in architecture.nodes.items()}
     inside = (e for endpoints in portless.values() for e in endpoints if e.use in {"publishes", "serves"})
     found = traffic(architecture, shared, [*(e for endpoints in written.values() for e in endpoints), *inside])
+    # For each node: what it writes, what it reads, then what has no port.
     all_of_them: list[Endpoint] = []
     for name in architecture.nodes:
         all_of_them += written[name]
@@ -44,12 +47,14 @@ def _endpoints(architecture: Architecture, shared: frozenset[str]) -> tuple[Endp
 
 @dataclass(slots=True)
 class _Users:
+    """The endpoints of one topic, service or action."""
+
     writers: list[Endpoint] = field(default_factory=list)
     readers: list[Endpoint] = field(default_factory=list)
 
 
 def _topics(endpoints: Iterable[Endpoint], shared: frozenset[str], types: Mapping[str, Type]) -> dict[str, Topic]:
-    """Gather endpoints by name. A service that has a topic's name is told apart by its flow behind the name."""
+    """Gather endpoints by name and flow. Further flows with the same name get a key of their own: `/name (service)`."""
     users: dict[tuple[str, Flow], _Users] = {}
     for endpoint in endpoints:
         both = users.setdefault((endpoint.name, endpoint.flow), _Users())
@@ -62,6 +67,7 @@ def _topics(endpoints: Iterable[Endpoint], shared: frozenset[str], types: Mappin
 
 
 def _topic(name: str, flow: Flow, users: _Users, types: Mapping[str, Type], *, shared: bool) -> Topic:
+    """Make a topic. Its types are those of the writers, else of the readers; its size is the largest known one."""
     named = dict.fromkeys(e.type for e in users.writers or users.readers if e.type)
     sizes = [types[one].size for one in named if one in types]
     return Topic(

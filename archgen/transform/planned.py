@@ -1,4 +1,4 @@
-"""A planned node for each component that no node implements, so that the low level can be drawn from the first day."""
+"""Planned nodes: one for each component that no node implements, so that the low level can be drawn from day one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from archgen.model.node import Node
 
 
 def planned_nodes(architecture: Architecture) -> Iterator[Node]:
-    """Give the nodes to add, in the order of the components."""
+    """Yield the nodes to add, in the order of components."""
     implemented = {component for node in architecture.nodes.values() for component in node.implements}
     taken = set(architecture.nodes)
     for component in architecture.components.values():
@@ -22,7 +22,7 @@ def planned_nodes(architecture: Architecture) -> Iterator[Node]:
 
 
 def _free_name(component: Component, taken: Container[str]) -> str:
-    """Give the component's id, `group_component` where that is taken, and a number more where both are."""
+    """Return an unused name: the component's own, else `group_component`, else that with a number behind it."""
     long = component.id.replace(".", "_")
     for name in (component.name, long):
         if name not in taken:

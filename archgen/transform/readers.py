@@ -1,4 +1,4 @@
-"""What nodes subscribe to and call: their components' inputs, under the names that the sources have."""
+"""Endpoints that read (subscribe, call): the inputs of a node's components, under the names of their sources."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ Key = tuple[str, Flow]
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """Who writes what, and which outputs feed which input."""
+    """Writing endpoints by output and by name, and the outputs that feed each input."""
 
     architecture: Architecture
     shared: frozenset[str]
     by_output: Mapping[str, Sequence[Endpoint]]
     by_name: Mapping[Key, Sequence[Endpoint]]
     sources: Mapping[str, Sequence[str]]
-    """The outputs that feed an input, physical ones left out."""
+    """The ids of the outputs that feed an input, without physical ones, by input id."""
 
 
 def traffic(architecture: Architecture, shared: frozenset[str], writers: Iterable[Endpoint]) -> Traffic:
-    """Arrange what is known before anything is read."""
+    """Index all writing endpoints, before the reading ones are derived from them."""
     by_output: dict[str, list[Endpoint]] = defaultdict(list)
     by_name: dict[Key, list[Endpoint]] = defaultdict(list)
     for writer in writers:
@@ -45,22 +45,24 @@ def traffic(architecture: Architecture, shared: frozenset[str], writers: Iterabl
 
 
 def read_endpoints(found: Traffic, carrier: Carrier) -> Iterator[Endpoint]:
-    """Give what a node reads for a component: one endpoint for each input and each topic, service or action."""
+    """Yield what a node reads for a component: one endpoint for each input and each topic, service or action."""
     for port in carrier.component.inputs.values():
         uses = side(carrier.uses.get(port.id, ()), {"subscribes", "calls"})
+        # A component's only node reads all of its inputs; several nodes read only what they list.
         if not port.physical and (uses or carrier.alone):
             yield from _Reading(found, carrier, port).endpoints(uses)
 
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """One node that reads one input."""
+    """Derives the endpoints of one node for one input."""
 
     found: Traffic
     carrier: Carrier
     port: Input
 
     def endpoints(self, uses: Sequence[PortUse]) -> Iterator[Endpoint]:
+        """Yield the endpoints of the entries that the node lists for the input, and of what it need not list."""
         arriving = [writer for output in self.found.sources.get(self.port.id, ()) for writer in self._writers(output)]
         sections: dict[Use, list[Endpoint]] = {
             "subscribes": [writer for writer in arriving if writer.flow == "topic"],
@@ -68,17 +70,18 @@ class _Reading:
         }
         left = dict(sections) if self.carrier.alone else {}
         for use in uses:
-            # An entry in the wrong section is a finding of its own; it is taken for what it must mean.
+            # An entry in the wrong section is reported by `wrong-section`, and read as if it were in the right one.
             section = use.use if sections[use.use] or not arriving else _other(use.use)
             left.pop(section, None)
             yield from self._written(use, sections[section]) if use.topics else self._derived(use, sections[section])
+        # An input may have both topics and services as sources: the only node also reads those it has no entry for.
         for writers in left.values():
             yield from self._derived(UNWRITTEN, writers) if writers else ()
         if not uses and not arriving:
             yield from self._derived(UNWRITTEN, ())
 
     def _writers(self, output: str) -> Sequence[Endpoint]:
-        """Give an output's endpoints; where none of its nodes names it, the one that it would have."""
+        """Return an output's writing endpoints; if no node writes it, the one that its only node would have."""
         known = self.found.by_output.get(output)
         if known:
             return known
@@ -89,7 +92,10 @@ class _Reading:
         return (Endpoint("", use, ros_names.of_port(output), kind, output, source.component, message, source.type),)
 
     def _derived(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:
-        """Read what the sources stand on. A source whose outputs are not known yet has no topic that could be named."""
+        """Yield one endpoint for each topic that the sources are written on, or for the input's own default topic.
+
+        A source without any known output has no topic that could be named: nothing is read from it.
+        """
         if writers:
             topics: dict[Key, list[Endpoint]] = {}
             for writer in writers:
@@ -101,9 +107,11 @@ class _Reading:
             yield self._endpoint(use, name, flow(use.message or self._expected(), use), ())
 
     def _written(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:
+        """Yield one endpoint for each topic that the node names for the input."""
         for topic in use.topics:
             name = ros_names.absolute(topic, self.carrier.node)
             kind = writers[0].flow if writers else flow(use.message or self._expected(), use)
+            # If no source is on this topic (`unaccounted-topic` reports it), message and type still come from them.
             endpoint = self._endpoint(use, name, kind, [w for w in writers if w.name == name] or writers)
             yield replace(endpoint, name_written=True)
 
@@ -115,6 +123,7 @@ class _Reading:
             flow=kind,
             port=self.port.id,
             component=self.carrier.component.id,
+            # What the node writes outranks what the sources send, and that what the input expects.
             message=use.message or next((w.message for w in writers if w.message), None) or self._expected(),
             type=self.port.type or next((w.type for w in writers if w.type), None),
             qos=use.qos or DEFAULT,
@@ -125,12 +134,14 @@ class _Reading:
         )
 
     def _sources(self, name: str, kind: Flow, writers: Sequence[Endpoint]) -> tuple[str, ...]:
-        """Name the outputs that arrive: who reads a topic reads all that stands on it, but not what all nodes share."""
+        """Return the ids of the outputs that arrive: all that are written on the topic, unless all nodes share it."""
+        # On a shared topic such as /tf every node writes: there only the input's own sources count.
         named = [writer.port for writer in writers if writer.name == name]
         others = [] if name in self.found.shared else [w.port for w in self.found.by_name.get((name, kind), ())]
         return tuple(dict.fromkeys(port for port in (*named, *others) if port))
 
     def _expected(self) -> str | None:
+        """Return the message of the type that the input expects, None if unknown."""
         mapped = self.found.architecture.types.get(self.port.type or "")
         return mapped.message if mapped else None
 

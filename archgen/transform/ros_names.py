@@ -1,4 +1,4 @@
-"""Absolute names of topics, services and actions, from what is written at a node.
+"""Absolute names of topics, services and actions.
 
 The rules are those of https://design.ros2.org/articles/topic_and_service_names.html.
 """
@@ -8,11 +8,11 @@ from __future__ import annotations
 from archgen.model.node import Node
 
 SHARED_TOPICS = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "/parameter_events"})
-"""What any node may use, whoever it belongs to."""
+"""Topics that every node may use."""
 
 
 def absolute(written: str, node: Node) -> str:
-    """Resolve a name: relative to the node's namespace, `~` to the node itself; an absolute one stays."""
+    """Resolve a name as a node writes it: relative to its namespace, or with `~` to the node itself."""
     namespace = "/" + node.namespace.strip("/")
     name = written.replace("{node}", node.name)
     for word in ("{ns}", "{namespace}"):
@@ -25,10 +25,10 @@ def absolute(written: str, node: Node) -> str:
 
 
 def of_port(port: str) -> str:
-    """Give the name of a port for which nobody wrote one: `/group/component/port`."""
+    """Return the name of a port for which no topic is written: `/group/component/port`."""
     return "/" + port.replace(".", "/")
 
 
 def shared_names(extra: tuple[str, ...]) -> frozenset[str]:
-    """Give the topics that all nodes share: ROS's own, and the project's."""
+    """Return the topics that all nodes share: ROS's own, and those of `ros.shared_topics`."""
     return SHARED_TOPICS | {"/" + name.lstrip("/") for name in extra}

@@ -1,4 +1,4 @@
-"""What nodes publish and serve: their components' outputs, under the names that count."""
+"""Endpoints that write (publish, serve): the outputs of a node's components, under their written or default names."""
 
 from __future__ import annotations
 
@@ -12,23 +12,26 @@ from archgen.model.node import Endpoint, Flow, Node, PortUse, Qos, Use
 from archgen.transform import ros_names
 
 UNWRITTEN = PortUse("publishes", "", None)
-"""What stands for a port about which its node says nothing."""
+"""The entry of a port that its node does not list. Compared by identity: a written entry may look the same."""
 DEFAULT = Qos()
 
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """A node in its part for one component: what it wrote about which port, and whether others share the component."""
+    """A node as an implementation of one component: its entries for the component's ports.
+
+    `is_only_node`: no other node implements the component, so that the node carries all of its ports.
+    """
 
     node: Node
     component: Component
     uses: Mapping[str, tuple[PortUse, ...]]
-    """By the port's complete id."""
+    """The entries by the port's complete id. Those of the node's other components are among them."""
     alone: bool
 
 
 def carriers(architecture: Architecture) -> dict[str, tuple[Carrier, ...]]:
-    """Give the parts that each node plays, by node, in the order of what it implements."""
+    """Return one `NodePart` for each component that a node implements, by node id, in the order of `implements`."""
     count: dict[str, int] = {}
     for node in architecture.nodes.values():
         for component in node.implements:
@@ -47,7 +50,7 @@ def carriers(architecture: Architecture) -> dict[str, tuple[Carrier, ...]]:
 
 
 def written_endpoints(architecture: Architecture, carrier: Carrier) -> Iterator[Endpoint]:
-    """Give what a node writes for a component: one endpoint for each output and each name that it stands on."""
+    """Yield what a node writes for a component: one endpoint for each output and each of its names."""
     for output in carrier.component.outputs.values():
         uses = side(carrier.uses.get(output.id, ()), {"publishes", "serves"})
         if output.physical or not (uses or carrier.alone):
@@ -57,18 +60,19 @@ def written_endpoints(architecture: Architecture, carrier: Carrier) -> Iterator[
 
 
 def side(uses: Iterable[PortUse], kinds: Collection[Use]) -> tuple[PortUse, ...]:
-    """Keep the uses of some sections: an input and an output may have one name."""
+    """Return the entries of some sections: an input and an output may have the same name, and so the same id."""
     return tuple(use for use in uses if use.use in kinds)
 
 
 def flow(message: str | None, use: PortUse) -> Flow:
-    """Say what flows: the message decides; where none is named, the section that the port stands in."""
+    """Return the kind of flow by the message; if unknown, by the section that the entry is written in."""
     if message is None and use.use in {"serves", "calls"}:
         return "service"
     return flow_of(message)
 
 
 def _of_output(architecture: Architecture, carrier: Carrier, output: Output, use: PortUse) -> Iterator[Endpoint]:
+    """Yield the endpoints of one output for one entry."""
     message = use.message or architecture.message(output)
     kind = flow(message, use)
     for name in [ros_names.absolute(topic, carrier.node) for topic in use.topics] or [ros_names.of_port(output.id)]:

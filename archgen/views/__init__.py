@@ -1,1 +1,1 @@
-"""Views: the model and its analyses, as the four plain shapes that emitters draw."""
+"""Views: turn the model and its analyses into the plain shapes that emitters draw."""

@@ -1,4 +1,7 @@
-"""The shape Chart: bars along one scale. A Figure may show one where it could show a Graph."""
+"""The shape Chart: bars along one scale. A Figure may show a Chart wherever it could show a Graph.
+
+Why a shape of its own and not a layout of Graph: docs/decisions/0003-charts.md.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ from archgen.views.shapes import Graph
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A piece of a bar, in the chart's unit; `length` None is unknown, drawn hatched with a question mark at the end.
+    """A piece of a bar, its length in the chart's unit; None is unknown, drawn hatched with a question mark.
 
-    `label` stands inside where there is room for it, so `tooltip` says it too.
+    `label` is drawn inside only where there is room, so `tooltip` repeats it.
     """
 
     length: float | None
@@ -23,9 +26,10 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A row of a chart: a title, a bar that begins at `start`, and its figure at the right. `mark` is a tick on it.
+    """A row of a chart: a title, a bar that begins at `start`, and its value as text at the right.
 
-    What is `around` belongs to the sum but not to the part that is shown: its texts are grey.
+    `mark` is a tick on the bar's scale. `is_outside`: counted in the sum although it lies outside the selected part;
+    its text is grey.
     """
 
     title: str
@@ -40,9 +44,9 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Bars along one scale: terms of a sum one below the other against a limit, or shares of a whole.
+    """Bars along one scale: terms of a sum below each other against a limit, or shares of a whole.
 
-    `id` and `title` are as in Graph. `limit` (place, text) is a line across all bars.
+    `id` and `title` are as in Graph. `limit` (position, text) is a line across all bars.
     """
 
     id: str
@@ -51,9 +55,9 @@ class Chart:
     bars: tuple[Bar, ...]
     limit: tuple[float, str] | None = None
     said: str = ""
-    """What follows from the picture, in a sentence above it."""
+    """What follows from the picture, as a sentence above it."""
     legend: tuple[str, ...] = ()
-    """Which kinds of stretch (and `mark`, `unknown`) the legend explains, each as `kind` or `kind: words`."""
+    """Which kinds of segment (and `mark`, `unknown`) the legend explains, each as `kind` or `kind: words`."""
     notes: tuple[str, ...] = ()
     alt: str = ""
 

@@ -1,4 +1,4 @@
-"""An element's card: what `archgen show` prints of a group, component, port, node, topic, type, requirement or host."""
+"""An element's card: what `archgen show` prints for one element of any kind."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from archgen.views.index import Index
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """A heading (what sort of thing, its id and title), where it is written, and lines below subheadings."""
+    """Kind, id and title of an element, where it is defined, its facts, and lists below subheadings."""
 
     sort: str
     id: str
@@ -27,9 +27,10 @@ class Card:
 
 
 def _sorts(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
-    """Give all elements by the sort that the card's heading names."""
+    """Return all elements by kind; the keys appear as headings of cards."""
     a = architecture
     return {
+        # An id that several kinds share is found in this order.
         "group": a.groups,
         "component": a.components,
         "output": a.outputs,
@@ -50,7 +51,7 @@ def _sorts(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
 
 
 def ids(view: Index) -> dict[str, list[str]]:
-    """Give every element's id with the sorts of element that bear it."""
+    """Return each element's id with the kinds of element that have it."""
     result: dict[str, list[str]] = {}
     for sort, elements in _sorts(view.architecture).items():
         for name in elements:
@@ -59,11 +60,15 @@ def ids(view: Index) -> dict[str, list[str]]:
 
 
 def matches(view: Index, name: str) -> list[tuple[str, str]]:
-    """Find the elements that a name may mean, as (sort, id): complete ids first, else ids that end in it, or titles."""
+    """Find the elements that a name may mean, as (kind, id) pairs.
+
+    Full ids win; then ids that end in the name; then titles of groups and components, ignoring case.
+    """
     known = ids(view)
     if name in known:
         return [(sort, name) for sort in known[name]]
     folded = name.casefold()
+    # `.` ends a group or component in an id, `/` a namespace in a topic or node: `scan` finds `/lidar/scan`.
     ending = [(sort, key) for key, sorts in known.items() if key.endswith((f".{name}", f"/{name}")) for sort in sorts]
     if ending:
         return ending
@@ -73,6 +78,7 @@ def matches(view: Index, name: str) -> list[tuple[str, str]]:
 
 
 def _title(view: Index, sort: str, name: str) -> str:
+    """Return the title of a group or component, the id of anything else."""
     found = view.architecture
     if sort == "group":
         return found.groups[name].title
@@ -135,6 +141,7 @@ def _component(view: Index, component: Component) -> Card:
 
 
 def _sources(view: Index, port: Input) -> Iterator[str]:
+    """Describe where an input gets its data: connections with their types, then what is outside."""
     for connection in port.connections:
         star = "" if connection.kind == "output" else ".*"
         types = dict.fromkeys(view.architecture.outputs[output].type or "?" for output in connection.outputs)
@@ -144,11 +151,13 @@ def _sources(view: Index, port: Input) -> Iterator[str]:
 
 
 def _readers(view: Index, port: Output) -> list[str]:
+    """Return who reads an output."""
     readers = [connection.input for connection in view.readers.get(port.id, ())]
     return readers + ([f"outside: {port.external}"] if port.external else [])
 
 
 def _findings(view: Index, element: str) -> Iterator[str]:
+    """Format the findings about an element."""
     for finding in view.findings_of.get(element, ()):
         yield f"{finding.severity}[{finding.rule}]: {finding.message}"
 
@@ -188,6 +197,7 @@ def _node(view: Index, node: Node) -> Card:
 
 
 def _topic(view: Index, topic: Topic) -> Card:
+    """Make the card of a topic, service or action."""
     facts = [
         ("message", ", ".join(topic.messages) or "?"),
         ("types", ", ".join(topic.types)),
@@ -195,14 +205,17 @@ def _topic(view: Index, topic: Topic) -> Card:
     ]
     ends = (("from", topic.writers), ("to", topic.readers))
     lists = tuple((name, tuple(f"{end.node} ({words.qos_words(end.qos)})" for end in found)) for name, found in ends)
+    # Nothing declares a topic by itself: its first endpoint that stands in a file has to do.
     at = next((end.at for end in (*topic.writers, *topic.readers) if end.at.file), Span("", 0, 0, 0, 0))
     return Card(topic.flow, topic.name, topic.name, at, _shown(facts), lists)
 
 
 def _other(view: Index, sort: str, name: str) -> Card:
+    """Make the card of a kind without a card of its own: fields that exist, and who uses the element."""
     found = view.architecture
     element = _sorts(found)[sort][name]
     facts = [
+        # One list of field names serves all these kinds; those that an element lacks are empty and dropped.
         (key, view.size(element) if sort == "type" and key == "size" else _fact(getattr(element, key, None)))
         for key in (
             "message",
@@ -229,6 +242,7 @@ def _other(view: Index, sort: str, name: str) -> Card:
         parts = (("groups", found.groups), ("components", found.components), ("nodes", found.nodes))
         lists += [(sort, owned) for sort, of in parts if (owned := _owned(of.values(), name))]
     elif sort in {"host", "container"}:
+        # `kind` names the node's field here: `Node.host` or `Node.container`.
         lists.append(("nodes", tuple(node.id for node in found.nodes.values() if getattr(node, sort) == name)))
     elif sort == "chain":
         lists.append(("through", tuple(point.id for point in found.chains[name].through)))
@@ -236,14 +250,17 @@ def _other(view: Index, sort: str, name: str) -> Card:
 
 
 def _owned(elements: Iterable[Group | Component | Node], partner: str) -> tuple[str, ...]:
+    """Return the ids of the elements that a partner owns, alone or with others."""
     return tuple(each.id for each in elements if partner in each.owners)
 
 
 def _fact(value: object) -> str:
+    """Format a field's value on one line."""
     if value is None:
         return ""
     return ", ".join(map(str, value)) if isinstance(value, tuple) else " ".join(str(value).split())
 
 
 def _shown(facts: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Drop facts without a value."""
     return tuple((name, value) for name, value in facts if value)

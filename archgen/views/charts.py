@@ -1,4 +1,4 @@
-"""Charts of timing: each chain as a waterfall of its terms against the deadline; those of hosts are in `loads`."""
+"""Charts of chains: the terms of a chain against its deadline. Charts of hosts are in `load_charts`."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ from archgen.views.timed import Timed
 
 _MS = 10**6
 _TERMS = ("sampling", "response", "link")
+"""Kinds of term in the order in which they follow each other in time; fields of `Term`."""
 
 
 def all_charts(view: Index) -> tuple[Chart, ...]:
-    """Make the charts of all chains and hosts that run through, or run, something of what is shown."""
+    """Make the charts of all chains and hosts with something in scope; none without a timing analysis."""
     timed = view.timed
     return () if timed is None else (*_chains(view, timed), *loads.charts(view, timed))
 
 
 def _chains(view: Index, timed: Timed) -> Iterator[Chart]:
+    """Yield the chart of each chain that runs through a shown activity."""
     for result in timed.chains:
         shown = view.scope.nodes is None or not all(outside(view, timed, term.activity) for term in result.terms)
         if result.terms and shown and result.id in view.architecture.chains:
@@ -31,7 +33,7 @@ def _chains(view: Index, timed: Timed) -> Iterator[Chart]:
 
 
 def chain(view: Index, timed: Timed, result: ChainResult) -> Chart:
-    """Draw the terms of a chain's bound, one below the other, and their sum against the deadline."""
+    """Draw the terms of a chain's bound below each other, and their sum against the deadline."""
     title = view.architecture.chains[result.id].title
     deadline = result.deadline.value if result.deadline else None
     said, terms = verdict(result, timed), tuple(_terms(view, timed, result))
@@ -49,6 +51,7 @@ def chain(view: Index, timed: Timed, result: ChainResult) -> Chart:
 
 
 def _terms(view: Index, timed: Timed, result: ChainResult) -> Iterator[Bar]:
+    """Yield a bar for each step, starting where the known part of the steps before it ends."""
     start = Fraction(0)
     for term in result.terms:
         values = (term.sampling, term.response, term.link)
@@ -61,11 +64,12 @@ def _terms(view: Index, timed: Timed, result: ChainResult) -> Iterator[Bar]:
             ref=f"node:{activity.node}" if activity else None,
             around=outside(view, timed, term.activity),
         )
+        # An unknown part has no length; all that follows then begins too early, which the hatched piece shows.
         start += known(term)
 
 
 def known(term: Term) -> Fraction:
-    """Add up what is known of a step."""
+    """Add up the known parts of a step, in ns."""
     return sum((value.value or Fraction(0) for value in (term.sampling, term.response, term.link)), Fraction(0))
 
 
@@ -73,15 +77,17 @@ _KINDS = {"sampling": "waits", "response": "responds within", "link": "on the ne
 
 
 def _stretch(kind: str, value: Value) -> Stretch:
+    """Draw one part of a step."""
     length = None if value.value is None else as_float(value.value / _MS)
     said = figures.duration(value)
     return Stretch(length, kind, said, f"{_KINDS[kind]}: {said}")  # type: ignore[arg-type]
 
 
 def _added(values: tuple[Value, ...]) -> str:
-    """Write what a step adds: the sum of what is known, and that there is more."""
+    """Format what a step adds: the sum of what is known, and "+ ?" where more is unknown."""
     known = [value for value in values if value.value is not None]
     total = sum((value.value or Fraction(0) for value in known), Fraction(0))
+    # A part with a sign before it bounds from one side only; a zero sum of such parts says nothing.
     partial = len(known) < len(values) or any(figures.side(value) for value in known)
     if partial and not total:
         return figures.UNKNOWN
@@ -89,6 +95,7 @@ def _added(values: tuple[Value, ...]) -> str:
 
 
 def _sum(result: ChainResult) -> Bar:
+    """Draw the bound; without a complete one a hatched piece follows."""
     length = None if result.bound.value is None else as_float(result.bound.value / _MS)
     sure = () if length is None else (Stretch(length, result.verdict, "", f"bound: {figures.duration(result.bound)}"),)
     more = () if result.bound.complete and length is not None else (Stretch(None, "open", "?", "no bound is known"),)
@@ -96,13 +103,14 @@ def _sum(result: ChainResult) -> Bar:
 
 
 def _best(result: ChainResult) -> Bar:
+    """Draw the best case."""
     length = None if result.best.value is None else as_float(result.best.value / _MS)
     stretch = Stretch(length, "best", "", f"best case: {figures.least(result.best)}")
     return Bar("At the earliest", (stretch,), figures.least(result.best))
 
 
 def verdict(result: ChainResult, timed: Timed) -> str:
-    """Say in a sentence whether a chain is in time, and what decides it."""
+    """Describe in one sentence whether a chain meets its deadline, and by how much."""
     bound, deadline = result.bound, result.deadline
     lack = figures.missing(bound, timed.analysis, 4)
     if result.verdict == "open":
@@ -118,10 +126,12 @@ def verdict(result: ChainResult, timed: Timed) -> str:
 
 
 def _spare(value: Fraction) -> str:
+    """Format an exact duration in ns."""
     return figures.duration(Value(value))
 
 
 def _legend(result: ChainResult) -> Iterator[str]:
+    """Yield the kinds of segment that this chart has."""
     for kind in _TERMS:
         if any(getattr(term, kind).value for term in result.terms):
             yield kind
@@ -130,4 +140,5 @@ def _legend(result: ChainResult) -> Iterator[str]:
 
 
 def _unknown(term: Term) -> bool:
+    """Whether any part of a step is unknown."""
     return any(value.value is None for value in (term.sampling, term.response, term.link))

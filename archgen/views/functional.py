@@ -1,4 +1,4 @@
-"""The high level in documents: what a group and a component are for, what goes in and what comes out."""
+"""The functional level in documents: what groups and components are for, what they read and what they publish."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from archgen.views.shapes import (
 
 
 def group_blocks(view: Index, group: Group) -> tuple[Block, ...]:
-    """Say what a group is for, who owns it, and what it consists of."""
+    """Describe a group: its owner, its purpose, its picture and its components."""
     shown = view.components(group.id)
     blocks: list[Block] = [Facts(tuple(_group_facts(view, group)))]
     if group.description:
         blocks.append(Markdown(group.description))
     blocks.append(
+        # The figure is always named; site and report drop the figures that were not drawn (`keep_drawn`).
         Figure(
             f"figure:groups/{group.id}",
             f"groups/{group.id}",
@@ -52,7 +53,7 @@ def _group_facts(view: Index, group: Group) -> list[tuple[str, Inlines]]:
 
 
 def component_table(view: Index, anchor: str, caption: str, components: list[Component]) -> Table:
-    """List components with what they are for and what implements them."""
+    """List components with their purpose, role and nodes."""
     rows = tuple(
         (
             words.text(words.component_link(component)),
@@ -67,16 +68,17 @@ def component_table(view: Index, anchor: str, caption: str, components: list[Com
 
 
 def first_sentence(markdown: str | None) -> str | None:
-    """Give the first sentence of a text, its marks taken out."""
+    """Return the first sentence of a Markdown text without its emphasis marks; None for no text."""
     if not markdown:
         return None
     line = " ".join(markdown.split("\n\n")[0].split())
+    # A full stop counts only before a blank or the end, so that "0.5 m" and "ROS2.x" stay whole.
     end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
     return line[: end + 1].replace("**", "").replace("`", "")
 
 
 def component_blocks(view: Index, component: Component) -> tuple[Block, ...]:
-    """Say what a component does, must do and does it how well, and what it takes and gives."""
+    """Describe a component: facts, functionality, picture, requirements, performance, inputs and outputs."""
     blocks: list[Block] = [
         Facts(tuple(_component_facts(view, component))),
         Markdown(component.functionality)
@@ -101,6 +103,7 @@ def component_blocks(view: Index, component: Component) -> tuple[Block, ...]:
 
 
 def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlines]]:
+    """Return the facts above a component's description."""
     architecture = view.architecture
     rows = [
         ("Group", words.text(words.group_link(architecture, component.group))),
@@ -122,6 +125,7 @@ def _component_facts(view: Index, component: Component) -> list[tuple[str, Inlin
 
 
 def _requirements(view: Index, component: Component) -> list[Block]:
+    # `requirements: []` states that there are none, a missing key that nobody knows yet; inputs and outputs likewise.
     if not component.requirements:
         said = "It serves no requirement." if component.requirements_known else "Its requirements are not known yet."
         return [Paragraph(words.text(Text("Requirements. ", strong=True), Text(said, muted=True)))]
@@ -178,6 +182,7 @@ def _name(port: Input | Output) -> Inlines:
 
 
 def _from(view: Index, port: Input) -> Inlines:
+    """Return the sources of an input, one on each line, with partners other than the component's own."""
     sources = [
         (*words.source_words(view.architecture, connection), *_other_owner(view, port.component, connection.outputs))
         for connection in port.connections
@@ -188,21 +193,24 @@ def _from(view: Index, port: Input) -> Inlines:
 
 
 def _other_owner(view: Index, component: str, outputs: tuple[str, ...]) -> Inlines:
-    """Name the partners on the other side, where they are others."""
+    """Return the owners of the outputs who do not own the component, in brackets; empty where there are none."""
     found = view.architecture
     mine = found.components[component].owners
     owners = dict.fromkeys(p for o in outputs for p in found.components[found.outputs[o].component].owners)
+    # Only a flow that crosses from one partner to another names them: the component's own are in its facts.
     others = [owner for owner in owners if owner not in mine]
     return (Text(" ("), *words.joined(words.partner_link(found, o) for o in others), Text(")")) if others else ()
 
 
 def _input_types(view: Index, port: Input) -> Inlines:
+    """Return the types of an input: its own first, then those of the outputs it reads."""
     outputs = (view.architecture.outputs[o] for connection in port.connections for o in connection.outputs)
     types = dict.fromkeys([port.type, *(output.type for output in outputs)] if port.type else (o.type for o in outputs))
     return words.joined(words.type_link(name) for name in types if name) or words.UNKNOWN
 
 
 def _read_by(view: Index, port: Output) -> Inlines:
+    """Return the readers of an output, one on each line."""
     found = view.architecture
     readers = [found.inputs[connection.input] for connection in view.readers.get(port.id, ())]
     cells = [(*words.port_link(found, reader), *_reader_owner(view, port, reader)) for reader in readers]
@@ -212,6 +220,7 @@ def _read_by(view: Index, port: Output) -> Inlines:
 
 
 def _reader_owner(view: Index, port: Output, reader: Input) -> Inlines:
+    """Return the owners of a reader who do not own the output's component, in brackets."""
     found = view.architecture
     mine = found.components[port.component].owners
     others = [owner for owner in found.components[reader.component].owners if owner not in mine]

@@ -1,4 +1,4 @@
-"""How the architecture grew: charts of progress and of findings over time, and the table below them."""
+"""How the architecture grew: charts of progress and findings over time, and tables below them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from archgen.views.statistics import STEPS
 from archgen.views.words import plural
 
 _MOST = 24
-"""So many bars are read at a glance; the table has them all."""
+"""Bars that can be read at a glance; the table has the older points, too."""
 _FINDINGS = "Errors / warnings / notes"
 
 
 def charts(history: History) -> tuple[Chart, ...]:
-    """Make the charts: how many components are mapped, and how many findings there are."""
+    """Make the charts of mapped components and of findings; none for fewer than two points."""
     shown = history.points[-_MOST:]
     if len(shown) < 2:  # noqa: PLR2004 - one point is no history
         return ()
@@ -50,7 +50,10 @@ def charts(history: History) -> tuple[Chart, ...]:
 
 
 def blocks(history: History, drawn: Sequence[str]) -> tuple[Block, ...]:
-    """Give what stands in the chapter on statistics: the charts and the table."""
+    """Return the blocks of the chapter on statistics: charts that were drawn, and tables.
+
+    `drawing_ids` are the ids of all drawings of the document.
+    """
     made = charts(history)
     if not made:
         return ()
@@ -62,7 +65,7 @@ def blocks(history: History, drawn: Sequence[str]) -> tuple[Block, ...]:
 
 
 def table(history: History) -> Table:
-    """List every point: size, progress and findings of the whole."""
+    """List every point, the latest first: size, progress and findings of the whole."""
     columns = (
         Column("Month" if history.by == "month" else "Revision", 1.1),
         *(
@@ -89,12 +92,13 @@ def table(history: History) -> Table:
 
 
 def _groups(history: History) -> tuple[Table, ...]:
-    """Compare groups and partners between the first point and the last."""
+    """Compare groups and partners at the first point and at the last."""
     before = {(row.scope, row.id): row for row in history.points[0].rows}
     columns = (
         Column("Of", 2),
         *(Column(title, 1.2, "right") for title in ("Components", "Mapped", "Timed", _FINDINGS)),
     )
+    # Rows of the last point only: groups that are gone since the first one are not listed.
     rows = tuple(
         _compared(row, before.get((row.scope, row.id))) for row in history.points[-1].rows if row.scope != "project"
     )
@@ -103,6 +107,7 @@ def _groups(history: History) -> tuple[Table, ...]:
 
 
 def _compared(row: Row, before: Row | None) -> tuple[Inlines, ...]:
+    """Make the row of one group or partner; `first_row` is None where it did not exist yet."""
     pairs = (
         (str(before.components) if before else "", str(row.components)),
         (share(before, "mapped") if before else "", share(row, "mapped")),
@@ -113,27 +118,28 @@ def _compared(row: Row, before: Row | None) -> tuple[Inlines, ...]:
 
 
 def change(was: str, now: str) -> str:
-    """Write two values as one where they are equal, else with an arrow between."""
+    """Format two values with an arrow between them, one where they are equal or the old one is empty."""
     return now if was in {now, ""} else f"{was} \u2192 {now}"
 
 
 def when(point: Point, history: History) -> str:
-    """Name a point: its month, or its day and the beginning of its hash."""
+    """Name a point: its month, or its day and the first digits of its commit."""
     return point.day[:7] if history.by == "month" else f"{point.day} {point.commit[:7]}"
 
 
 def share(row: Row, step: str) -> str:
-    """Write a step's share, rounded down so that 100 % means all."""
+    """Format the share of a step in percent, rounded down so that 100 % means all; `-` without components."""
     return f"{100 * getattr(row, step) // row.components} %" if row.components else "-"
 
 
 def short(findings: Findings) -> str:
-    """Write findings by severity in a few characters, `-` where there are none."""
+    """Format findings by severity: `1 error, 2 notes`; `-` for none."""
     counts = ((findings.error, "error"), (findings.warning, "warning"), (findings.note, "note"))
     return ", ".join(plural(count, name) for count, name in counts if count) or "-"
 
 
 def _slashed(findings: Findings) -> str:
+    """Format findings as `errors / warnings / notes`."""
     return f"{findings.error} / {findings.warning} / {findings.note}"
 
 
@@ -158,14 +164,17 @@ def _findings(point: Point, history: History) -> Bar:
 
 
 def _count(point: Point) -> str:
+    """Format mapped and all components: `3 of 7`."""
     return f"{point.whole.mapped} of {point.whole.components}"
 
 
 def _total(point: Point) -> int:
+    """Count the findings of all severities."""
     of = point.whole.findings
     return of.error + of.warning + of.note
 
 
 def _left_out(history: History, shown: int) -> list[str]:
+    """Return a note on points that only the table has."""
     more = len(history.points) - shown
     return [f"The table has {more} older {history.by}{'s' if more > 1 else ''} too."] if more else []

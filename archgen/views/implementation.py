@@ -1,4 +1,4 @@
-"""The low level in documents: a node, what it exposes, how it is configured and where it runs."""
+"""The implementation level in documents: a node, its endpoints, its parameters and where it runs."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from archgen.views.index import Index
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
 
 _ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
+"""Endpoints are listed in the direction of the data: inputs, outputs, then services and actions."""
 _LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
 
 
 def implementation_blocks(view: Index, component: str) -> tuple[Block, ...]:
-    """Draw a component's nodes with their neighbours."""
+    """Return the figure of a component's nodes with their neighbours."""
     title = view.architecture.components[component].title
     return (
         Figure(
@@ -25,7 +26,7 @@ def implementation_blocks(view: Index, component: str) -> tuple[Block, ...]:
 
 
 def node_blocks(view: Index, node: Node) -> tuple[Block, ...]:
-    """Say what a node is, what it exposes, its parameters and its timing."""
+    """Describe a node: facts, endpoints and parameters."""
     blocks: list[Block] = []
     if not node.written:
         blocks.append(
@@ -45,6 +46,7 @@ def node_blocks(view: Index, node: Node) -> tuple[Block, ...]:
 
 
 def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
+    """Return a node's facts, without those that have no value."""
     found = view.architecture
     kind = ", ".join(words.KINDS[kind] for kind in node.kinds)
     rows = [
@@ -59,6 +61,7 @@ def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
         ("Links", words.urls(node.urls.items())),
     ]
     for component, timing in node.timing.items():
+        # One timing for each activity; the key is "" for a node that implements no component.
         name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
         said = words.timing_sentence(timing)
         rows.append((name, words.text(said) if said else ()))
@@ -67,16 +70,19 @@ def _facts(view: Index, node: Node) -> list[tuple[str, Inlines]]:
 
 
 def _program(node: Node) -> Inlines:
+    """Return the executable and the plugin of a node, each after a comma."""
     parts = (("executable", node.executable), ("plugin", node.plugin))
     return tuple(part for name, value in parts if value for part in (Text(f", {name} "), Text(value, code=True)))
 
 
 def _place(node: Node) -> Inlines:
+    """Return the host of a node, and the container whose process it shares."""
     host = _linked(node.host, "host") or words.UNKNOWN
     return (*host, Text(", in the process "), *_linked(node.container, "container")) if node.container else host
 
 
 def _linked(name: str | None, kind: str) -> Inlines:
+    """Link to an element by its id; empty for None."""
     return words.text(Text(name, ref=f"{kind}:{name}")) if name else ()
 
 
@@ -106,11 +112,13 @@ def _parameter_table(node: Node) -> Table:
 
 
 def _flat(node: Node) -> list[tuple[str, str]]:
-    """Write nested parameters with dotted names, as ROS 2 shows them."""
+    """Return nested parameters as (dotted name, text) pairs, as `ros2 param list` shows them."""
     rows: list[tuple[str, str]] = []
+    # A stack taken from its end: it is filled in reverse, so that parameters keep the order of the file.
     rest: list[tuple[str, object]] = list(node.parameters.items())[::-1]
     while rest:
         name, value = rest.pop()
+        # An empty mapping has no leaf to show, so it is written as a value.
         if isinstance(value, dict) and value:
             rest += [(f"{name}.{key}", item) for key, item in reversed(list(value.items()))]
         else:
@@ -119,6 +127,7 @@ def _flat(node: Node) -> list[tuple[str, str]]:
 
 
 def _value(value: object) -> str:
+    """Format a parameter in YAML's spelling."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):

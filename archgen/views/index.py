@@ -1,4 +1,4 @@
-"""Who belongs to whom: the look-ups that every view needs, made once for an architecture and its findings."""
+"""Look-ups that every view needs, built once for an architecture and its findings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What a document shows: complete ids of components and nodes, or None for everything."""
+    """What a document shows: full ids of components and nodes, or None for everything."""
 
     components: frozenset[str] | None = None
     nodes: frozenset[str] | None = None
@@ -28,61 +28,66 @@ class Scope:
     """The selector as the user wrote it."""
 
     def component(self, component: str) -> bool:
-        """Say whether a component is shown."""
+        """Whether a component is shown."""
         return self.components is None or component in self.components
 
     def node(self, node: str) -> bool:
-        """Say whether a node is shown."""
+        """Whether a node is shown."""
         return self.nodes is None or node in self.nodes
 
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """An architecture with its look-ups. All keys are complete ids."""
+    """An architecture with its look-ups; all keys are full ids, mappings keep the order of the architecture."""
 
     architecture: Architecture
     findings: tuple[Diagnostic, ...] = ()
     scope: Scope = field(default_factory=Scope)
     readers: Mapping[str, tuple[Connection, ...]] = field(default_factory=dict)
-    """Connections that take an output, by the output's id."""
+    """Connections that read an output, by the output's id."""
     nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
-    """Nodes that implement a component."""
+    """Nodes that implement a component, by the component's id."""
     endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
-    """Endpoints of a node."""
+    """Endpoints of a node, by the node's id."""
     findings_of: Mapping[str, tuple[Diagnostic, ...]] = field(default_factory=dict)
-    """Findings by the element that they concern, ports counted at their component."""
+    """Findings by the element they concern; findings about a port are listed under its component."""
     components_for: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
     """Components that serve a requirement, by the requirement's id."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
+    """Outputs by the name of their conceptual type."""
     physical_types: frozenset[str] = frozenset()
     """Types that only physical ports use: they need no message."""
     hues: Mapping[str, int] = field(default_factory=dict)
-    """Each group's place among the groups: its colour."""
+    """Position of each group in the architecture: the base of its colour."""
+    # A closure over the interfaces: it has no useful equality or repr, so both leave it out.
     message_size: sizes.Asked = field(kw_only=True, compare=False, repr=False)
-    """What a message takes on the wire, by message and type."""
+    """Size of a message on the wire, by message and type."""
     timed: Timed | None = None
+    """Results of the timing analysis; None for the many views that need no timing."""
 
     def groups(self) -> list[str]:
-        """Name the groups of which something is shown, in order."""
+        """Return the ids of the groups with at least one shown component, in order; without a scope, of all."""
         groups = self.architecture.groups.values()
         if self.scope.components is None:
             return [group.id for group in groups]
+        # A selection holds components and nodes, never groups: a group is shown as soon as one of its components is.
         return [g.id for g in groups if any(c.id in self.scope.components for c in g.components.values())]
 
     def components(self, group: str) -> list[Component]:
-        """Give the components of a group that are shown, in order."""
+        """Return the shown components of a group, in order."""
         found = self.architecture.groups[group].components.values()
         return [component for component in found if self.scope.component(component.id)]
 
     def nodes(self) -> list[Node]:
-        """Give the nodes that are shown, in order."""
+        """Return the shown nodes, in order."""
         return [node for node in self.architecture.nodes.values() if self.scope.node(node.id)]
 
     def size(self, carrier: Type | Topic) -> str:
-        """Say how large the messages of a type or topic are: as written, else as computed, else nothing."""
+        """Return the message size of a type or topic as text: as written, else as computed, else empty."""
         if carrier.size is not None:
             return str(carrier.size)
         messages = carrier.messages if isinstance(carrier, Topic) else (carrier.message,)
+        # No single size would be right for a topic with several messages.
         return str(self.message_size(messages[0], None)) if len(messages) == 1 else ""
 
 
@@ -92,7 +97,7 @@ def index(
     scope: Scope | None = None,
     timed: Timed | None = None,
 ) -> Index:
-    """Make the look-ups, each in one pass."""
+    """Build all look-ups, each in one pass over the architecture."""
     found = tuple(findings)
     components, nodes = architecture.components.values(), architecture.nodes.values()
     return Index(
@@ -113,17 +118,20 @@ def index(
 
 
 def _physical(architecture: Architecture) -> frozenset[str]:
+    """Return the types that no digital port uses."""
     ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
     digital = {port.type for port in ports if not port.physical}
     return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
 
 
 def _owner(architecture: Architecture, element: str) -> str:
+    """Return the component of a port id; any other id is returned unchanged."""
     port = architecture.inputs.get(element) or architecture.outputs.get(element)
     return port.component if port else element
 
 
 def _grouped(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
+    """Collect values by key; keys and values keep the order in which they come."""
     lists: defaultdict[str, list[T]] = defaultdict(list)
     for key, item in pairs:
         lists[key].append(item)

@@ -1,4 +1,4 @@
-"""What `archgen list` lists: rows of plain text for each sort of element."""
+"""Rows of plain text for `archgen list`, one table for each kind of element."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Row = tuple[str, ...]
 
 
 def listed(view: Index, sort: str) -> tuple[tuple[str, ...], list[Row]]:
-    """Give the columns and rows for one of the sorts (see `SORTS` of the verb)."""
+    """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
     columns, rows = _SORTS[sort]
     return columns, list(rows(view))
 
@@ -100,6 +100,7 @@ def _hosts(view: Index) -> Iterator[Row]:
         yield (host.id, host.title, str(host.cores or ""), nodes, str(host.at))
 
 
+# The column names are the header of what `archgen list` writes, so they are visible to users.
 _SORTS: dict[str, tuple[tuple[str, ...], Callable[[Index], Iterator[Row]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _components),
     "nodes": (("id", "implements", "owner", "package", "status", "host", "ros_name", "place"), _nodes),

@@ -14,26 +14,28 @@ from archgen.views.timed import Timed
 from archgen.views.words import plural
 
 _MOST = 18
-"""More activities than this on one host are summed up in one bar."""
+"""A host with more activities gets one bar for all that do not fit."""
 AROUND = "Grey names stand outside of the selected part."
+"""Note below a chart with bars outside of the selection."""
 
 
 def outside(view: Index, timed: Timed, name: str) -> bool:
-    """Say whether an activity lies outside of the part that is shown."""
+    """Whether an activity lies outside of the shown part; False for unknown ids."""
     activity = timed.analysis.system.activities.get(name)
     return activity is not None and not view.scope.node(activity.node)
 
 
 def as_float(value: Fraction) -> float:
-    """Turn an exact figure into one to draw."""
+    """Turn an exact value into a float for drawing."""
     return value.numerator / value.denominator
 
 
 def charts(view: Index, timed: Timed) -> Iterator[Chart]:
-    """Make the chart of all hosts that run something of what is shown, and one of each."""
+    """Yield the chart of all hosts with something shown, then one chart for each of them."""
     loads = {
         host: load
         for host, load in timed.analysis.hosts.items()
+        # One shown activity is enough: the host is then charted with all of its load, since the limit applies to all.
         if load.parts and not all(outside(view, timed, name) for name, _ in load.parts)
     }
     if loads:
@@ -43,7 +45,7 @@ def charts(view: Index, timed: Timed) -> Iterator[Chart]:
 
 
 def load_of_all(view: Index, loads: dict[str, HostLoad]) -> Chart:
-    """Draw the load of every host against all of its cores, by activity."""
+    """Draw the load of every host as a share of all its cores, split by activity."""
     bars = tuple(
         Bar(
             f"{view.architecture.hosts[host].title} ({plural(load.cores, 'core')})",
@@ -70,6 +72,7 @@ def load_of_all(view: Index, loads: dict[str, HostLoad]) -> Chart:
 
 
 def _shares(load: HostLoad) -> Iterator[Stretch]:
+    """Yield the known parts of a load, largest first, alternating between two shades so that neighbours differ."""
     parts = [(name, value.value) for name, value in load.parts if value.value]
     for at, (name, value) in enumerate(sorted(parts, key=lambda part: -part[1])):
         share = Value(value / load.cores)
@@ -78,28 +81,33 @@ def _shares(load: HostLoad) -> Iterator[Stretch]:
 
 
 def of_cores(value: Value, cores: int) -> Value:
-    """Turn a number of busy cores into a share of all."""
+    """Turn a number of busy cores into a share of all cores; what is known about the value stays."""
     found = None if value.value is None else value.value / cores
     return Value(found, value.complete, value.missing, value.assumptions, value.side)
 
 
 def _bound(load: HostLoad) -> float | None:
-    """Place the bound on the scale; it holds for one core."""
+    """Return the rate-monotonic bound in percent; None where it is unknown or the host has several cores."""
     found = load.rate_monotonic_bound.value
+    # The bound is a theorem about one core.
     return as_float(found * 100) if found is not None and load.cores == 1 else None
 
 
 def _gaps(load: HostLoad) -> bool:
+    """Whether the load of any activity is unknown."""
     return any(value.value is None for _, value in load.parts)
 
 
 def _more(load: HostLoad) -> str:
+    """Name the activities whose load is unknown."""
     return "not known: " + ", ".join(name for name, value in load.parts if value.value is None)
 
 
 def load_of(view: Index, timed: Timed, host: str, load: HostLoad) -> Chart:
-    """Draw the load of one host, activity by activity, the largest first, and their sum."""
+    """Draw the load of one host, activity by activity, largest first, and their sum."""
+    # Unknown loads come last: their bars have no length.
     ordered = sorted(load.parts, key=lambda part: (part[1].value is None, -(part[1].value or 0)))
+    # One fewer than fits, because the bar for the remaining ones needs a row, too.
     shown = ordered if len(ordered) <= _MOST else ordered[: _MOST - 1]
     total = of_cores(load.utilisation, load.cores)
     steps = tuple(_steps(view, timed, load, shown, ordered[len(shown) :]))
@@ -123,6 +131,7 @@ def load_of(view: Index, timed: Timed, host: str, load: HostLoad) -> Chart:
 def _steps(
     view: Index, timed: Timed, load: HostLoad, shown: list[tuple[str, Value]], rest: list[tuple[str, Value]]
 ) -> Iterator[Bar]:
+    """Yield a bar for each listed activity, starting where the one before ends, and one for the remaining ones."""
     start = Fraction(0)
     for name, value in shown:
         share = of_cores(value, load.cores)
@@ -136,6 +145,7 @@ def _steps(
             ref=ref,
             around=outside(view, timed, name),
         )
+        # Bars stand end to end, so the last one ends at the sum below them.
         start += share.value or 0
     if rest:
         left = sum((value.value or Fraction(0) for _, value in rest), Fraction(0)) / load.cores
@@ -153,6 +163,7 @@ def _part(share: Value, name: str) -> Stretch:
 
 
 def _total(load: HostLoad, total: Value) -> Bar:
+    """Draw the sum, coloured by the verdict; unknown parts follow as a hatched piece."""
     kinds = {"schedulable": "met", "overload": "missed"}
     length = None if total.value is None else as_float(total.value * 100)
     parts = (Stretch(length, kinds.get(load.verdict, "open"), "", figures.share(total)),)  # type: ignore[arg-type]
@@ -161,9 +172,11 @@ def _total(load: HostLoad, total: Value) -> Bar:
 
 
 def _places(load: HostLoad) -> Iterator[Bar]:
-    """Draw the cores to which something is pinned and those that the rest shares, each against itself."""
+    """Yield a bar for each pinned core and for the cores that all else shares, each compared with itself."""
     if len(load.places) < 2:  # noqa: PLR2004 - one place is the host
         return
+    # Pinned cores have a blank in their name (`pc core 7`), the shared ones do not and come last. Length before text,
+    # so that core 10 follows core 9.
     for name, cores, used in sorted(load.places, key=lambda place: (" " not in place[0], len(place[0]), place[0])):
         share = of_cores(used, cores)
         full = used.value is not None and used.value >= cores
@@ -177,15 +190,16 @@ def _places(load: HostLoad) -> Iterator[Bar]:
 
 
 def _place(name: str, cores: int) -> str:
-    """Name a place on a host: `core 7`, or the cores that all else shares."""
+    """Name the cores of a place: `core 7`, or those that all else shares."""
     return name.partition(" ")[2] or f"the other {plural(cores, 'core')}"
 
 
 def load_verdict(load: HostLoad) -> str:
-    """Say in a sentence how a host stands."""
+    """Describe in one sentence how a host copes with its load."""
     said = figures.share(of_cores(load.utilisation, load.cores))
     cores = plural(load.cores, "core")
     if load.verdict == "overload":
+        # A host may be overloaded although its total is below 100 %: one pinned core is enough, so it is named.
         full = [
             _place(name, count) for name, count, used in load.places if used.value is not None and used.value >= count
         ]
@@ -194,6 +208,7 @@ def load_verdict(load: HostLoad) -> str:
     if load.verdict == "schedulable":
         return f"In time: {said} of {cores}, and everything is done before it is due again."
     unknown = sum(value.value is None for _, value in load.parts)
+    # Nothing at all is known, so there is no figure to begin the sentence with.
     if unknown and said == figures.UNKNOWN:
         return f"The load is not known: that of {plural(unknown, 'activity')} is missing."
     if unknown:

@@ -1,4 +1,4 @@
-"""Who owns what: elements and files of each partner, and what nobody owns."""
+"""Ownership: the elements and files of each partner, and those without an owner."""
 
 from __future__ import annotations
 
@@ -8,13 +8,17 @@ from dataclasses import dataclass
 from archgen.model.architecture import Architecture, Partner
 
 Places = Mapping[tuple[str, str], tuple[str, ...]]
-"""Files of each element, by sort (`group`, `component`, `node`) and complete id."""
+"""Files of each element, by kind (`group`, `component`, `node`) and full id."""
 SORTS = ("group", "component", "node")
+"""Kinds of element that have owners."""
 
 
 @dataclass(frozen=True, slots=True)
 class Owned:
-    """What a partner owns: ids by sort, and the files in which they stand."""
+    """What one partner owns: element ids by kind, and the files that define them.
+
+    `partner` is None for what has no owner.
+    """
 
     partner: Partner | None
     elements: Mapping[str, tuple[str, ...]]
@@ -23,7 +27,7 @@ class Owned:
 
 @dataclass(frozen=True, slots=True)
 class Ownership:
-    """All partners with what they own, what nobody does, and the owners of every file (empty where there is none)."""
+    """What each partner owns, what nobody owns, and the owners of each file (empty for a file without owner)."""
 
     partners: tuple[Owned, ...]
     nobody: Owned
@@ -31,8 +35,10 @@ class Ownership:
 
 
 def ownership(architecture: Architecture, places: Places, files: tuple[str, ...]) -> Ownership:
-    """Sort out who owns what; a file whose elements belong to several partners is theirs together. Planned nodes that
-    nobody wrote are left out.
+    """Find out who owns which elements and files.
+
+    A file that defines elements of several partners belongs to all of them. Planned nodes that no file defines are left
+    out.
     """
     owners = {
         **{("group", each.id): each.owners for each in architecture.groups.values()},
@@ -44,6 +50,7 @@ def ownership(architecture: Architecture, places: Places, files: tuple[str, ...]
         for file in places.get(element, ()):
             found.setdefault(file, set()).update(mine)
     partners = architecture.partners
+    # Owners in the order in which partners are declared, whatever the order of the elements.
     of_file = {file: tuple(partners[name] for name in partners if name in mine) for file, mine in found.items()}
     made = []
     for partner in partners.values():
@@ -55,4 +62,5 @@ def ownership(architecture: Architecture, places: Places, files: tuple[str, ...]
 
 
 def _by_sort(order: Mapping[tuple[str, str], object], held: set[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
+    """Return the chosen ids by kind, in the order of the elements."""
     return {sort: tuple(name for each, name in order if each == sort and (each, name) in held) for sort in SORTS}

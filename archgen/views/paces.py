@@ -1,4 +1,4 @@
-"""How often things happen, in words and as a step of the period scale."""
+"""How often things happen: in words, and as a step of the period scale."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ _STEPS: tuple[tuple[int, Pace], ...] = (
     (300, "to_300_ms"),
     (1000, "to_1_s"),
 )
+"""Longest period of each step in ms, shortest first."""
 NAMES: dict[Pace, str] = {
     "to_10_ms": "up to 10 ms",
     "to_30_ms": "up to 30 ms",
@@ -27,16 +28,17 @@ NAMES: dict[Pace, str] = {
     "once": "once, at the start",
     "unknown": "unknown",
 }
-"""The steps of the scale in words."""
+"""The steps of the scale in words, in the order of legends and tables."""
 _LINE = 24
-"""Characters in a line of a box."""
+"""Characters on one line of a box."""
 _WORDS = {"event": "event", "on_demand": "on demand", "once": "once"}
 
 
 def step(pace: analysis.Pace | None) -> Pace:
-    """Give the step of the scale: by the period where there is a rate, else by the behaviour."""
+    """Return the step of the scale: by the period where a rate is known, else by the behaviour."""
     if pace is None:
         return "unknown"
+    # Before the rate: an activity that is called on demand may have a rate, but no period of its own to colour it by.
     if pace.behaviour == "once":
         return "once"
     if pace.behaviour == "on_demand":
@@ -48,30 +50,33 @@ def step(pace: analysis.Pace | None) -> Pace:
 
 
 def said(pace: analysis.Pace | None) -> str:
-    """Say a pace in one line: `10 Hz · 100 ms`, `<= 10 Hz · >= 100 ms, event`, `on demand`, `?`."""
+    """Format a rate on one line: `10 Hz · 100 ms`, `<= 10 Hz · >= 100 ms, event`, `on demand`, `?`."""
     return ", ".join(word for word in (_figure(pace, " · "), _kind(pace)) if word) or "?"
 
 
 def lines(pace: analysis.Pace | None) -> tuple[str, ...]:
-    """Say a pace in a box: the rate with its period, then what fires it where that is no clock."""
+    """Format a rate for a box: rate and period, then the behaviour unless it is periodic."""
     figure = _figure(pace, " · ")
+    # A long figure would widen the box; rate and period then get a line each.
     if len(figure) > _LINE:
         figure = _figure(pace, "\n")
     return tuple(word for word in (*figure.split("\n"), _kind(pace)) if word) or ("?",)
 
 
 def _figure(pace: analysis.Pace | None, between: str) -> str:
+    """Format rate and period; empty where the rate is unknown or zero."""
     if pace is None or not pace.rate.value:
         return ""
     return f"{figures.rate(pace.rate)}{between}{figures.period(pace.rate)}"
 
 
 def _kind(pace: analysis.Pace | None) -> str:
+    """Return the word for a behaviour; empty for periodic ones, whose figures speak for themselves."""
     return _WORDS.get(pace.behaviour or "", "") if pace else ""
 
 
 def sentence(pace: analysis.Pace, origin: tuple[str, ...]) -> str:
-    """Say a pace with where it comes from: `10 Hz, from scanner`; empty where nothing is known."""
+    """Format a rate with its origins: `10 Hz, from scanner`; empty where nothing is known."""
     words = said(pace)
     if words == "?":
         return ""

@@ -24,11 +24,12 @@ def pages(view: Index, edition: Edition) -> tuple[Page, ...]:
     functional = [made.start(), *made.groups(), *made.chapters(), *made.spanning()]
     rest = list(pages_rest.pages(view, made.drawn))
     low = [*made.nodes(), *pages_rest.topics(view)] if edition.level == "implementation" else []
+    # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
     return _distinct(functional + low + rest)
 
 
 def _distinct(found: list[Page]) -> tuple[Page, ...]:
-    """Give numbers to pages whose names differ only in what file systems do not tell apart."""
+    """Add numbers to paths that several pages share: the names of two elements may give one file name."""
     taken: dict[str, int] = {}
     result = []
     for page in found:
@@ -40,27 +41,29 @@ def _distinct(found: list[Page]) -> tuple[Page, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Pages:
+    """Makes the pages; each method returns one page or yields several."""
+
     view: Index
     edition: Edition
 
     @property
     def found(self) -> Architecture:
-        """Give the architecture."""
+        """Return the architecture."""
         return self.view.architecture
 
     def drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
-        """Leave out figures that are not among the graphs of this site."""
+        """Drop figures that are not among this site's drawings: of another level, or outside of the selection."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.graphs)
 
     def figures(self, *names: str) -> Iterator[Figure]:
-        """Give the figures that were drawn and show something."""
+        """Yield figures for those of the named drawings that exist."""
         for name in names:
             graph = self.edition.graphs.get(name)
             if graph:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def start(self) -> Page:
-        """Make the start page: what this is, the clickable overview, the groups."""
+        """Make the start page: description, title facts, clickable overview, table of groups."""
         project = self.found.project
         blocks: list[Block] = [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(title_facts(self.view, self.edition))))
@@ -70,7 +73,7 @@ class _Pages:
         return Page("index.html", "page:index", project.title, "overview", section, lead="Software architecture")
 
     def groups(self) -> Iterator[Page]:
-        """Make a page for each group and each of its components."""
+        """Make a page for each shown group, followed by its shown components."""
         for name in self.view.groups():
             group = self.found.groups[name]
             yield self._group(group)
@@ -83,6 +86,7 @@ class _Pages:
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME,), lead)
 
     def _owned(self, words_: str, owners: Iterable[str]) -> str:
+        """Return a page's lead with the titles of the owners behind it."""
         return " · ".join([words_, *(self.found.partners[owner].title for owner in owners)])
 
     def _component(self, group: Group, component: Component) -> Page:
@@ -101,12 +105,13 @@ class _Pages:
         return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
 
     def _findings(self, element: str) -> list[Section]:
+        """Return a section with the findings about an element, or nothing."""
         found = self.view.findings_of.get(element, ())
         table = tables.open_points(found, f"table:findings/{element}")
         return [Section(f"findings:{element}", "Open points", (table,))] if table else []
 
     def nodes(self) -> Iterator[Page]:
-        """Make a page for each node."""
+        """Make a page for each shown node."""
         for node in self.view.nodes():
             yield self._node(node)
 
@@ -121,12 +126,13 @@ class _Pages:
         """Make a page for each chapter that the project wrote."""
         for name, chapter in self.edition.texts.items():
             title, text = split_title(chapter)
+            # `shift` 0: the chapter's own headings follow the page's title, which was its first heading.
             section = Section(f"chapter:{name}", title, (Markdown(text, chapter.folder, 0),))
             path = f"chapters/{pages_rest.slug(name.rpartition('.')[0])}.html"
             yield Page(path, section.anchor, title, "chapters", section, (HOME,), "Chapter")
 
     def spanning(self) -> Iterator[Page]:
-        """Make the pages that span the architecture."""
+        """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
         shown = tables.shown_connections(self.view)
         yield self._spanning("connections", "Connections", tables.connections(self.view, shown))
         yield self._spanning("types", "Types", tables.types(self.view))
@@ -148,7 +154,7 @@ class _Pages:
             yield self._spanning("hosts", "Hosts", *self.figures("hosts"), *hosts)
 
     def _timing(self) -> Iterator[Page]:
-        """Make the pages on timing: of the whole, of all chains, and of each chain."""
+        """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
         graphs = self.edition.graphs
         if self.view.timed is not None and self.edition.level == "implementation":
             blocks = timing_chapter.blocks(self.view, self.view.timed, graphs)
@@ -161,7 +167,9 @@ class _Pages:
             yield Page(path, section.anchor, section.title, "chains", section, crumbs, "Chain of effect")
 
     def _spanning(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
+        """Make a page for the whole architecture."""
         present = tuple(block for block in blocks if block is not None)
+        # A page without content is made all the same: the crumbs of other pages lead to it.
         nothing = Paragraph(words.text(Text("There is nothing here yet.", muted=True)))
         section = Section(f"page:{name}", title, present or (nothing,), sections)
         return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME,))

@@ -1,4 +1,4 @@
-"""The site's pages for what stands around components and nodes: topics, types, requirements, hosts, partners."""
+"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts, partners."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from archgen.views.shapes import (
 )
 
 Drawn = Callable[[Iterable[Block]], tuple[Block, ...]]
+"""Drops the figures that were not drawn."""
 _HOME = ("Overview", "page:index")
 _FLOWS = {"topic": "Topic", "service": "Service", "action": "Action"}
 
@@ -50,13 +51,15 @@ def pages(view: Index, drawn: Drawn) -> Iterator[Page]:
 
 
 def _page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
+    """Make a page below a folder; its name is the anchor without the kind before the colon."""
     crumbs = (_HOME, crumb) if crumb else (_HOME,)
     path = f"{folder}/{slug(section.anchor.partition(':')[2])}.html"
     return Page(path, section.anchor, section.title, folder, section, crumbs, lead)
 
 
 def slug(name: str) -> str:
-    """Make a name that every file system takes: lower case, words joined by hyphens."""
+    """Turn a name into a file name that every system takes: lower case, words joined by hyphens."""
+    # Different names may give the same slug; `_make_paths_distinct` numbers such pages.
     return re.sub(r"[^a-z0-9._-]+", "-", name.lower()).strip("-.") or "-"
 
 
@@ -75,7 +78,7 @@ def _shown(view: Index) -> list[Topic]:
 
 
 def topic_tables(view: Index) -> Iterator[Table]:
-    """List topics, services and actions, each in a table of its own."""
+    """List topics, services and actions, each kind in a table of its own."""
     for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
         shown = [topic for topic in _shown(view) if topic.flow == flow]
         table = tables.topics(view, shown, f"table:{flow}s", title)
@@ -104,6 +107,7 @@ def _ends(view: Index, topic: Topic, ends: tuple[Endpoint, ...], what: str) -> l
         (
             words.text(words.node_link(view.architecture.nodes[end.node])),
             _component(view, end.component),
+            # Ports by their own names: the component is in the column before.
             words.text(Text(end.port.rsplit(".", 1)[-1], code=True)) if end.port else (),
             words.qos_cell(end.qos) if topic.flow == "topic" else (),
         )
@@ -118,7 +122,10 @@ def _component(view: Index, component: str | None) -> Inlines:
 
 
 def node_table(view: Index, nodes: list[Node], component: Component | None = None) -> list[Block]:
-    """List nodes with what they implement, their package, status and place."""
+    """List nodes with what they implement, package, status, host and timing; empty for no nodes.
+
+    On the page of a `component`, that component itself is left out of the list of implemented ones.
+    """
     if not nodes:
         return []
     found, own = view.architecture, component.id if component else None
@@ -146,6 +153,7 @@ def node_table(view: Index, nodes: list[Node], component: Component | None = Non
 
 
 def _timing(node: Node) -> Inlines:
+    """Return the timing of all components that a node implements, in short."""
     said = "; ".join(short for timing in node.timing.values() if (short := words.short_timing(timing)))
     return words.text(said) if said else ()
 
@@ -156,6 +164,7 @@ def _type(view: Index, mapped: Type) -> Page:
         ("Size", _size(view, mapped)),
         ("Remarks", words.text(tables.type_remarks(mapped))),
     ]
+    # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
     found = view.architecture
     produced = view.outputs_of_type.get(mapped.name, ())
@@ -175,8 +184,10 @@ def _type(view: Index, mapped: Type) -> Page:
 
 
 def _size(view: Index, mapped: Type) -> Inlines:
+    """Return the message size of a type, or why it is not known."""
     if size := view.size(mapped):
         return words.text(size)
+    # Services and actions have no single size, and without a message the row above already says so.
     if mapped.message is None or flow_of(mapped.message) != "topic":
         return ()
     return words.text(Text(f"unknown: {view.message_size(mapped.message, None).why.replace('`', '')}", muted=True))
@@ -254,6 +265,7 @@ def _container(view: Index, name: str) -> Page:
 
 
 def _partner(view: Index, partner: Partner, drawn: Drawn) -> Page:
+    """Make a partner's page: contact, components, and the nodes that it owns or that implement its components."""
     blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
     if partner.contact:
         blocks.append(Facts((("Contact", words.text(partner.contact)),)))

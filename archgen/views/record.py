@@ -1,7 +1,7 @@
 """The resolved model as plain data, for other programs and code generators (`schemas/resolved.schema.json`).
 
-Elements are keyed by their complete ids; what is not known is left out; durations are in ms and rates in Hz as they
-were written (`text`), with exact numbers beside (`value`, in the unit named by the key).
+Elements are keyed by their full ids, and what is not known is left out. A quantity has the text as written (`text`),
+the number (`value`) and its unit (`unit`): ns, Hz, B or bit/s.
 """
 
 from __future__ import annotations
@@ -21,14 +21,16 @@ from archgen.views.index import Index
 from archgen.views.shapes import Record
 
 VERSION = 1
+"""Version of the format, written as `archgen_resolved`."""
 
 
 def record(view: Index) -> Record:
-    """Give the whole architecture, or what the scope shows of it, as dicts, lists and scalars."""
+    """Return the architecture, or the part in scope, as dicts, lists and scalars."""
     found, inside = view.architecture, view.scope.component
     return {
         "archgen_resolved": VERSION,
         "project": _picked(found.project, "id", "title", "version", "description") | _known({"distro": found.distro}),
+        # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {p.id: _picked(p, "title", "description", "contact", "reviewers") for p in found.partners.values()},
         "use_cases": {u.id: _picked(u, "title", "description") for u in found.use_cases.values()},
         "requirements": {r.id: _requirement(view, r) for r in found.requirements.values()},
@@ -55,7 +57,7 @@ def record(view: Index) -> Record:
 
 
 def _picked(element: object, *keys: str) -> dict[str, object]:
-    """Take some fields of an element; tuples become lists."""
+    """Return the named fields of an element that are known; tuples become lists."""
     values = {key: getattr(element, key) for key in keys}
     return _known({key: list(value) if isinstance(value, tuple) else value for key, value in values.items()})
 
@@ -88,15 +90,18 @@ def _chain(chain: Chain) -> dict[str, object]:
 
 
 def _known(data: dict[str, object]) -> dict[str, object]:
-    """Leave out what is not known: None, and empty lists and mappings."""
+    """Drop what is not known: None, empty lists and empty mappings."""
+    # 0, False and "" stay: they are values that somebody wrote. Flags that are rarely true are given as `flag or None`.
     return {key: value for key, value in data.items() if value is not None and value not in ([], {})}
 
 
 def _quantity(quantity: Quantity | None, unit: str) -> dict[str, object] | None:
+    """Return a quantity as text, number and unit; `value` is in that unit."""
     return None if quantity is None else {"text": quantity.text, "value": _number(quantity.value), "unit": unit}
 
 
 def _number(value: Fraction) -> int | float:
+    """Return an int where that is exact, else the nearest float (JSON and YAML have no fractions)."""
     return int(value) if value.denominator == 1 else float(value)
 
 
@@ -148,6 +153,7 @@ def _output(view: Index, port: Output) -> dict[str, object]:
 
 
 def _carried(view: Index, output: str) -> dict[str, object]:
+    """Return what flows along an edge: type and message of the output, and whether it is physical."""
     port = view.architecture.outputs[output]
     return {"type": port.type, "message": view.architecture.message(port), "physical": port.physical or None}
 
@@ -175,6 +181,7 @@ def _node(view: Index, node: Node) -> dict[str, object]:
             "implements": list(node.implements),
             "derived": None if node.written else True,
             "endpoints": [_endpoint(endpoint) for endpoint in view.endpoints_of.get(node.id, ())],
+            # The key is "" for a node that implements no component; the record calls it "node".
             "timing": _known({component or "node": _timing(timing) for component, timing in node.timing.items()}),
             "parameters": _plain(node.parameters),
             "parameter_files": list(node.parameter_files),
@@ -185,6 +192,7 @@ def _node(view: Index, node: Node) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
+    """Copy nested parameters into dicts and lists."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
@@ -208,6 +216,7 @@ def _endpoint(endpoint: Endpoint) -> dict[str, object]:
 
 def _qos(qos: Qos) -> dict[str, object]:
     durations = {key: _quantity(getattr(qos, key), "ns") for key in ("deadline", "lifespan", "lease_duration")}
+    # All other fields, so a new field of Qos gets into the record without a line here.
     plain = {k: v for k, v in asdict(qos).items() if k not in {*durations, "at", "written"}}
     return _known(plain | durations)
 

@@ -1,4 +1,4 @@
-"""The report's outline: the project's chapters and the generated ones, in the order that the project asks for."""
+"""The report's outline: chapters of the project and generated ones, in the order that the project asks for."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Level = Literal["functional", "implementation"]
 
 @dataclass(frozen=True, slots=True)
 class Edition:
-    """What a document is made of beside the architecture."""
+    """What a document contains beside the architecture."""
 
     revision: str = ""
     level: Level = "implementation"
@@ -31,11 +31,11 @@ class Edition:
     statistics: tuple[Table, ...] = ()
     history: History = field(default_factory=History)
     broken: bool = False
-    """Errors were found, and what is sound is shown all the same."""
+    """The model has errors; documents show what is sound, and say so."""
 
 
 def report(view: Index, edition: Edition) -> Outline:
-    """Make the outline of the report."""
+    """Make the outline of the report; appendices move to the end, else the project's order is kept."""
     found = view.architecture
     made = _Chapters(view, edition)
     sections = [section for name in edition.chapters for section in made.chapter(name)]
@@ -50,7 +50,7 @@ def report(view: Index, edition: Edition) -> Outline:
 
 
 def title_facts(view: Index, edition: Edition) -> Iterator[tuple[str, Inlines]]:
-    """Say on the title page who made what, and in which version."""
+    """Yield the lines of the title page: version, revision, ROS distribution, partners."""
     project = view.architecture.project
     if project.version:
         yield "Version", words.text(project.version)
@@ -63,7 +63,7 @@ def title_facts(view: Index, edition: Edition) -> Iterator[tuple[str, Inlines]]:
 
 
 def notices(view: Index, edition: Edition) -> tuple[Paragraph, ...]:
-    """Say what the reader must know first: that a part is shown, that findings stand open."""
+    """Return what the reader must know first: that only a part or a level is shown, or that there are errors."""
     said: list[Paragraph] = []
     if view.scope.components is not None:
         part = words.text("This document shows a part of the architecture: ", Text(view.scope.words, code=True))
@@ -80,14 +80,16 @@ def notices(view: Index, edition: Edition) -> tuple[Paragraph, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Chapters:
-    """Makes each chapter by its name."""
+    """Makes the sections of each chapter by the chapter's name."""
 
     view: Index
     edition: Edition
 
     def chapter(self, name: str) -> Sequence[Section]:
-        """Give a chapter's sections: several for `groups`, none where there is nothing to say."""
+        """Return the sections of a chapter: several for `groups`, none where there is nothing to say."""
         if name in GENERATED:
+            # One method for each name in GENERATED, called `_NAME`: they are found by name, so renaming one breaks its
+            # chapter. NAME is one of archgen's own words here, never the user's text.
             made: Sequence[Section] = getattr(self, f"_{name}")()
             return made
         chapter = self.edition.texts.get(name)
@@ -101,6 +103,7 @@ class _Chapters:
         project = self.view.architecture.project
         blocks: list[Block] = [Markdown(project.description)] if project.description else []
         blocks += self._figures("overview", "components")
+        # Anchors are the same as the site's, so that references in shared blocks work in both.
         return [Section("page:index", "Overview", tuple(blocks), page_break=True)] if blocks else []
 
     def _figures(self, *names: str) -> Iterator[Figure]:
@@ -129,18 +132,20 @@ class _Chapters:
         return Section(f"component:{component.id}", component.title, blocks, sections)
 
     def _node(self, node_id: str, component: Component) -> Section:
-        """Write a node where its first component stands; further components refer to it there."""
+        """Describe a node at the first shown component that it implements; elsewhere refer to that place."""
         node = self.view.architecture.nodes[node_id]
+        # Never exhausted: the component being written is itself shown and implemented by the node.
         first = next(c for c in node.implements if self.view.scope.component(c))
         if first == component.id:
             return Section(f"node:{node.id}", f"Node {node.id}", node_blocks(self.view, node))
         where = words.component_link(self.view.architecture.components[first])
         said = words.text("The node ", words.node_link(node), " implements this too; it is described at ", where, ".")
+        # The plain anchor `node:ID` belongs to the full description and must stay unique.
         anchor = f"node:{node.id}:{component.id}"
         return Section(anchor, f"Node {node.id}", (Paragraph(said),))
 
     def _drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
-        """Leave out figures that are not among the graphs of this document."""
+        """Drop figures that are not among this document's drawings."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.graphs)
 
     def _deployment(self) -> list[Section]:
@@ -198,13 +203,15 @@ class _Chapters:
 
 
 def _present(*blocks: Block | None) -> Iterator[Block]:
+    """Drop the blocks that could not be made."""
     return (block for block in blocks if block is not None)
 
 
 def split_title(chapter: Chapter) -> tuple[str, str]:
-    """Take a chapter's first heading as its title, the file's name where it has none."""
+    """Return a chapter's first heading and the rest; without a heading, its file name and the whole text."""
     head, _, rest = chapter.text.lstrip().partition("\n")
     if head.startswith("# "):
+        # A heading of CommonMark may be closed by hash signs: `# Safety #`.
         return head[2:].strip().rstrip("#").strip(), rest
     name = chapter.path.rpartition("/")[2].rpartition(".")[0]
     return name.replace("_", " ").replace("-", " ").capitalize(), chapter.text

@@ -1,7 +1,8 @@
-"""The four plain shapes that every emitter draws: Graph, Table, Outline and Record (see `bars` for the Chart).
+"""The four plain shapes that emitters draw: Graph, Table, Outline and Record (for Chart see `chart_shapes`).
 
-Views make them from the model and its analyses; emitters know nothing else, so a new format costs one template.
-Everything in here is plain data (tuples, strings, numbers), and `plain()` turns it into dicts and lists.
+Views make them from the model and its analyses. Emitters know nothing else, so a new format costs one template.
+Everything here is plain data (tuples, strings, numbers), and `shape_to_plain` turns it into dicts and lists. Class and
+field names are a public interface: templates read them (docs/backends.md), so they must not change.
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ Record = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A run of text. `ref` is the anchor of a section, table, figure or element page (emitters turn it into a link,
-    and leave the text plain where the target is not part of the output); `url` is an address outside.
+    """A run of text.
+
+    `ref` is the anchor of a section, table, figure or element page. Emitters turn it into a link, or leave plain text
+    where the target is not part of the output. `url` is an address on the web.
     """
 
     text: str
@@ -29,19 +32,19 @@ class Text:
     code: bool = False
     muted: bool = False
     line_break: bool = False
-    """A line break stands before this run."""
+    """A line break precedes this run."""
     change: Literal["added", "removed", "changed"] | None = None
-    """What it tells of: emitters may colour it; its words and sign say the same."""
+    """The change that this run reports. Emitters may colour it; its words say the same without colour."""
 
 
 Inlines = tuple[Text, ...]
 Changed = Literal["added", "removed", "changed", "renamed"]
-"""What happened to an element of a picture that shows two versions: told by the sign in its text and by its line."""
+"""What happened to an element of a picture that shows two versions; its text and its line style show it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table: its heading and its share of the width."""
+    """A column of a table: its heading, its share of the width and its alignment."""
 
     title: str
     weight: float = 1.0
@@ -50,9 +53,9 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table with a caption. `anchor` is unique in the output. Rows have as many cells as there are columns.
+    """A table with a caption; each row has as many cells as there are columns.
 
-    A table without rows is never made: say so in a paragraph instead.
+    `anchor` is unique in the output. A table without rows is never made: say so in a paragraph instead.
     """
 
     anchor: str
@@ -61,13 +64,13 @@ class Table:
     rows: tuple[tuple[Inlines, ...], ...]
     row_anchors: tuple[str | None, ...] = ()
     wide: bool = False
-    """The page turns to landscape for it."""
+    """The page turns to landscape for this table."""
     numbered: bool = True
-    """It has a caption with a number and stands in the list of tables."""
+    """The caption has a number, and the table is in the list of tables."""
 
 
 def without_empty_columns(table: Table) -> Table:
-    """Drop the columns in which no row says anything; the first one stays."""
+    """Drop the columns that are empty in every row; the first column always stays."""
     kept = [place for place in range(len(table.columns)) if place == 0 or any(row[place] for row in table.rows)]
     return dataclasses.replace(
         table,
@@ -79,16 +82,16 @@ def without_empty_columns(table: Table) -> Table:
 Pace = Literal[
     "to_10_ms", "to_30_ms", "to_100_ms", "to_300_ms", "to_1_s", "slower", "unknown", "event", "on_demand", "once"
 ]
-"""Steps of the period scale: how often something happens, else why it has no period."""
+"""Steps of the period scale, or why something has no period."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
     """A box of a graph.
 
-    `style`: what it is; `emphasis`: `subject` (thick frame), `normal`, or `neighbour` (grey). `colour` is an index into
-    the palette of group hues, None for no hue. `lines` stand below the title in small type. `ports_in` and `ports_out`
-    (name, text) are rows at its sides. `side` puts neighbours at the outer ranks.
+    `style` says what it is; `emphasis` is `subject` (thick frame), `normal` or `neighbour` (grey). `colour` is an index
+    into the palette of group hues, None for no hue. `lines` follow the title in small type. `ports_in` and `ports_out`
+    are rows (name, text) at its sides. `side` puts neighbours at the outer ranks.
     """
 
     id: str
@@ -123,16 +126,16 @@ class Box:
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None
     fill: Pace | None = None
-    """Fills the box by the period scale; frame and text tell apart what has no period."""
+    """Fills the box by the period scale; frame and text distinguish what has no period."""
     change: Changed | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Arrow:
-    """An edge of a graph, from box `tail` to box `head` (`id` is unique in the graph).
+    """An edge of a graph, from box `tail` to box `head`; `id` is unique in the graph.
 
-    `flows` says what runs along it, one sentence each (tooltip, and a table beside the picture); `count` is how many
-    flows a merged arrow stands for, shown as its label in overviews.
+    `flows` says what runs along it, one sentence each (for the tooltip, and for a table beside the picture). `count` is
+    how many flows a merged arrow represents; overviews show it as the label.
     """
 
     id: str
@@ -153,7 +156,7 @@ class Arrow:
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """A frame round boxes: a group, a host, a container. `parent` nests it in another."""
+    """A frame around boxes: a group, a host, a container; `parent` nests it in another cluster."""
 
     id: str
     title: str
@@ -167,12 +170,12 @@ class Cluster:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """A picture. `id` is its file name without ending (slashes make folders: `groups/environment_state`).
+    """A picture; `id` is its file name without extension, where a slash makes a folder (`groups/environment_state`).
 
-    `layout` names the recipe: `flow` (one dot run), `group` (one cluster with neighbours at both sides), `two-step`
-    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one dot run with
-    frames round the boxes, for few of them; texts are set on the arrows afterwards).
-    `asked` is the number of flows that the picture must account for: the arrows' counts add up to it.
+    `layout` names the recipe: `flow` (one run of dot), `group` (one cluster with neighbours at both sides), `two-step`
+    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one run of dot
+    with frames around the boxes, for small graphs; labels are placed on the arrows afterwards). `asked` is the number
+    of flows that the picture must account for: the arrows' counts add up to it.
     """
 
     id: str
@@ -185,17 +188,17 @@ class Graph:
     legend: tuple[str, ...] = ()
     """Which keys of the legend apply: names of styles, `width`, `colour`, `neighbour`, ..."""
     legend_colours: tuple[tuple[int, str], ...] = ()
-    """Palette index and the text that it stands for, where colour means something else than the group."""
+    """Palette index and its meaning, where colour stands for something other than the group."""
     notes: tuple[str, ...] = ()
-    """What the picture leaves out or folds, said below it."""
+    """What the picture leaves out or folds; shown below it."""
     alt: str = ""
-    """What the picture shows, for who cannot see it."""
+    """What the picture shows, for readers who cannot see it."""
     asked: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A paragraph of text. `kind` `note`, `warning` and `error` stand out."""
+    """A paragraph of text; kinds other than `text` are highlighted."""
 
     inlines: Inlines
     kind: Literal["text", "note", "warning", "error"] = "text"
@@ -203,9 +206,10 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class Markdown:
-    """CommonMark from the project. `folder` (relative to the project) is where its pictures' paths begin.
+    """CommonMark written by the project.
 
-    `shift` is added to the level of its headings, so that they nest below the section they stand in.
+    `folder`, relative to the project, is the base of picture paths. `shift` is added to heading levels, so that they
+    nest below the section that contains the text.
     """
 
     text: str
@@ -215,7 +219,10 @@ class Markdown:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture in the flow, by its graph's or chart's id. `anchor` is unique in the output."""
+    """A picture between other blocks, by the id of its graph or chart; `anchor` is unique in the output.
+
+    `graph` keeps its name although it may name a chart: templates read it.
+    """
 
     anchor: str
     graph: str
@@ -225,7 +232,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Bullets:
-    """A list, each item a line of text."""
+    """A list of lines of text."""
 
     items: tuple[Inlines, ...]
     ordered: bool = False
@@ -233,7 +240,7 @@ class Bullets:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """A short two-column list of names and values (owner, status, host): a definition list or an unnumbered table."""
+    """Names and values in two columns (owner, status, host): a definition list or an unnumbered table."""
 
     rows: tuple[tuple[str, Inlines], ...]
 
@@ -243,9 +250,10 @@ Block = Paragraph | Markdown | Figure | Bullets | Facts | Table
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A heading with what stands below it. `anchor` is unique in the output; references to an element use its anchor.
+    """A heading with its blocks and subsections.
 
-    `appendix` sections are lettered. `page_break` begins a new page in paged outputs.
+    `anchor` is unique in the output; references to an element use the element's anchor. `appendix` sections are
+    lettered. `page_break` starts a new page in paged outputs.
     """
 
     anchor: str
@@ -258,22 +266,24 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A document: what its title page says, and its sections."""
+    """A document: its title page and its sections."""
 
     title: str
     subtitle: str = ""
     facts: tuple[tuple[str, Inlines], ...] = ()
     """Lines of the title page: version, revision, partners."""
     notices: tuple[Paragraph, ...] = ()
-    """What the reader must know before anything else (a part is shown, findings stand open)."""
+    """What the reader must know first, for example that only a part is shown or that there are errors."""
     sections: tuple[Section, ...] = ()
     language: str = "en"
 
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A page of the site. `path` is relative to the site's folder (`components/a.b.html`); `anchor` is what references
-    to it use; `crumbs` are (title, anchor) from the start page down. `kind` groups pages in the navigation.
+    """A page of the site.
+
+    `path` is relative to the site's folder (`components/a.b.html`); `anchor` is what references to the page use;
+    `crumbs` are (title, anchor) pairs from the start page down. `kind` groups pages in the navigation.
     """
 
     path: str
@@ -283,13 +293,14 @@ class Page:
     section: Section
     crumbs: tuple[tuple[str, str], ...] = ()
     lead: str = ""
-    """One line below the title: what sort of thing this is, its status, its owner."""
+    """One line below the title: what kind of thing this is, its status, its owner."""
 
 
 def plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type
-    """Turn a shape into dicts, lists and scalars, for templates and JSON. Each dataclass adds its name as `shape`."""
+    """Turn a shape into dicts, lists and scalars, for templates and JSON; dataclasses add their name as `shape`."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        # Templates branch on this tag (`block.shape`), so renaming a shape class breaks users' backends.
         return {"shape": type(value).__name__.lower(), **fields}
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}

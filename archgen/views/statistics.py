@@ -1,4 +1,4 @@
-"""Size and progress as tables."""
+"""Size and progress of an architecture as tables."""
 
 from __future__ import annotations
 
@@ -39,22 +39,23 @@ _LABELS = {
     "views": "Views",
     "policies": "Policies",
 }
+"""Titles of figures; the keys are fields of `Size`, read by name."""
 STEPS = ("described", "typed", "mapped", "timed", "traced")
-"""What progress counts, in its order."""
+"""The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""
 
 
 def figures(found: Size) -> list[tuple[str, str, str]]:
-    """Give each figure's key, label and value in words."""
+    """Return key, title and value of each figure."""
     return [(key, label, number(getattr(found, key))) for key, label in _LABELS.items()]
 
 
 def number(value: int | Fraction) -> str:
-    """Write a count as it is, a mean with one decimal."""
+    """Format a count as it is, a mean with one decimal."""
     return f"{float(value):.1f}" if isinstance(value, Fraction) else str(value)
 
 
 def statistics(architecture: Architecture) -> tuple[Table, ...]:
-    """Make the tables of size and of progress."""
+    """Make the tables of size and progress; progress only where there are components."""
     rows = tuple((words.text(label), words.text(value)) for _, label, value in figures(size(architecture)))
     sizes = Table("table:size", "Size of the architecture", (Column("Figure", 3), Column("Value", 1, "right")), rows)
     measured = [row for row in progress(architecture) if row.components]
@@ -87,5 +88,5 @@ def _subject(architecture: Architecture, row: Progress) -> Inlines:
 
 
 def _percent(count: int, of: int) -> str:
-    """Round down, so that 100 % means all."""
+    """Format a share in percent, rounded down so that 100 % means all."""
     return f"{100 * count // of} %"

@@ -1,4 +1,7 @@
-"""The tables that span the architecture: connections, types, requirements, hosts, open points, statistics."""
+"""Tables across the architecture: connections, types, requirements, hosts, chains, topics, findings.
+
+Each function returns None where there would be no rows, because a `Table` without rows must not exist.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ Rows = tuple[tuple[Inlines, ...], ...]
 
 
 def groups(view: Index) -> Table | None:
-    """List the groups with their owners and sizes."""
+    """List the shown groups with owners, size and purpose."""
     found = view.architecture
     rows = tuple(
         (
@@ -35,7 +38,7 @@ def groups(view: Index) -> Table | None:
 
 
 def connections(view: Index, shown: Iterable[Connection], anchor: str = "table:connections") -> Table | None:
-    """List connections: who reads what from whom, as what."""
+    """List connections: input, source, type, message and number of edges."""
     found = view.architecture
     rows = tuple(
         (
@@ -63,14 +66,16 @@ def _types(view: Index, connection: Connection) -> Inlines:
 
 
 def _messages(view: Index, connection: Connection) -> Inlines:
+    """Return the messages that a connection carries."""
     found = view.architecture
     outputs = [found.outputs[output] for output in connection.outputs]
+    # `physical` is a remark in place of a message, hence not set as code.
     names = dict.fromkeys("physical" if o.physical else found.message(o) for o in outputs)
     return words.joined((Text(name, code=name != "physical"),) if name else words.UNKNOWN for name in names)
 
 
 def shown_connections(view: Index) -> list[Connection]:
-    """Give the connections of which one end is shown."""
+    """Return the connections with at least one end in scope."""
     found = view.architecture
     return [
         connection
@@ -81,7 +86,7 @@ def shown_connections(view: Index) -> list[Connection]:
 
 
 def shown_types(view: Index) -> list[Type]:
-    """Give the types that what is shown uses, or that the project declares and nobody uses."""
+    """Return the types that shown ports use or read; without a scope all of them, used or not."""
     found = view.architecture
     if view.scope.components is None:
         return list(found.types.values())
@@ -89,11 +94,12 @@ def shown_types(view: Index) -> list[Type]:
     used |= {port.type for port in found.inputs.values() if view.scope.component(port.component)}
     for connection in shown_connections(view):
         used |= {found.outputs[output].type for output in connection.outputs}
+    # In the order of the type mapping, not of the ports.
     return [mapped for mapped in found.types.values() if mapped.name in used]
 
 
 def types(view: Index) -> Table | None:
-    """List the type mapping: conceptual types and the messages that carry them."""
+    """List conceptual types with the messages that carry them."""
     rows = tuple(
         (
             words.type_link(mapped.name),
@@ -115,14 +121,14 @@ def types(view: Index) -> Table | None:
 
 
 def message_of(view: Index, mapped: Type) -> Inlines:
-    """Name the message of a type, or say that it needs none, or that it is not known yet."""
+    """Return the message of a type, or that it needs none, or that it is not known yet."""
     if mapped.message:
         return words.text(Text(mapped.message, code=True))
     return words.text(Text("none: physical", muted=True)) if mapped.name in view.physical_types else words.UNKNOWN
 
 
 def type_remarks(mapped: Type) -> str:
-    """Say what else is known of a type's mapping, in one line."""
+    """Describe the rest of a type's mapping on one line: comment, status, parts of a service or action."""
     inside = [
         f"{what}: {name}"
         for what, name in (("request", mapped.request), ("response", mapped.response), ("feedback", mapped.feedback))
@@ -134,7 +140,7 @@ def type_remarks(mapped: Type) -> str:
 
 
 def requirements(view: Index, shown: Iterable[Requirement]) -> Table | None:
-    """Trace requirements to the components that serve them."""
+    """List requirements with the components that serve them."""
     rows = tuple(
         (
             words.text(Text(requirement.id, ref=f"requirement:{requirement.id}")),
@@ -159,13 +165,13 @@ def requirements(view: Index, shown: Iterable[Requirement]) -> Table | None:
 
 
 def use_case(view: Index, name: str) -> Inlines:
-    """Name a use case as a link."""
+    """Link to a use case; plain text where it is not declared."""
     found = view.architecture.use_cases.get(name)
     return words.text(Text(name, ref=f"use_case:{name}")) if found else words.text(name)
 
 
 def shown_requirements(view: Index) -> list[Requirement]:
-    """Give the requirements that what is shown serves; all of them for the whole architecture."""
+    """Return the requirements that shown components serve; without a scope all of them."""
     found = view.architecture
     if view.scope.components is None:
         return list(found.requirements.values())
@@ -177,7 +183,7 @@ def shown_requirements(view: Index) -> list[Requirement]:
 
 
 def free_requirements(view: Index) -> Table | None:
-    """List the requirements that components state in their own words."""
+    """List the requirements that components state in their own words instead of by id."""
     rows = tuple(
         (words.text(words.component_link(component)), words.text(use.text))
         for group in view.groups()
@@ -190,7 +196,7 @@ def free_requirements(view: Index) -> Table | None:
 
 
 def open_points(findings: Iterable[Diagnostic], anchor: str = "table:open_points") -> Table | None:
-    """List findings with what to do and where."""
+    """List findings with their help and their place."""
     rows = tuple(
         (
             words.text(Text(finding.severity or "", strong=finding.severity is Severity.ERROR)),
@@ -205,11 +211,12 @@ def open_points(findings: Iterable[Diagnostic], anchor: str = "table:open_points
 
 
 def _finding(finding: Diagnostic) -> list[Inlines]:
+    """Return the message of a finding and, muted, its help."""
     return [words.spoken(said, muted=muted) for said, muted in ((finding.message, False), (finding.help, True)) if said]
 
 
 def hosts(view: Index) -> Table | None:
-    """List hosts with their containers and nodes."""
+    """List hosts with their containers and the shown nodes."""
     found = view.architecture
     rows = tuple(
         (
@@ -240,12 +247,13 @@ def links(view: Index) -> Table | None:
         for link in view.architecture.links.values()
     )
     columns = (Column("Link"), Column("Connects", 1.5), Column("Bandwidth"), Column("Latency"))
+    # Links have no page or section of their own: references to one lead to its row.
     anchors = tuple(f"link:{name}" for name in view.architecture.links)
     return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
 
 
 def chains(view: Index, shown: Iterable[Chain]) -> Table | None:
-    """List the chains of effect with their deadlines."""
+    """List chains of effect with their deadlines."""
     found = view.architecture
     listed = list(shown)
     rows = tuple(
@@ -258,12 +266,14 @@ def chains(view: Index, shown: Iterable[Chain]) -> Table | None:
         for chain in listed
     )
     columns = (Column("Chain"), Column("Through", 3), Column("Deadline", 0.7, "right"), Column("Requirements", 0.8))
+    # Rows take references only in this table. Where timing judged the chains, `make_bound_table` replaces it, and each
+    # chain has a section with this anchor; anchors must be unique in a document.
     anchors = tuple(f"chain:{chain.id}" for chain in listed)
     return Table("table:chains", "Chains of effect and their deadlines", columns, rows, anchors) if rows else None
 
 
 def waypoint(view: Index, kind: str, name: str) -> Inlines:
-    """Name one element of a chain as a link."""
+    """Link to one element of a chain: a node, a component or an output."""
     found = view.architecture
     if kind == "node":
         return (words.node_link(found.nodes[name]),)
@@ -273,12 +283,13 @@ def waypoint(view: Index, kind: str, name: str) -> Inlines:
 
 
 def topics(view: Index, shown: Iterable[Topic], anchor: str, caption: str) -> Table | None:
-    """List topics, services or actions with who writes and reads them."""
+    """List topics, services or actions with writers and readers."""
     nodes = view.architecture.nodes
     rows = tuple(
         (
             words.text(words.topic_link(topic.name)),
             words.joined((Text(message, code=True),) for message in topic.messages) or words.UNKNOWN,
+            # A node may have several endpoints on a topic; it is named once.
             words.joined((words.node_link(nodes[e]),) for e in dict.fromkeys(w.node for w in topic.writers)),
             words.joined((words.node_link(nodes[e]),) for e in dict.fromkeys(r.node for r in topic.readers)),
         )
@@ -289,7 +300,7 @@ def topics(view: Index, shown: Iterable[Topic], anchor: str, caption: str) -> Ta
 
 
 def severities(findings: Iterable[Diagnostic]) -> str:
-    """Count findings in words: `1 error, 2 warnings and 3 notes`."""
+    """Count findings in words: `1 error, 2 warnings and 3 notes`, or `nothing`."""
     counts = Counter(finding.severity for finding in findings)
     names = ((Severity.ERROR, "error"), (Severity.WARNING, "warning"), (Severity.NOTE, "note"))
     said = [words.plural(counts[severity], noun) for severity, noun in names if counts[severity]]

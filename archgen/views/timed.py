@@ -1,4 +1,4 @@
-"""What timing found of an architecture, with the look-ups that views need."""
+"""Results of the timing analysis, with the look-ups that views need."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from archgen.views import figures
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """An analysis and its chains. `origins` says where an inferred pace comes from, by activity."""
+    """A timing analysis with its chains."""
 
     analysis: Analysis
     chains: tuple[ChainResult, ...] = ()
     origins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Activities that an inferred rate comes from, by activity id; rates that were written have no entry."""
     of_node: Mapping[str, tuple[Activity, ...]] = field(default_factory=dict)
+    """Activities of a node, by node id."""
 
 
 def timed(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> Timed:
-    """Make the look-ups of timing."""
+    """Build the look-ups of a timing analysis."""
     of_node: dict[str, tuple[Activity, ...]] = {}
     for activity in analysis.system.activities.values():
         of_node[activity.node] = (*of_node.get(activity.node, ()), activity)
@@ -30,7 +32,8 @@ def timed(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> Timed:
 
 
 def timing(architecture: Architecture) -> Timed:
-    """Analyse an architecture. The engine is loaded only here: most that is shown needs no timing."""
+    """Analyse the timing of an architecture, with its chains."""
+    # Imported here because the engine takes time to load, and most commands show no timing.
     from archgen.timing.analyse import analyse
     from archgen.timing.chains import chains
 

@@ -1,4 +1,4 @@
-"""Timing in documents: tables of activities, hosts, links, topics and chains, and the sentences above them."""
+"""Timing tables in documents: activities by period, rates and responses, loads of hosts, links and topics."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ TIERS = {
     "cores": "several cores",
     "unknown": "",
 }
+"""How a response time was found, in words; see `Tier` in the timing analysis."""
 _SHORT = {**TIERS, "declared": "declared", "dedicated": "own core", "host": "any scheduler", "priorities": "priorities"}
-"""As a table of all activities says it, where each line more makes a page more."""
+"""Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
 _VERDICTS = {
     "schedulable": "in time",
     "overload": "overloaded",
@@ -38,13 +39,14 @@ _QUIET = Text("unknown", muted=True)
 
 
 def figure(text: str) -> Inlines:
-    """Write a figure; what is unknown is muted."""
+    """Return a table cell for a formatted figure; an unknown figure is muted, an empty one stays empty."""
     return (_QUIET,) if text == figures.UNKNOWN else words.text(text) if text else ()
 
 
 def steps(view: Index, timed: Timed) -> Table | None:
-    """Count the activities on each step of the period scale, and name them."""
+    """Count the shown activities on each step of the period scale, and name them."""
     shown = [each for each in timed.analysis.system.activities.values() if view.scope.node(each.node)]
+    # Every step in the order of the scale, so that the rows need no sorting; empty steps are dropped below.
     found: dict[Step, list[Inlines]] = {step: [] for step in paces.NAMES}
     for each in shown:
         found[paces.step(timed.analysis.paces.get(each.id))].append(named(timed, each.id))
@@ -58,7 +60,7 @@ def steps(view: Index, timed: Timed) -> Table | None:
 
 
 def elements(view: Index, timed: Timed) -> Table | None:
-    """List every activity: behaviour, rate, gap and response, with the source of each figure."""
+    """List every shown activity: behaviour, rate, longest gap and response, and where the figures come from."""
     rows = tuple(
         _element(timed, activity, timed.origins.get(activity.id, ()))
         for activity in timed.analysis.system.activities.values()
@@ -81,12 +83,14 @@ def elements(view: Index, timed: Timed) -> Table | None:
 
 
 def _element(timed: Timed, activity: Activity, origin: tuple[str, ...]) -> tuple[Inlines, ...]:
+    # Activities without any rate are still listed, by the behaviour that was written.
     pace = timed.analysis.paces.get(activity.id, Pace(activity.behaviour))
     response = timed.analysis.responses.get(activity.id)
     return (
         named(timed, activity.id),
         words.text(words.BEHAVIOURS[pace.behaviour]) if pace.behaviour else (_QUIET,),
         figure(_rate(pace)),
+        # What runs on demand or once has no longest gap: nothing promises a next activation.
         figure(figures.duration(pace.gap)) if pace.behaviour not in {"on_demand", "once"} else (),
         source(timed, activity, pace, origin),
         figure(figures.duration(response.worst)) if response else (_QUIET,),
@@ -95,40 +99,43 @@ def _element(timed: Timed, activity: Activity, origin: tuple[str, ...]) -> tuple
 
 
 def _rate(pace: Pace) -> str:
+    """Format a rate; empty where having none is no gap in the knowledge."""
     if pace.behaviour == "once" or (pace.behaviour == "on_demand" and pace.rate.value is None):
         return ""
     return figures.rate(pace.rate)
 
 
 def source(timed: Timed, activity: Activity, pace: Pace, origin: tuple[str, ...]) -> Inlines:
-    """Say where a pace was written, or whom it comes from."""
+    """Return where a rate was written, or the activities it is inferred from."""
     if not pace.inferred:
         at = place(activity.places.get("period") or activity.places.get("rate") or activity.at)
         return words.text("written", Text(f" {at}", muted=True)) if at else words.text("written")
     if pace.rate.value is None or not origin:
         return ()
+    # `find_rate_origins` returns one more than is named here, which is how "and others" is known.
     producers = words.joined(named(timed, name) for name in origin[:3])
     return words.text("from ", *producers, *([" and others"] if len(origin) > 3 else []))  # noqa: PLR2004
 
 
 def place(at: Span) -> str:
-    """Give file and line; empty where nothing was written."""
+    """Format file and line of a span; empty where nothing was written."""
     return f"{at.file}:{at.line}" if at.file else ""
 
 
 def named(timed: Timed, name: str) -> Inlines:
-    """Name an activity, as a link to its node."""
+    """Link an activity to its node, by the activity's id."""
     activity = timed.analysis.system.activities.get(name)
     return words.text(Text(name, ref=f"node:{activity.node}" if activity else None, code=True))
 
 
 def hosts(view: Index, timed: Timed) -> Table | None:
-    """List hosts with their load."""
+    """List hosts with their load, and the bounds that it is compared with."""
     rows = tuple(
         (
             words.text(Text(view.architecture.hosts[name].title, ref=f"host:{name}")),
             words.text(str(load.cores)),
             figure(figures.share(loads.of_cores(load.utilisation, load.cores))),
+            # Both bounds hold for a single core only.
             figure(figures.share(load.rate_monotonic_bound)) if load.cores == 1 else (),
             figure(figures.share(load.earliest_deadline_bound)) if load.cores == 1 else (),
             words.text(_VERDICTS[load.verdict]),
@@ -149,7 +156,7 @@ def hosts(view: Index, timed: Timed) -> Table | None:
 
 
 def links(view: Index, timed: Timed) -> Table | None:
-    """List links with what they carry."""
+    """List links with the traffic they carry."""
     rows = tuple(
         (
             words.text(Text(view.architecture.links[name].title, ref=f"link:{name}")),
@@ -173,7 +180,7 @@ def links(view: Index, timed: Timed) -> Table | None:
 
 
 def topics(view: Index, timed: Timed) -> Table | None:
-    """List topics with what is published on them."""
+    """List topics with their message size and traffic."""
     shown = [name for name in timed.analysis.topics if name in view.architecture.topics and _shown(view, name)]
     found = timed.analysis.topics
     rows = tuple(
@@ -195,16 +202,18 @@ def topics(view: Index, timed: Timed) -> Table | None:
 
 
 def _shown(view: Index, name: str) -> bool:
+    """Whether a shown node writes or reads a topic."""
     topic = view.architecture.topics[name]
     return any(view.scope.node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
 
 
 def tidy(table: Table) -> Table:
-    """Leave out columns in which nothing stands."""
+    """Drop the columns in which every cell is blank."""
+    # `drop_empty_columns` looks for empty tuples, but a missing figure is a run of empty text.
     rows = tuple(tuple(() if blank(cell) else cell for cell in row) for row in table.rows)
     return without_empty_columns(Table(table.anchor, table.caption, table.columns, rows))
 
 
 def blank(cell: Inlines) -> bool:
-    """Say whether a cell shows nothing."""
+    """Whether a cell shows nothing."""
     return all(not part.text for part in cell)

@@ -1,4 +1,4 @@
-"""Timing between activities, in documents: samples that are lost, beats, queues that run over; servers and their callers."""
+"""Timing between activities in documents: edges that lose samples, beat or overrun queues; servers and callers."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from archgen.views.timed import Timed
 
 
 def edges(view: Index, timed: Timed) -> Iterator[Block]:
-    """List the edges on which samples are lost or beat, the greatest loss first, and say of how many nothing is known.
+    """List the edges that lose samples or beat, the greatest loss first, and count those whose rates are unknown.
 
-    Who reads on demand wants the newest and no more: nothing is lost on the way there.
+    Edges to readers on demand are left out: they want the newest sample only, so nothing is lost on the way to them.
     """
     asks = {name for name, pace in timed.analysis.paces.items() if pace.behaviour == "on_demand"}
     every = [edge for edge in timed.analysis.edges if _shown(view, timed, edge.arc.source, edge.arc.target)]
@@ -52,17 +52,20 @@ def edges(view: Index, timed: Timed) -> Iterator[Block]:
 
 
 def _shown(view: Index, timed: Timed, *names: str) -> bool:
-    """Say whether one of some activities belongs to what is shown."""
+    """Whether any of the activities runs in a shown node."""
     activities = timed.analysis.system.activities
     return any(view.scope.node(activities[name].node) for name in names if name in activities)
 
 
 def _order(edge: EdgePace) -> tuple[object, ...]:
+    """Return the sort key of an edge: greatest loss first, then the ids, for a stable order."""
     return (-(edge.loss.value or 0), edge.arc.source, edge.arc.topic, edge.arc.target)
 
 
 def _edge(timed: Timed, edge: EdgePace) -> tuple[Inlines, ...]:
+    """Make the row of an edge; cells that would only say that all is well stay empty."""
     arc, again = edge.arc, edge.rereads.value
+    # The queue is only worth a column where more samples can arrive between two reads than it holds.
     short = arc.depth and edge.queue.value and edge.queue.value > arc.depth
     return (
         _named(timed, arc.source),
@@ -77,23 +80,25 @@ def _edge(timed: Timed, edge: EdgePace) -> tuple[Inlines, ...]:
 
 
 def _named(timed: Timed, name: str) -> Inlines:
-    """Name an activity in plain type, which is narrower than that of code: the row has eight columns."""
+    """Link an activity in plain type, which is narrower than code type: the row has eight columns."""
     return tuple(replace(part, code=False) for part in timing.named(timed, name))
 
 
 def _whole(figure: str) -> Inlines:
-    """Write a figure that is not broken from its unit: in narrow columns that costs a line in every row."""
+    """Keep a figure and its unit on one line: a break in a narrow column costs a line in every row."""
     return words.text(figure.replace(" ", "\u00a0"))
 
 
 def _upto(value: Value) -> Value:
-    """Turn a loss that rests on a bound into one: of what is sent only sometimes, at most so much is lost."""
+    """Mark a loss as an upper bound where the output is conditional."""
+    # The rate of a conditional output is itself an upper bound, so of what is really sent at most this share is lost.
+    # The word is the start of an assumption that the rate analysis writes.
     bounded = any(text.startswith("conditional") for text in value.assumptions)
     return replace(value, side="at most") if bounded else value
 
 
 def services(view: Index, timed: Timed) -> Iterator[Block]:
-    """List servers with their callers: how long these wait if all call at once, and respond where they wait for answers."""
+    """List servers with their callers: the time to answer all of them, and the callers' responses if they wait."""
     rows = tuple(
         _service(timed, server, load)
         for server, load in timed.analysis.services.items()

@@ -1,4 +1,4 @@
-"""The chapters on timing, for report and site alike: the whole, then hosts, network, and chains one by one."""
+"""The timing chapters of report and site: the architecture as a whole, hosts, network, and chains one by one."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from archgen.views.timed import Timed
 
 
 def figures(drawn: Mapping[str, Drawing], *names: str) -> tuple[Figure, ...]:
-    """Give the figures of what was drawn, in the order asked for."""
+    """Return figures for those of the named drawings that exist, in the order of the names."""
     return tuple(Figure(f"figure:{name}", name, drawn[name].title, drawn[name].alt) for name in names if name in drawn)
 
 
 def sections(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[Section, ...]:
-    """Give what stands below the summary: rates, hosts, network."""
+    """Return the sections below the summary: groups, rates, edges, services, hosts, network; no empty ones."""
     groups = figures(drawn, *(f"timing/{group}" for group in view.groups()))
     loads = figures(drawn, "load", *(f"load/{host}" for host in timed.analysis.hosts))
     found = (
@@ -36,7 +36,7 @@ def sections(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[S
 
 
 def blocks(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[Block, ...]:
-    """Give the summary with the picture of the whole."""
+    """Return the summary: verdicts, what is late, trigger rings, activities by period, and the picture of the whole."""
     table = _present(timing.steps(view, timed))
     return (
         timing_verdicts.summary(timed),
@@ -48,7 +48,7 @@ def blocks(view: Index, timed: Timed, drawn: Mapping[str, Drawing]) -> tuple[Blo
 
 
 def chain_blocks(view: Index) -> tuple[Block, ...]:
-    """Give the table of all chains, with their bounds where timing found them."""
+    """Return the table of all chains, with their bounds where the timing analysis found some."""
     table = tables.chains(view, view.architecture.chains.values())
     if view.timed is not None and view.timed.chains:
         table = timing_verdicts.chains(view, view.timed)
@@ -57,7 +57,7 @@ def chain_blocks(view: Index) -> tuple[Block, ...]:
 
 
 def chains(view: Index, drawn: Mapping[str, Drawing]) -> Iterator[Section]:
-    """Give a section for each chain that timing judged."""
+    """Yield a section for each chain that the timing analysis judged."""
     for result in view.timed.chains if view.timed else ():
         chain = view.architecture.chains.get(result.id)
         if chain is not None and view.timed is not None:
@@ -67,4 +67,5 @@ def chains(view: Index, drawn: Mapping[str, Drawing]) -> Iterator[Section]:
 
 
 def _present(*found: Block | None) -> tuple[Block, ...]:
+    """Drop the blocks that could not be made."""
     return tuple(block for block in found if block is not None)

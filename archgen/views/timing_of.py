@@ -1,4 +1,4 @@
-"""What timing says of one element: of a chain, a node, a component, a host."""
+"""What the timing analysis found about one element: a chain, a node, a component, a host or a topic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from archgen.views.timed import Timed
 
 
 def chain_blocks(view: Index, timed: Timed, result: ChainResult) -> tuple[Block, ...]:
-    """Say what one chain takes: the picture of its sum, its figures, each term with why."""
+    """Describe the timing of one chain: facts, the chart of its terms, and each term with its reason."""
     chain = view.architecture.chains[result.id]
     found = view.architecture
     facts: list[tuple[str, Inlines]] = [
@@ -47,12 +47,16 @@ def chain_blocks(view: Index, timed: Timed, result: ChainResult) -> tuple[Block,
 
 
 def _assumed(timed: Timed, result: ChainResult) -> Iterator[str]:
-    """Give what a bound rests on, in words; what the tiers of the responses say with names is not said again without."""
+    """Yield the assumptions of a bound in words.
+
+    Tiers of responses name their activities, so the analysis' own words for the same assumption are left out.
+    """
     tiers: dict[Tier, list[str]] = {}
     for term in result.terms:
         response = timed.analysis.responses.get(term.activity)
         if response and response.tier in {"declared", "dedicated"}:
             tiers.setdefault(response.tier, []).append(term.activity)
+    # These texts must equal the assumptions that the timing analysis writes, or both versions appear in the report.
     said = {f"the response of {name} is as declared" for name in tiers.get("declared", ())}
     said |= {"assuming a dedicated core"} if "dedicated" in tiers else set()
     yield from (word for word in result.bound.assumptions if word not in said)
@@ -76,19 +80,22 @@ def _part(value: Value) -> Inlines:
 
 
 def node_facts(view: Index, node: Node) -> Iterator[tuple[str, Inlines]]:
-    """Give what timing found of a node: how often it runs, and within what it responds."""
+    """Yield how often each activity of a node runs, and within what time it responds."""
     timed = view.timed
     if timed is None:
         return
     mine = timed.of_node.get(node.id, ())
     for activity in mine:
+        # Only a node with several activities needs to tell them apart.
         suffix = f" of {activity.id.rsplit('.', 1)[-1]}" if len(mine) > 1 else ""
         yield from _facts(timed, activity, timed.origins.get(activity.id, ()), suffix)
 
 
 def _facts(timed: Timed, activity: Activity, origin: tuple[str, ...], suffix: str) -> Iterator[tuple[str, Inlines]]:
+    """Yield rate and response of one activity, as far as they are known."""
     pace, response = timed.analysis.paces.get(activity.id), timed.analysis.responses.get(activity.id)
     if pace and (said := paces.said(pace)) != "?":
+        # A written rate needs no source here: the fact `Timing` beside it says what was written.
         source = timing.source(timed, activity, pace, origin) if pace.inferred else ()
         yield f"Rate{suffix}", (*words.text(said), *((Text(", "), *source) if source else ()))
     if response and response.worst.value is not None:
@@ -97,12 +104,14 @@ def _facts(timed: Timed, activity: Activity, origin: tuple[str, ...], suffix: st
 
 
 def component_fact(view: Index, nodes: Iterable[Node], component: str) -> Inlines:
-    """Say how often what implements a component runs, and where that comes from: `10 Hz, from scanner`."""
+    """Describe how often the activities of a component run: `10 Hz, from scanner`."""
     timed = view.timed
     if timed is None:
         return ()
     name = component.rsplit(".", 1)[-1]
     mine = [activity for node in nodes for activity in timed.of_node.get(node.id, ())]
+    # A node may implement several components, and an activity names its component by full id, by short name, or not at
+    # all.
     found = [activity for activity in mine if activity.component in {None, name, component}]
     lines = []
     for activity in found:
@@ -113,7 +122,7 @@ def component_fact(view: Index, nodes: Iterable[Node], component: str) -> Inline
 
 
 def host_blocks(view: Index, host: str) -> tuple[Block, ...]:
-    """Say how busy a host is: its load activity by activity."""
+    """Return the chart of a host's load, activity by activity; empty where nothing runs on the host."""
     timed = view.timed
     load = timed.analysis.hosts.get(host) if timed else None
     if load is None or not load.parts:
@@ -123,7 +132,7 @@ def host_blocks(view: Index, host: str) -> tuple[Block, ...]:
 
 
 def topic_facts(view: Index, name: str) -> list[tuple[str, Inlines]]:
-    """Give what a topic carries each second."""
+    """Return the traffic of a topic in bytes per second; empty where it is not known."""
     load = view.timed.analysis.topics.get(name) if view.timed else None
     if load is None or load.published.value is None:
         return []

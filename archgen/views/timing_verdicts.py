@@ -1,4 +1,4 @@
-"""How an architecture stands in time: in a few sentences, what is late and why, and all chains in a table."""
+"""Verdicts on timing: how an architecture does in a few sentences, what is late and why, and a table of all chains."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from archgen.views.timed import Timed
 
 
 def summary(timed: Timed) -> Paragraph:
-    """Say in a few sentences how the architecture stands."""
+    """Summarize in a few sentences how many rates are known and how many chains meet their deadlines."""
     found = timed.analysis.paces.values()
+    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
     known = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in found)
     said = [f"Of {words.plural(len(found), 'activity')}, {known} have a known rate or run on demand or once."]
     if timed.chains:
@@ -28,14 +29,15 @@ def summary(timed: Timed) -> Paragraph:
 
 
 def _free(result: ChainResult) -> bool:
-    """Say whether a chain has a bound, and only no deadline to be held against."""
+    """Whether a chain is open only because it has no deadline."""
     return result.deadline is None and result.bound.complete and result.bound.value is not None
 
 
 def late(view: Index, timed: Timed) -> Iterator[Block]:
-    """List what is late, what may be, and why: chains that miss their deadline or have no bound, overloaded hosts."""
+    """List chains that miss their deadline or have no bound, then overloaded hosts, with the reasons."""
     chains = [
         (Text(view.architecture.chains[result.id].title, ref=f"chain:{result.id}"), charts.verdict(result, timed))
+        # Certain misses come before what may be late.
         for verdict in ("missed", "open")
         for result in timed.chains
         if result.verdict == verdict and not _free(result) and result.id in view.architecture.chains
@@ -50,11 +52,12 @@ def late(view: Index, timed: Timed) -> Iterator[Block]:
 
 
 def troubles(timed: Timed) -> Iterator[Block]:
-    """List the rings of triggers that never end or never start, and what has no fixed point."""
+    """List rings of triggers that never end or never start, and activities for which no bound was found."""
     found = timed.analysis
     kinds = (
         ("An event that enters circulates for ever among", found.endless),
         ("Each waits for the other, and none ever starts:", found.deadlocked),
+        # Single activities, wrapped so that they are printed like the rings.
         ("No bound was found, since each step made the next one larger:", tuple((name,) for name in found.diverged)),
     )
     for lead, rings in kinds:
@@ -64,7 +67,7 @@ def troubles(timed: Timed) -> Iterator[Block]:
 
 
 def chains(view: Index, timed: Timed) -> Table | None:
-    """List chains with bound, best case and verdict."""
+    """List chains with bound, best case, largest step and verdict."""
     rows = tuple(
         (
             words.text(Text(view.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
@@ -87,14 +90,16 @@ def chains(view: Index, timed: Timed) -> Table | None:
         Column("Verdict", 0.7),
         Column("Missing", 1.6),
     )
+    # The same anchor as `make_chain_table`, which this table replaces; only one of them is ever in a document.
     return timing.tidy(Table("table:chains", "Chains of effect: bounds and deadlines", columns, rows)) if rows else None
 
 
 def _largest(timed: Timed, result: ChainResult) -> Inlines:
-    """Name the step that takes the most of a chain's bound: what to look at first."""
+    """Name the step with the largest part of a chain's bound: the first one to look at."""
     sums = [(charts.known(term), term.activity) for term in result.terms]
     most = max((value for value, _ in sums), default=Fraction(0))
     if not most:
         return ()
+    # Of equal steps the first one in the chain.
     name = next(name for value, name in sums if value == most)
     return words.text(*timing.named(timed, name), f" {figures.duration(Value(most))}")

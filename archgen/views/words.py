@@ -1,4 +1,4 @@
-"""The words of documents: links to elements, and how values are written out."""
+"""Runs of inline text for documents: links to elements, and values written out in words."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ UNKNOWN: Inlines = (Text("not known yet", muted=True),)
 
 
 def text(*parts: str | Text) -> Inlines:
-    """Make a run of text of strings and ready parts."""
+    """Turn strings and ready `Text` runs into one sequence of inlines."""
     return tuple(Text(part) if isinstance(part, str) else part for part in parts)
 
 
 def spoken(message: str, *, muted: bool = False) -> Inlines:
-    """Write what a finding says: what it names in backticks is code."""
+    """Turn a finding's message into inlines; what it quotes in backticks becomes code."""
     parts = _NAMED.split(message)
+    # `split` with one capturing group alternates: even positions are plain text, odd ones the quoted names.
     return tuple(Text(part, code=place % 2 == 1, muted=muted) for place, part in enumerate(parts) if part)
 
 
@@ -40,64 +41,67 @@ _NAMED = re.compile(r"`([^`]+)`")
 
 
 def maybe(value: str | None) -> Inlines:
-    """Write a value, or that it is not known yet."""
+    """Return the value as inlines, or "not known yet"."""
     return (Text(value),) if value else UNKNOWN
 
 
 def joined(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
-    """Put a separator between runs of text."""
+    """Join inlines with a separator, as `str.join` does."""
     runs = list(items)
     return tuple(chain.from_iterable((Text(separator), *run) if place else run for place, run in enumerate(runs)))
 
 
 def lines(items: Iterable[Inlines]) -> Inlines:
-    """Put each run of text on a line of its own."""
+    """Put each run of inlines on a line of its own."""
     result: list[Text] = []
     for place, run in enumerate(items):
+        # A break belongs to the run that follows it, so each item needs at least one run of text.
         first, *rest = run
         result += [_broken(first) if place else first, *rest]
     return tuple(result)
 
 
 def _broken(part: Text) -> Text:
+    """Return the run with a line break before it."""
     return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group: str) -> Text:
-    """Name a group by its title, as a link."""
+    """Link to a group, by its title."""
     return Text(architecture.groups[group].title, ref=f"group:{group}")
 
 
 def component_link(component: Component) -> Text:
-    """Name a component by its title, as a link."""
+    """Link to a component, by its title."""
     return Text(component.title, ref=f"component:{component.id}")
 
 
 def node_link(node: Node) -> Text:
-    """Name a node by its id, as a link."""
+    """Link to a node, by its id."""
     return Text(node.id, ref=f"node:{node.id}", code=True)
 
 
 def type_link(name: str | None) -> Inlines:
-    """Name a conceptual type, as a link."""
+    """Link to a conceptual type; "not known yet" for None."""
     return (Text(name, ref=f"type:{name}"),) if name else UNKNOWN
 
 
 def topic_link(name: str) -> Text:
-    """Name a topic, service or action, as a link."""
+    """Link to a topic, service or action."""
     return Text(name, ref=f"topic:{name}", code=True)
 
 
 def requirement_link(architecture: Architecture, requirement: str) -> Inlines:
-    """Name a requirement by its id, as a link, with its title."""
+    """Link to a requirement by its id, followed by its title."""
     found = architecture.requirements.get(requirement)
     if found is None:
         return (Text(requirement), Text(" (not declared)", muted=True))
+    # Callers take `[:1]` for the link without the title, so the link must stay the first run.
     return (Text(requirement, ref=f"requirement:{requirement}"), Text(f" {found.title}"))
 
 
 def partner_link(architecture: Architecture, partner: str | None) -> Inlines:
-    """Name a partner by its title, as a link."""
+    """Link to a partner, by its title."""
     if partner is None:
         return UNKNOWN
     found = architecture.partners.get(partner)
@@ -105,18 +109,18 @@ def partner_link(architecture: Architecture, partner: str | None) -> Inlines:
 
 
 def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
-    """Name who answers for an element, as links; that nobody is known to do is said."""
+    """Link to the owners of an element; "not known yet" where it has none."""
     return joined(partner_link(architecture, owner) for owner in owners) or UNKNOWN
 
 
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
-    """Name a port by its component's title and its own name."""
+    """Link to a port's component, followed by the port's own name: ports have no page of their own."""
     component = architecture.components[port.component]
     return (component_link(component), Text(" · "), Text(port.name, code=True))
 
 
 def source_words(architecture: Architecture, connection: Connection) -> Inlines:
-    """Name where a connection comes from: an output, all of a component, or all of a group."""
+    """Describe what a connection reads: one output, all outputs of a component, or all of a group."""
     if connection.kind == "output":
         return port_link(architecture, architecture.outputs[connection.target])
     if connection.kind == "component":
@@ -125,15 +129,16 @@ def source_words(architecture: Architecture, connection: Connection) -> Inlines:
 
 
 def urls(items: Iterable[tuple[str, str]]) -> Inlines:
-    """Write addresses as links under their names; what is no web address stays text."""
+    """Write (name, address) pairs as links."""
     return joined(
+        # Any other scheme (`javascript:`, `file:`) stays text that nobody can click.
         (Text(name, url=address) if address.startswith(("https://", "http://")) else Text(f"{name}: {address}"),)
         for name, address in items
     )
 
 
 def qos_words(qos: Qos) -> str:
-    """Say a quality of service in words: the profile's name, then what was changed, or `default`."""
+    """Describe a quality of service: the profile's name, then its settings."""
     parts = [qos.reliability.replace("_", " ")]
     if qos.durability == "transient_local":
         parts.append("transient local (latched)")
@@ -147,12 +152,12 @@ def qos_words(qos: Qos) -> str:
 
 
 def qos_cell(qos: Qos) -> Inlines:
-    """Say a quality of service for a table; the default that nobody wrote is muted."""
+    """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
     return (Text(qos_words(qos)),) if qos.written else (Text("default", muted=True),)
 
 
 def timing_sentence(timing: Timing | None) -> str:
-    """Write out what a timing says in one line; empty where nobody wrote anything."""
+    """Write everything a `timing` section says on one line; empty for None."""
     if timing is None:
         return ""
     span = f"{timing.bcet} to {timing.wcet}" if timing.bcet and timing.wcet else ""
@@ -177,10 +182,12 @@ def timing_sentence(timing: Timing | None) -> str:
 
 
 def _calls(timing: Timing) -> list[str]:
+    """Format `calls` as "port count"; ports by the last part of their id."""
     return [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
 
 
 def _trigger(timing: Timing) -> str:
+    """Describe which inputs trigger an activation."""
     if timing.trigger is None:
         return ""
     if timing.trigger.inputs is None:
@@ -190,6 +197,7 @@ def _trigger(timing: Timing) -> str:
 
 
 def _outputs(timing: Timing) -> list[str]:
+    """Format the outputs that are not published at every activation."""
     return [
         f"{name.rsplit('.', 1)[-1]}" + (f" (at least each {output.max_gap})" if output.max_gap else "")
         for name, output in timing.outputs.items()
@@ -197,7 +205,7 @@ def _outputs(timing: Timing) -> list[str]:
 
 
 def short_timing(timing: Timing | None) -> str:
-    """Say a timing in a few words for a table: `10 Hz, 80 ms`."""
+    """Write rate or period and worst-case execution time for a table cell: `10 Hz, up to 80 ms`."""
     if timing is None:
         return ""
     rate = timing.rate or timing.period
@@ -207,7 +215,7 @@ def short_timing(timing: Timing | None) -> str:
 
 
 def plural(count: int, noun: str) -> str:
-    """Count something: `1 node`, `2 nodes`."""
+    """Count a noun with a regular plural: `1 node`, `2 nodes`, `3 activities`."""
     if count == 1:
         return f"1 {noun}"
     return f"{count} {noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{count} {noun}s"

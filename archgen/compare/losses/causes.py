@@ -1,4 +1,4 @@
-"""Which changes made a figure worse: those of the activities that it is made of, or of what lies before them."""
+"""Find the changes that made a figure worse: those of the activities that it consists of, or of what precedes them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from archgen.timing.bounds import share
 from archgen.timing.system import Activity
 
 Part = tuple[str, str]
-"""An activity in both versions: the common name of its component, and that of its node (empty for a planned one)."""
+"""An activity in both versions: the common ids of its component and of its node ("" for a planned one)."""
 _LESS_IS_WORSE = frozenset({"cores", "threads", "bandwidth", "timing.every", "timing.throttle", "deadline"})
 _MORE_IS_WORSE = frozenset(
     {"timing.wcet", "timing.bcet", "timing.response", "timing.jitter", "latency.best", "latency.worst", "size"}
@@ -30,13 +30,13 @@ _EITHER = frozenset({"host", "container", "implements", "kind", "qos", "message"
 
 @dataclass
 class Causes:
-    """Both versions with their analyses. Activities are named as in the second version."""
+    """Both versions with their timing analyses. Activities have the ids of the second version."""
 
     both: Both
     timed: Timed
 
     def part(self, activity: Activity) -> Part:
-        """Give the common name of an activity of the second version."""
+        """Return the common key of an activity of the second version."""
         return _part(activity, self.both.after, Names())
 
     @property
@@ -45,32 +45,32 @@ class Causes:
 
     @cached_property
     def before(self) -> Mapping[Part, str]:
-        """Find the activities of the first version."""
+        """Return the activities of the first version by their common keys."""
         found = self.timed.before.system.activities
         return {_part(each, self.both.before, self.both.names): name for name, each in found.items()}
 
     def was(self, name: str) -> str | None:
-        """Give the id that an activity of the second version had in the first one."""
+        """Return the id that an activity of the second version had in the first one."""
         return self.before.get(self.part(self.timed.after.system.activities[name]))
 
     def owner(self, name: str) -> str | None:
-        """Name the partner to whom an activity of the second version belonged before, or belongs if it is new."""
+        """Return the partner who owned an activity of the second version before, or owns it if it is new."""
         component, node = self.part(self.timed.after.system.activities[name])
         return self.both.owner("component", component) or self.both.owner("node", node)
 
     def owned(self, names: Iterable[str]) -> dict[str, list[str]]:
-        """Give what each partner has among some activities of the second version."""
+        """Return the given activities of the second version by owner."""
         return _grouped((self.owner(name), name) for name in sorted(set(names)))
 
     def owned_before(self, names: Iterable[str]) -> dict[str, list[str]]:
-        """Give what each partner had among some activities of the first version."""
+        """Return the given activities of the first version by owner."""
         system = self.timed.before.system
         parts = {name: _part(system.activities[name], self.both.before, self.both.names) for name in names}
         owner = self.both.owner
         return _grouped((owner("component", c) or owner("node", n), name) for name, (c, n) in sorted(parts.items()))
 
     def cut(self, names: Sequence[str]) -> tuple[list[int], Sequence[str]]:
-        """Find what cut a way of the first version, and the activities behind the first cut: nothing arrives there."""
+        """Return the indices of changes that cut a path of the first version, and the activities from there on."""
         found, behind = list[int](), len(names)
         for number, name in enumerate(names):
             places = list(self._cutting(self.timed.before.system.activities[name]))
@@ -79,13 +79,13 @@ class Causes:
         return list(dict.fromkeys(found or [*self._touching(names)][:1])), names[behind:] if found else names
 
     def _touching(self, names: Iterable[str]) -> Iterator[int]:
-        """Find what changed of the components and nodes behind some activities of the first version."""
+        """Yield the indices of changes of the components and nodes behind activities of the first version."""
         for activity in map(self.timed.before.system.activities.__getitem__, names):
             component, node = _part(activity, self.both.before, self.both.names)
             yield from self._worse([("component", component), ("node", node)])
 
     def _cutting(self, activity: Activity) -> Iterator[int]:
-        """Find what took away an activity of the first version, or what it read."""
+        """Yield the indices of changes that removed an activity of the first version, or what it read."""
         component, node = _part(activity, self.both.before, self.both.names)
         yield from self.both.of_kind("component", component, "removed")
         yield from self.both.of_kind("node", node, "removed")
@@ -98,7 +98,7 @@ class Causes:
                 yield from (because(self.both, output) if wanted else []) or own
 
     def heavier(self, names: Iterable[str]) -> list[str]:
-        """Give those activities that take more of their core than before."""
+        """Return those activities that take more of their core than before."""
         found = []
         for name in names:
             was = self.was(name)
@@ -108,15 +108,17 @@ class Causes:
         return found
 
     def of(self, worse: Sequence[str]) -> list[int]:
-        """Find what made some activities worse: their own figures, else those of what shares their host or feeds them.
+        """Return the indices of changes that made activities worse: of their own figures, else of what shares their
+        host or feeds them.
 
-        Only where no figure explains it, it is what they read.
+        Only if no figure explains it, of what they read.
         """
         return self._followed(worse, self._figures) or self._followed(worse, self._reading)
 
     def _followed(self, worse: Iterable[str], find: Callable[[str], Iterable[int]]) -> list[int]:
         found: dict[int, None] = {}
         seen, waiting = set[str](), list(worse)
+        # Breadth first, and not beyond an activity whose own figures explain it: the nearest cause is the cause.
         while waiting:
             name = waiting.pop(0)
             if name in seen:
@@ -129,17 +131,19 @@ class Causes:
         return sorted(found)
 
     def any(self) -> list[int]:
-        """Give all changes that can make a figure worse. The way of another chain makes none."""
+        """Return the indices of all changes that can make a figure worse. The path of another chain does not."""
         every = ((place, change) for place, change in enumerate(self.both.changes) if change.sort != "chain")
         return [place for place, change in every if any(self.worse(one) for one in self.both.all_of(change))]
 
     def worse(self, change: Change) -> bool:
-        """Say whether a change can make a figure worse; better figures are nobody's fault."""
+        """Whether a change can make a figure worse. A better figure is never blamed."""
         if not matters(change):
             return False
         key = change.key or ""
         if change.kind != "changed" or not key or key in _EITHER:
             return True
+        # Bounds are sums, so each figure makes them worse in one direction only (docs/decisions/0007-breaking-
+        # changes.md).
         less = key in _LESS_IS_WORSE
         if less or key in _MORE_IS_WORSE:
             was, now = (_number(e.get((change.sort, change.element)), key) for e in self._listed)
@@ -147,9 +151,10 @@ class Causes:
         return key.startswith("timing.")
 
     def _figures(self, name: str) -> Iterator[int]:
-        """Find the changes of an activity's figures, or of where it runs. A node that came with its component says nothing more."""
+        """Yield the indices of changes of an activity's figures or place."""
         activity = self.timed.after.system.activities[name]
         component, node = self.part(activity)
+        # A node that was added with its component explains nothing more.
         new = self.both.of_kind("component", component, "added")
         names = [("component", component), ("host", activity.host or ""), ("container", activity.container or "")]
         names += [] if new else [("node", node), ("node", activity.node)]
@@ -157,7 +162,7 @@ class Causes:
         yield from self._worse(names)
 
     def _reading(self, name: str) -> Iterator[int]:
-        """Find the changes of what an activity reads and writes."""
+        """Yield the indices of changes of what an activity reads and writes."""
         activity = self.timed.after.system.activities[name]
         held = self.both.after.components.get(self.part(activity)[0])
         inputs = [port.id for port in held.inputs.values()] if held else []
@@ -169,7 +174,7 @@ class Causes:
             yield from (place for place, change in self.both.found(sort, one) if self.worse(change))
 
     def _behind(self, name: str) -> Iterator[str]:
-        """Give what feeds an activity otherwise than before, and what takes more of its host."""
+        """Yield what feeds an activity at another rate than before, and what takes more of its host."""
         system = self.timed.after.system
         for arc in system.into.get(name, ()):
             was = self.was(arc.source)

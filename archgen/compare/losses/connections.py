@@ -1,4 +1,4 @@
-"""Connections that a partner loses because the output went, or is no longer found under the name that he reads."""
+"""Connections that a partner loses because the output was removed or has another id than the one it reads."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from archgen.compare.losses.both import Both, Loss, several
 
 
 def connections(both: Both) -> Iterator[Loss]:
-    """Find outputs that went while a partner read them. Who reads something else by his own choice loses nothing."""
+    """Find outputs that were removed or renamed while a partner read them. A reader that turns away by itself loses
+    nothing.
+    """
     for output, readers in sorted(both.told.old.readers.items()):
         now = both.told.new.readers.get(output, frozenset())
         if readers <= now or ("output", output) not in both.told.before or both.told.unknown(("output", output)):
@@ -27,7 +29,7 @@ def connections(both: Both) -> Iterator[Loss]:
 
 
 def because(both: Both, output: str) -> list[int]:
-    """Find the changes that took an output away, or that gave it another name."""
+    """Return the indices of the changes that removed an output, or renamed it."""
     if ("output", output) not in both.told.after:
         return both.of_kind("output", output, "removed")
     component = output.rpartition(".")[0]

@@ -14,7 +14,7 @@ _INSIDE = ("request", "response", "feedback")
 
 
 def retyped(both: Both) -> Iterator[Loss]:
-    """Find outputs of another conceptual type or message that another partner reads."""
+    """Find outputs that another partner reads and that have another conceptual type or message."""
     old, new = _messages(both.before, both.names), _messages(both.after, Names())
     for output, readers in sorted(both.told.old.readers.items()):
         pair = (both.told.before.get(("output", output)), both.told.after.get(("output", output)))
@@ -34,7 +34,7 @@ def retyped(both: Both) -> Iterator[Loss]:
 def _change(
     both: Both, output: str, types: tuple[object, object], messages: tuple[frozenset[str], frozenset[str]]
 ) -> tuple[list[int], str]:
-    """Give the changes that retyped an output, and what it gives now instead of what; nothing where it is the same."""
+    """Return the indices of changes that retyped an output, and what it gives now; ([], "") if nothing changed."""
     (one, other), (was, now) = types, messages
     if one is not None and one != other:
         same = f" (the message stays {several(now)})" if was and was == now else ""
@@ -49,7 +49,7 @@ def _change(
 
 
 def _messages(found: Architecture, names: Names) -> Mapping[str, frozenset[str]]:
-    """Give the messages of each output: of its type, or of the nodes that write it."""
+    """Return the messages of each output: those of the nodes that write it, else that of its type."""
     written: dict[str, set[str]] = defaultdict(set)
     for end in found.endpoints:
         if end.use in {"publishes", "serves"} and end.port and end.message:
@@ -64,7 +64,7 @@ def _messages(found: Architecture, names: Names) -> Mapping[str, frozenset[str]]
 
 
 def redefined(both: Both) -> Iterator[Loss]:
-    """Find message definitions and what types hold inside that changed, and who is built against them."""
+    """Find changed message definitions and inner types, and the partners that are built against them."""
     users = _users(both)
     for place, change in enumerate(both.changes):
         if change.kind not in {"changed", "removed"}:
@@ -84,7 +84,7 @@ def redefined(both: Both) -> Iterator[Loss]:
 
 
 def _users(both: Both) -> Mapping[tuple[str, str], list[tuple[bool, str]]]:
-    """Give whether it is written and by which partner, for each message and type of the first version that still serves."""
+    """Return for each message and type of the first version its users: whether they write it, and their partner."""
     found: dict[tuple[str, str], list[tuple[bool, str]]] = defaultdict(list)
     for end in both.before.endpoints:
         node = both.before.nodes[end.node]
@@ -101,14 +101,14 @@ def _users(both: Both) -> Mapping[tuple[str, str], list[tuple[bool, str]]]:
 
 
 def _others(users: Iterable[tuple[bool, str]]) -> frozenset[str]:
-    """Name who is broken: a definition belongs to the one partner who alone writes what it defines, else to nobody."""
+    """Return the partners who are broken: all users but the one who alone writes what is defined, if there is one."""
     every = list(users)
     writers = {partner for writes, partner in every if writes}
     return frozenset(partner for _, partner in every) - (writers if len(writers) == 1 else frozenset())
 
 
 def _holding(both: Both, name: str) -> list[str]:
-    """Name a message of the second version and all in whose fields it stands, at any depth."""
+    """Return a message of the second version and all that contain it, at any depth."""
     packages = both.after.interfaces.project_packages
     own = [n for n in both.after.interfaces.names if n.partition("/")[0] in packages]
     held: dict[str, list[str]] = defaultdict(list)
@@ -118,6 +118,7 @@ def _holding(both: Both, name: str) -> list[str]:
             for field in part:
                 held[field.type].append(other)
     found = {name: None}
+    # The list grows while it is iterated: a breadth-first search.
     for one in (waiting := [name]):
         for other in held.get(one, ()):
             if other not in found:
@@ -127,7 +128,7 @@ def _holding(both: Both, name: str) -> list[str]:
 
 
 def _built(both: Both, name: str, partner: str) -> str:
-    """Say what is different to whoever was built against a message definition."""
+    """Describe what is different for a partner that was built against a message definition."""
     old = both.before.interfaces.definitions.get(both.names.back.get("message", {}).get(name, name))
     new = both.after.interfaces.definitions.get(name)
     short = tick(name)
@@ -138,12 +139,14 @@ def _built(both: Both, name: str, partner: str) -> str:
     words += [f"changes the type of {several(other)}"] if other else []
     words += [f"adds {several(added)}"] if added else []
     what = " and ".join(words) or "puts fields in another order"
+    # The wire format of ROS has no optional fields; ROS 1 compares checksums and ROS 2 type hashes
+    # (docs/decisions/0007-breaking-changes.md).
     only = "even a field more makes another message to ROS: " if added and not (removed or other) else ""
     return f"{what} in {short}, which {partner} uses; {only}what was built before cannot talk to what is built after"
 
 
 def _fields(old: Interface, new: Interface) -> tuple[set[str], set[str], set[str]]:
-    """Give the fields that went, came, and changed."""
+    """Return the names of the removed, added and changed fields."""
     one = {(n, f.name): f for n, part in enumerate(old.parts) for f in part}
     two = {(n, f.name): f for n, part in enumerate(new.parts) for f in part}
     changed = {name for (n, name), f in one.items() if (n, name) in two and f != two[n, name]}

@@ -16,7 +16,7 @@ from archgen.timing.wording import share
 
 
 def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
-    """Find cores that can no longer do what they could, and who has something running there, then and now."""
+    """Find cores that are overloaded now and were not before, and whose activities run there in both versions."""
     before, after = causes.timed.before, causes.timed.after
     if not any(map(full, after.hosts.values())):
         return
@@ -36,7 +36,7 @@ def overloaded(both: Both, causes: Causes) -> Iterator[Loss]:
 
 
 def _places(found: Analysis, names: Names) -> Iterator[tuple[tuple[str, str], Resource, Fraction]]:
-    """Give the cores that some activities share, by host and the rest of their name, and what is asked of them."""
+    """Yield the cores that some activities share, by host and rest of their id, with their load in cores."""
     for resource in resources(found.system):
         if resource.host is None:  # threads of a container, each with a core that nobody named
             continue
@@ -46,7 +46,7 @@ def _places(found: Analysis, names: Names) -> Iterator[tuple[tuple[str, str], Re
 
 
 def saturated(both: Both, causes: Causes) -> Iterator[Loss]:
-    """Find links that can no longer carry what they could, and who has sent or received something over them."""
+    """Find links that are saturated now and were not before, and who sent or received something over them."""
     for name, load in causes.timed.after.links.items():
         was = causes.timed.before.links.get(both.names.back.get("link", {}).get(name, name))
         if was is None or full(was) or not full(load):
@@ -67,7 +67,7 @@ def _grew(one: Value, other: Value) -> bool:
 
 
 def of_link(both: Both, link: str, topics: Iterable[str], causes: Causes) -> Iterator[int]:
-    """Find the changes of a link, and of the types and messages that are sent over it."""
+    """Yield the indices of changes of a link, and of the types and messages that are sent over it."""
     names = [("link", link)]
     for found in filter(None, map(both.after.topics.get, topics)):
         names += [("type", name) for name in found.types]

@@ -14,11 +14,12 @@ from archgen.timing.wording import duration
 
 
 def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[Loss]:
-    """Find chains that met their deadline and may not any more, or that are later than they were already."""
+    """Find chains that met their deadline and may no longer do so, or that were late and are later now."""
     for each in chains:
         old, new = each.before, each.after
         if old is None or new is None or new.deadline is None or not (said := _said(old, new)):
             continue
+        # A bound without terms means that the chain is cut: there is no sum to compare, only what took its steps away.
         if new.terms:
             worse = _worse(causes, old.terms, new.terms)
             places = causes.of(worse) + _on_links(both, worse, causes)
@@ -33,7 +34,7 @@ def late(both: Both, chains: Sequence[ChainChange], causes: Causes) -> Iterator[
 
 
 def _said(old: ChainResult, new: ChainResult) -> str:
-    """Say how much worse a chain is; nothing where it is no worse than it was."""
+    """Describe how much worse a chain is; empty if it is no worse than before."""
     limit, name = f"its deadline of {_time(new.deadline)}", f"the chain `{new.id}`"
     if old.verdict == "met" and new.verdict == "missed":
         grown = f"{_time(old.bound)} → {_time(new.bound)}" if old.bound != new.bound else f"it takes {_time(new.bound)}"
@@ -54,11 +55,12 @@ def _time(value: Value | None) -> str:
 
 
 def _worse(causes: Causes, old: Iterable[Term], new: Iterable[Term]) -> list[str]:
-    """Name the activities of the terms that grew."""
+    """Return the activities whose terms grew."""
     before = {term.activity: term for term in old}
     found = []
     for term in new:
         was = before.get(causes.was(term.activity) or "")
+        # The three summands of a `ChainResult` term.
         pairs = ((getattr(was, key), getattr(term, key)) for key in ("sampling", "response", "link"))
         if was is None or any(_grew(one, other) for one, other in pairs):
             found.append(term.activity)
@@ -72,7 +74,7 @@ def _grew(one: Value, other: Value) -> bool:
 
 
 def _on_links(both: Both, worse: Iterable[str], causes: Causes) -> list[int]:
-    """Find the changes of links, and of what is sent, before the activities whose terms grew."""
+    """Return the indices of changes of links, and of what is sent, in front of the activities whose terms grew."""
     found = dict[int, None]()
     for name in worse:
         for arc in causes.timed.after.system.into.get(name, ()):

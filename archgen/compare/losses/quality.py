@@ -1,6 +1,6 @@
-"""Publishers that offer less than another partner's subscriber asks for.
+"""Publishers that offer less than another partner's subscriber requests.
 
-Where only the subscriber asks for more, it is its own partner who cuts himself off: nobody else loses anything by it.
+If the subscriber alone requests more, its own partner cuts it off: nobody else loses anything.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ from archgen.model.distro import is_ros_1
 from archgen.model.node import Endpoint, Topic
 
 End = tuple[str, str, str]
-"""A written node, its port (a name for internal ones) and the topic, by common names."""
+"""A written node, its port (a topic's name for internal ones) and its use, by common ids."""
 
 
 def weaker(both: Both) -> Iterator[Loss]:
-    """Find the pairs of publisher and subscriber that no longer meet, because of what is offered."""
+    """Find pairs of publisher and subscriber that no longer match because of what is offered."""
     if is_ros_1(both.after.distro):
         return
     old: Mapping[End, list[Endpoint]] | None = None
     for topic in both.after.topics.values():
         for writer, reader in _unmet(both.after, topic):
+            # Built only when the first unmatched pair appears; most comparisons have none.
             old = _all(both.before, both.names) if old is None else old
             yield from _lost(both, topic.name, (writer, reader), old)
 
@@ -59,6 +60,7 @@ def _lost(both: Both, topic: str, pair: tuple[Endpoint, Endpoint], old: Mapping[
     met = [w for w in writers for r in readers if w.name == r.name and not _short(w, r)]
     if not met or (reader.port and not both.needs(reader.port)):
         return
+    # The new offer against the old request: what clashes here is the publisher's doing.
     fallen = next((found for r in readers if (found := _short(writer, r))), ())
     if not fallen:
         return

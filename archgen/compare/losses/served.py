@@ -1,4 +1,4 @@
-"""Requirements that nothing serves any more."""
+"""Requirements that no component serves any more."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from archgen.compare.phrases import listed
 def unserved(both: Both) -> Iterator[Loss]:
     """Find requirements that lost their last component.
 
-    Broken are the other partners who serve the same use cases, since these cannot be reached any more; where there are
+    Broken are the other partners who serve the same use cases, since these can no longer be achieved; if there are
     none, all other partners: the requirement is what all of them promised.
     """
     before, after = both.told.serving
@@ -30,7 +30,7 @@ def unserved(both: Both) -> Iterator[Loss]:
 
 
 def _because(both: Both, requirement: str, components: frozenset[str]) -> list[int]:
-    """Find the changes that took the last components away."""
+    """Return the indices of the changes that took the last components away."""
     found: list[int] = []
     for name in sorted(components):
         if both.told.unknown(("component", name)):
@@ -47,7 +47,7 @@ def _drops(both: Both, place: int, requirement: str) -> bool:
 
 
 def _serving(both: Both, cases: frozenset[str], after: Mapping[str, frozenset[str]]) -> frozenset[str]:
-    """Name the partners whose components serve requirements of some of the use cases."""
+    """Return the partners whose components serve requirements of some of the use cases."""
     found = set[str]()
     for requirement, components in after.items():
         other = both.told.after.get(("requirement", requirement))

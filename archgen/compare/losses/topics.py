@@ -1,4 +1,4 @@
-"""Topics, services and actions that another partner's node uses under a name that they no longer have."""
+"""Topics, services and actions that another partner's node uses under a name that no longer exists."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Place = tuple[str, Flow]
 
 
 def renamed_topics(both: Both) -> Iterator[Loss]:
-    """Find names that went while other partners' nodes use them: their programs do not follow what the files say."""
+    """Find names that disappeared while other partners' nodes use them: their programs do not follow the files."""
     old, new = both.ends
     there: dict[str, set[Place]] = defaultdict(set)
     for (_, port), ends in new.items():
@@ -35,7 +35,7 @@ def renamed_topics(both: Both) -> Iterator[Loss]:
 
 
 def _readers(both: Both) -> Mapping[Place, list[Endpoint]]:
-    """Give the readers of each name in the first version that are there to be broken: real nodes that stay."""
+    """Return the readers of each name in the first version that can be broken: real nodes that remain."""
     found: dict[Place, list[Endpoint]] = defaultdict(list)
     for end in both.before.endpoints:
         node = both.before.nodes[end.node]
@@ -61,9 +61,12 @@ def _partners(both: Both, users: Iterable[Endpoint]) -> Mapping[str, set[str]]:
 
 
 def _because(both: Both, node: str, port: str) -> list[int]:
-    """Find the change that gave a topic another name: at the port, the node, or what the name is made of."""
+    """Return the indices of the change that renamed a topic: at the port, the node, or the elements its name is made
+    of.
+    """
     component = port.rpartition(".")[0]
     group = component.partition(".")[0]
+    # From the most specific cause to the most general; the first that changed at all is blamed.
     tries = (
         both.port(node, port, "topic"),
         both.about("node", node, "name", "namespace"),

@@ -1,8 +1,8 @@
-"""Graphviz: draws the shapes Graph and Chart as svg, png and pdf.
+"""Draw the shapes Graph and Chart as svg, png and pdf, with Graphviz.
 
-`draw` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what was drawn
-before comes from the cache. No picture is taken on trust: after each layout every arrow is looked for, and no box,
-title or text meets another. Pictures are light; see `svg` and `dark_rules` for how a page turns them dark.
+`draw_pictures` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what
+was drawn before comes from the cache. No picture is trusted: after each layout every arrow is looked for in the result.
+Pictures are light; `svg_cleanup` and `dark_rules` say how a page turns them dark.
 """
 
 from __future__ import annotations
@@ -39,12 +39,15 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     progress: Progress | None = None,
     ready: Sequence[Worker] = (),
 ) -> dict[str, Picture]:
-    """Draw graphs and charts in some formats. `link` gives the address for a ref, None where its target is not in the output.
+    """Draw graphs and charts in some formats. Return the pictures by the graphs' ids.
 
-    `cache` is a folder that archgen may fill; `ready` is what `early` gives. Raises MissingGraphviz where nothing can be drawn and not all is cached.
+    `resolve_link` returns the address for a ref, or None where its target is not part of the output. `cache` is a
+    folder that archgen may fill; `ready_workers` comes from `start_early_workers`. Raise MissingGraphviz where nothing
+    can be drawn and not all pictures are cached.
     """
     cache = cache if cache and _writable(cache) else None
     wanted = tuple(form for form in FORMATS if form in formats)
+    # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
     linked = [dict(_links(graph, link)) for graph in graphs]
     keys = [store.key(graph, links) for graph, links in zip(graphs, linked, strict=True)]
     found = {at: hit for at, name in enumerate(keys) if cache and (hit := store.load(cache, name, wanted))}
@@ -53,7 +56,10 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
         tasks = [Task(graphs[at], linked[at], wanted) for at in missing]
 
         def keep(at: int, picture: Picture) -> None:
+            # A picture with a warning is drawn anew each time: a layout that was only too slow may succeed in the next
+            # run.
             if cache and picture.warning is None:
+                # Stored as soon as it is drawn, in the worker's thread: while other pictures are still laid out.
                 with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
                     store.store(cache, keys[missing[at]], picture, wanted)
 
@@ -66,7 +72,7 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
 
 @contextmanager
 def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
-    """Start the processes that draw before it is known what: the first time, when no picture is kept, all are needed."""
+    """Start drawing processes before the graphs are known, if no picture is cached: then all processes are needed."""
     workers: list[Worker] = []
     if cache and _writable(cache) and not any(cache.glob("*.picture")):
         workers = [idle(cache) for _ in range(os.cpu_count() or 1)]
@@ -80,7 +86,7 @@ def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
 
 
 def _writable(folder: Path) -> bool:
-    """Say whether a folder can hold the cache; without one, pictures are just drawn each time."""
+    """Return whether a folder can hold the cache. Without one, pictures are drawn each time."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -94,12 +100,14 @@ def _draw(
 ) -> tuple[Picture, ...]:
     if cache:
         return draw_all(tasks, cache, workers=workers, watch=watch, ready=ready)
+    # Even without a cache the workers need a folder for fontconfig. Early workers exist only with a cache: none to pass
+    # on.
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
         return draw_all(tasks, Path(folder), workers=workers, watch=watch)
 
 
 def _links(graph: Drawing, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
-    """Give the address of each ref in a graph that has one."""
+    """Yield each ref of a graph that has an address, with the address."""
     if isinstance(graph, Chart):
         refs = [bar.ref for bar in graph.bars]
     else:

@@ -1,7 +1,8 @@
-"""Pictures drawn before: a file for each, named by what the picture depends on, so that nothing old is ever taken.
+"""Cache drawn pictures: a file for each, named by a digest of all that the picture depends on, so none is ever out of
+date.
 
-A file is a line of JSON (sizes, warning, and where each format stands) and then the formats' bytes. Reading takes only
-the formats that are asked for. What is damaged is drawn anew.
+A file is a line of JSON (sizes, warning, and the offset, length and CRC of each format), then the formats' bytes.
+Reading takes only the formats that are asked for. A damaged file counts as missing.
 """
 
 from __future__ import annotations
@@ -18,17 +19,19 @@ from archgen.emit.program import writers
 from archgen.views.bars import Drawing
 
 _SURPLUS = 4
-"""So many times the pictures of one run are kept; the oldest beyond that are removed."""
+"""The pictures of this many runs are kept; the oldest beyond that are removed."""
 
 
 def key(graph: Drawing, links: Mapping[str, str]) -> str:
-    """Name what a picture depends on: the graph, its addresses, and this program."""
+    """Return the name of a cached picture: a digest of the graph, its addresses and this program."""
+    # `repr` of the frozen dataclasses holds every field, and is the same in every process (shapes have tuples, no
+    # sets).
     text = f"{writers()}\n{graph!r}\n{sorted(links.items())!r}"
     return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
 
 
 def load(folder: Path, name: str, formats: Sequence[str]) -> Picture | None:
-    """Give a picture if all the formats are there."""
+    """Load a picture, or return None unless all the formats are cached and sound."""
     try:
         with (folder / f"{name}.picture").open("rb") as file:
             head = json.loads(file.readline())
@@ -50,13 +53,14 @@ def _part(read, seek, start: int, place: Sequence[int]) -> bytes:  # type: ignor
     offset, length, check = place
     seek(start + offset)
     data: bytes = read(length)
+    # A run that was cut off, or a bad disk: the picture is drawn again instead of breaking a page.
     if len(data) != length or zlib.crc32(data) != check:
         raise ValueError
     return data
 
 
 def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> None:
-    """Keep a picture."""
+    """Store a picture, unless one of the formats was not drawn."""
     parts, offset, blobs = {}, 0, []
     for form in (*formats, "dot"):
         data = getattr(picture, form)
@@ -77,5 +81,6 @@ def store(folder: Path, name: str, picture: Picture, formats: Iterable[str]) -> 
 
 
 def prune(folder: Path, count: int) -> None:
-    """Remove the oldest pictures beyond a multiple of those in use."""
+    """Remove the oldest pictures, beyond a multiple of those in use."""
+    # With the 100, a run of few pictures (`archgen diagram --only`) leaves those of a whole build where they are.
     shelf.thin(folder, ".picture", _SURPLUS * count + 100)

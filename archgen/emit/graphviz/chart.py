@@ -1,8 +1,9 @@
-"""Charts: bars along one scale, at places that are computed here; Graphviz only writes them.
+"""Lay out charts: bars along one scale, at places that are computed here; Graphviz only renders them.
 
 A chart is as wide as the text of a report. From left to right: titles, the scale with its bars, figures. Each kind of
 stretch has a form beside its colour: waiting is pale with a dotted frame, response solid, a link striped, the unknown
-hatched with a question mark. Grid and limit lie below and above the bars as thin boxes.
+hatched with a question mark. Grid and limit are thin boxes below and above the bars. docs/decisions/0003-charts.md
+says why a chart is not a graph.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ from archgen.views.bars import Bar, Chart, Stretch
 
 Attributes = dict[str, str]
 _WIDTH = 440.0
-"""As wide as a report's text, 160 mm, less what is kept free round a picture."""
+"""As wide as a report's text, 160 mm, less the margin round a picture. In points, as all lengths here."""
 _LEAST = 150.0
-"""The scale is never narrower."""
+"""The least width of the scale."""
 _GAP = 8.0
 _ROW = 21.0
 _BAR = 14.0
 _HAIR = 0.8
-"""What is there is never thinner."""
+"""The least width of a stretch that is longer than zero."""
 _UNKNOWN = 22.0
 _TITLE = 26
 """Characters in a line of a title."""
 _FAR = 4
-"""A limit so many times beyond the bars is named at the edge instead of drawn."""
+"""A limit more than this many times beyond the bars is named at the edge instead of drawn."""
 _FORMS: dict[str, tuple[str, str, str]] = {
     "sampling": ("filled,dotted", "#deebf7", "waits for the next activation"),
     "response": ("filled", "#2171b5", "responds"),
@@ -46,12 +47,14 @@ _FORMS: dict[str, tuple[str, str, str]] = {
     "best": ("filled", "#e3e6e9", ""),
     "unknown": ("striped,dashed", "#fefefe:#e3e6e9", "unknown"),
 }
-"""Style, fill (two make stripes), and what the legend says of it."""
+"""By kind of stretch: Graphviz's style, the fill (two colours make stripes), and the words of the legend."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """Where a chart's columns stand: the scale from `left` on, `factor` points for each unit, up to `most`."""
+    """Where a chart's columns are: the scale begins at `left`, `factor` points for each unit, up to the value
+    `maximum`.
+    """
 
     left: float
     width: float
@@ -67,7 +70,7 @@ class _Scale:
 
 
 def chart(item: Chart, link: Link) -> Scene:
-    """Lay out a chart."""
+    """Lay out a chart as a scene. y grows upwards: rows go down from 0."""
     inks = [palette.MUTED if bar.around else palette.TEXT for bar in item.bars]
     named = [(_rows(bar.title, strong=bar.strong), _rows(bar.value, strong=bar.strong)) for bar in item.bars]
     titles = [
@@ -75,6 +78,7 @@ def chart(item: Chart, link: Link) -> Scene:
         for (name, _), bar, ink in zip(named, item.bars, inks, strict=True)
     ]
     values = [_words(value, "right", link, ink=ink) for (_, value), ink in zip(named, inks, strict=True)]
+    # Both columns at once: measuring runs a layout.
     sizes = measure([*titles, *values])
     names, numbers = sizes[: len(titles)], sizes[len(titles) :]
     scale = _scale(item, max((w for w, _ in names), default=0.0), max((w for w, _ in numbers), default=0.0))
@@ -97,14 +101,18 @@ def chart(item: Chart, link: Link) -> Scene:
 
 
 def _scale(item: Chart, titles: float, values: float) -> _Scale:
-    """Choose the scale: what is known fits, the limit too unless it is far away, and there is room for what is not."""
+    """Choose the scale so that all known stretches fit, the limit too unless it is far away, and unknown ones have
+    room.
+    """
     ends = [bar.start + sum(each.length or 0.0 for each in bar.stretches) for bar in item.bars]
     most = max([*ends, *(bar.mark for bar in item.bars if bar.mark is not None)], default=0.0)
     if item.limit and (not most or item.limit[0] <= _FAR * most):
         most = max(most, item.limit[0])
+    # A little room behind the longest bar; 1.0 for a chart in which everything is unknown or zero.
     most = most * 1.04 or 1.0
     left = titles + _GAP
     width = max(_WIDTH - left - values - _GAP, _LEAST)
+    # What is unknown has no length on the scale, but its box with the question mark needs room behind the longest bar.
     spare = _UNKNOWN + 2 if any(each.length is None for bar in item.bars for each in bar.stretches) else 0.0
     return _Scale(left, width, (width - spare) / most, most)
 
@@ -125,7 +133,9 @@ def _bar(bar: Bar, at: int, scale: _Scale, middle: float) -> Iterator[Part]:
 
 
 def _widths(known: Sequence[Stretch], factor: float) -> list[float]:
-    """Give what is there at least a hair, and take that from the others: the bar ends where its sum does."""
+    """Return the stretches' widths: at least a hairline each, taken from the wider ones, so the bar ends where its sum
+    does.
+    """
     exact = [(each.length or 0.0) * factor for each in known]
     thin = sum(_HAIR for width in exact if 0 < width < _HAIR)
     thick = sum(width for width in exact if width >= _HAIR)
@@ -134,7 +144,7 @@ def _widths(known: Sequence[Stretch], factor: float) -> list[float]:
 
 
 def _stretch(item: Stretch, width: float) -> Attributes:
-    """Give the look of a stretch; its label stands inside where it fits."""
+    """Return the attributes of a stretch. Its label is inside where it fits."""
     form = "unknown" if item.length is None else item.kind
     fill = _FORMS[form][1]
     ink = palette.PAPER if ":" not in fill and palette.text_on(fill) == palette.PAPER else palette.INK
@@ -164,7 +174,7 @@ def _form(form: str, width: float) -> Attributes:
 
 
 def _stripes(fill: str, width: float) -> str:
-    """Repeat two colours, a pair for every five points."""
+    """Repeat two colours, one pair for every five points."""
     return ":".join([fill] * max(1, round(width / 5)))
 
 
@@ -221,7 +231,7 @@ def _small(text: str, colour: str = palette.MUTED) -> Attributes:
 
 
 def _grid(item: Chart, scale: _Scale, bottom: float) -> Iterator[Part]:
-    """Draw thin lines at round figures, and the figures below."""
+    """Draw thin lines at round figures, and the figures below them."""
     ticks = [_small(text) for text, _ in _ticks(scale, item.unit)]
     for at, ((_, value), size) in enumerate(zip(_ticks(scale, item.unit), measure(ticks), strict=True)):
         x = scale.x(value)
@@ -230,7 +240,8 @@ def _grid(item: Chart, scale: _Scale, bottom: float) -> Iterator[Part]:
 
 
 def _ticks(scale: _Scale, unit: str) -> list[tuple[str, float]]:
-    """Give four to eight round figures along the scale; the last names the unit."""
+    """Return four to eight round figures along the scale, as text and value. The last names the unit."""
+    # Aim at 48 points or more between two figures, room for their texts.
     raw = scale.most / (scale.width / 48)
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(each * power for each in (1, 2, 5, 10) if each * power >= raw)
@@ -239,7 +250,7 @@ def _ticks(scale: _Scale, unit: str) -> list[tuple[str, float]]:
 
 
 def _limit(item: Chart, scale: _Scale, bottom: float) -> Iterator[Part]:
-    """Draw the limit across all bars with its name above; one that is far away is named at the edge."""
+    """Draw the limit across all bars with its name above. One that is far away is only named, at the edge."""
     if item.limit is None:
         return
     place, text = item.limit
@@ -254,7 +265,7 @@ def _limit(item: Chart, scale: _Scale, bottom: float) -> Iterator[Part]:
 
 
 def _headed(item: Chart, body: Scene) -> Scene:
-    """Set the sentence above everything."""
+    """Add the chart's sentence above everything."""
     if not item.said:
         return body
     left, _, right, top = body.bounds()
@@ -263,6 +274,7 @@ def _headed(item: Chart, body: Scene) -> Scene:
     attributes = _words(text, "left", lambda _: None)
     ((wide, high),) = measure([attributes])
     part = Part("said", attributes, left + wide / 2, top + 5 + high / 2, wide, high, "label")
+    # Joined after the body, since the legend goes below the bounds of both.
     return body.joined(Scene(parts=(part,)))
 
 

@@ -1,4 +1,4 @@
-"""Count where arrows cross, and measure how far they run: what layouts are chosen by."""
+"""Count crossings of arrows and measure their length: layouts are chosen by both."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Segment = tuple[Point, Point]
 
 
 class _Path(NamedTuple):
-    """A line's segments, each with the rectangle that it spans, and the rectangle of all."""
+    """A line's straight segments, each with its bounding rectangle, and the rectangle round them all."""
 
     segments: Sequence[tuple[Segment, Rectangle]]
     span: Rectangle
 
 
 def crossings(lines: Sequence[Line]) -> int:
-    """Count the crossings of all pairs of lines."""
+    """Count the crossings of all pairs of lines. A pair may cross more than once."""
     paths = [_path(line) for line in lines]
     return sum(
         _count(one, other) for at, one in enumerate(paths) for other in paths[at + 1 :] if meet(one.span, other.span)
@@ -34,7 +34,9 @@ def _path(line: Line) -> _Path:
 
 
 def _count(one: _Path, other: _Path) -> int:
-    """Count the crossings of two lines; only what lies near the other one is looked at."""
+    """Count the crossings of two lines. Only segments near the other line are compared."""
+    # Rectangles first: pictures of hundreds of arrows have tens of thousands of pairs, of which few are near one
+    # another.
     near = [each for each in one.segments if meet(each[1], other.span)]
     rest = [each for each in other.segments if meet(each[1], one.span)] if near else []
     return sum(_cross(segment, to) for segment, span in near for to, box in rest if meet(span, box))
@@ -46,16 +48,18 @@ def _span(points: Sequence[Point]) -> Rectangle:
 
 
 def length(line: Line) -> float:
-    """Measure a line in points."""
+    """Measure the length of a line, in points."""
     return sum(math.dist(one, other) for one, other in _segments(line))
 
 
 def _segments(line: Line) -> list[Segment]:
+    # Three straight pieces for each Bézier curve are enough to count crossings; labels need more (`sample_line`).
     return list(pairwise(along(line, 3)))
 
 
 def _cross(one: Segment, other: Segment) -> bool:
     (a, b), (c, d) = one, other
+    # Proper crossings only: arrows that share an end, or touch, do not cross.
     return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
 
 

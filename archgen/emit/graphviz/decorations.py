@@ -1,4 +1,4 @@
-"""Marks on boxes: the heavy side of sources and sinks, the letter of the worst finding."""
+"""Decorate boxes: the heavy side of sources and sinks, the letter of the worst finding."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LETTERS = {"error": ("E", palette.ERROR), "warning": ("W", palette.WARNING), "n
 
 
 def decorated(scene: Scene, boxes: Mapping[str, Box]) -> Scene:
-    """Add the marks of each box, by the DOT names of the boxes."""
+    """Add the decorations of each box, by the DOT names of the boxes."""
     added = tuple(mark for part in scene.parts if part.name in boxes for mark in _marks(part, boxes[part.name]))
     return replace(scene, parts=scene.parts + added)
 
@@ -24,6 +24,7 @@ def _marks(part: Part, item: Box) -> Iterator[Part]:
     left, _, right, top = part.rectangle
     if item.style in {"source", "sink"}:
         x = right - _BAR / 2 - 0.4 if item.style == "source" else left + _BAR / 2 + 0.4
+        # As parts of kind `mark`, since Graphviz has no node with one heavy side; marks may overlap their box.
         yield Part(f"{part.name}bar", _bar(item, part.height), x, part.y, _BAR, part.height, "mark")
     if item.badge:
         yield Part(f"{part.name}badge", _disc(item), right - 3, top - 1, _DISC, _DISC, "mark")

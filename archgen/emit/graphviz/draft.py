@@ -1,6 +1,7 @@
-"""A graph ready for layout: DOT names for its boxes and arrows, and how each of them looks.
+"""Give a graph its DOT names and attributes, write it for a layout, and read the layout back.
 
-Ids of the model never get into DOT text: boxes are `n0`, `n1`, arrows `e0`, `e1`, in the graph's order.
+Ids of the model never get into DOT text: boxes are `n0`, `n1`, arrows `e0`, `e1`, in the graph's order. So no id can
+break the syntax, and a layout does not depend on what things are called.
 """
 
 from __future__ import annotations
@@ -21,7 +22,11 @@ Attributes = dict[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A graph with the DOT names and attributes of its boxes, arrows and the arrows' texts."""
+    """A graph with the DOT names and attributes of its boxes, arrows and arrow labels.
+
+    `dot_names` maps box ids to DOT names. The other mappings have DOT names (`n0`, `e0`) as keys; an arrow comes with
+    its id.
+    """
 
     graph: Graph
     link: Link
@@ -31,16 +36,21 @@ class Draft:
     labels: dict[str, Attributes]
 
     def node(self, item: Box) -> str:
-        """Write a box as DOT."""
+        """Return a box as a DOT statement."""
         name = self.names[item.id]
         return f"{name} [{written(self.boxes[name])}];"
 
     def edge(self, at: int, item: Arrow, *, text: bool = True) -> str:
-        """Write an arrow as DOT, with its text if the layout is to find room for it; a number stands on the line."""
+        """Return an arrow as a DOT statement, with its text if the layout shall find room for it. A number is set on
+        the line.
+        """
+        # A number needs no room of its own: it is placed on the line afterwards, and the layout stays denser.
         text = text and not item.label.isdigit()
         ends = [self.names[item.tail] + self._port(item.tail, item.tail_port)]
         ends.append(self.names[item.head] + self._port(item.head, item.head_port))
         attributes = self.arrows[f"e{at}"][1]
+        # `dir=back` (see `_reverse_arrow`): with its ends swapped, dot ranks the head's box before the tail's, and the
+        # arrow head is still drawn where it belongs.
         if "dir" in attributes:
             ends.reverse()
         label = f" label={self.labels[f'e{at}']['label']}" if text and f"e{at}" in self.labels else ""
@@ -48,7 +58,7 @@ class Draft:
         return f'{" -> ".join(ends)} [id="e{at}"{label} {written(kept)}];'
 
     def _port(self, box: str, port: str | None) -> str:
-        """Write where at a box with ports an arrow ends: inputs at its left, outputs at its right."""
+        """Return where an arrow ends at a box with ports: inputs at its left, outputs at its right."""
         item = next((each for each in self.graph.boxes if each.id == box), None)
         if item is None or port is None:
             return ""
@@ -58,11 +68,14 @@ class Draft:
 
 
 _SIZES = ("arrowsize", "penwidth", "arrowhead", "arrowtail", "dir")
-"""What of an arrow's look changes its line."""
+"""The attributes of an arrow that change its line, so the layout must know them."""
 
 
 def draft(graph: Graph, link: Link, *, merged: bool = False) -> Draft:
-    """Name everything and choose its look."""
+    """Name everything and choose its attributes.
+
+    `merged` draws an arrow's number of flows as its width, and as its text where it has none.
+    """
     names = {item.id: f"n{at}" for at, item in enumerate(graph.boxes)}
     texts = {f"e{at}": strokes.label(item, link, merged=merged) for at, item in enumerate(graph.arrows)}
     sides = {item.id: item.side for item in graph.boxes}
@@ -82,18 +95,20 @@ def draft(graph: Graph, link: Link, *, merged: bool = False) -> Draft:
 
 
 def _turned(look: Attributes) -> Attributes:
-    """Lay an arrow out against its direction: a client may stand right of its server."""
+    """Reverse an arrow for the layout: a client may be to the right of its server, so `back` draws the head at the
+    tail.
+    """
     turned = {name: value for name, value in look.items() if name != "arrowhead"}
     return {**turned, "dir": '"back"', "arrowtail": look.get("arrowhead", '"normal"')}
 
 
 def document(settings: str, statements: Iterable[str]) -> str:
-    """Write a graph for layout."""
+    """Return a DOT graph of settings and statements, for a layout."""
     return "\n".join(["digraph g {", f"graph [{settings}];", DEFAULTS, *statements, "}"])
 
 
 def read(drafted: Draft, layout: dict[str, object]) -> Scene:
-    """Read a layout back, the arrows' texts as parts of their own where the layout put them."""
+    """Read a layout back. The arrows' texts become parts of their own, where the layout put them."""
     scene = placed(layout, drafted.boxes, drafted.arrows)
     spots = {
         str(item["id"]): str(item["lp"])
@@ -109,7 +124,7 @@ def read(drafted: Draft, layout: dict[str, object]) -> Scene:
 
 
 def on_lines(drafted: Draft, scene: Scene) -> Scene:
-    """Set each text that has no place yet on the middle of its arrow."""
+    """Place each text that has no place yet on the middle of its arrow."""
     done = {part.name for part in scene.parts if part.kind == "label"}
     lines = [line for line in scene.lines if f"e{line.edge}" in drafted.labels and f"l{line.edge}" not in done]
     sizes = measure([drafted.labels[f"e{line.edge}"] for line in lines])
@@ -128,10 +143,12 @@ def _spot(text: str) -> tuple[float, float]:
 
 
 def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
-    """Give the width and height in points that nodes with these attributes take."""
+    """Return the width and height, in points, that nodes with these attributes take."""
     wanted = [written(each) for each in labels]
     new = [text for text in dict.fromkeys(wanted) if text not in _SIZES_KNOWN]
     if new:
+        # Only Graphviz knows how wide a text gets in its font. `nop2` lays nothing out, so all texts can be at one
+        # place.
         nodes = (f'm{at} [{text} pos="0,0"];' for at, text in enumerate(new))
         objects = engine.layout(document("", nodes), "nop2")["objects"]
         sizes = {item["name"]: (float(item["width"]) * 72, float(item["height"]) * 72) for item in objects}
@@ -140,11 +157,11 @@ def measure(labels: Sequence[Attributes]) -> tuple[tuple[float, float], ...]:
 
 
 _SIZES_KNOWN: dict[str, tuple[float, float]] = {}
-"""What was measured before: pictures of one project show the same texts again and again."""
+"""Sizes by DOT text, for the life of the process: pictures of one project show the same texts again and again."""
 
 
 def title(item: Cluster) -> Attributes:
-    """Give the look of a frame's title, a text on the frame's own ground."""
+    """Return the attributes of a frame's title, a text on the frame's own fill."""
     ink = palette.MUTED if item.emphasis == "neighbour" else palette.hue(item.colour)
     rows = "<BR/>".join(f"<B>{html(row)}</B>" for row in wrapped(item.title, 40, 2))
     small = '<BR ALIGN="LEFT"/>'.join(
@@ -169,12 +186,12 @@ def title(item: Cluster) -> Attributes:
 
 
 def frame_fill(item: Cluster) -> str:
-    """Choose the ground of a frame."""
+    """Return the fill of a frame."""
     return palette.tint(palette.hue(item.colour)) if item.emphasis != "neighbour" else palette.GREY_TINT
 
 
 def frame(item: Cluster, link: Link) -> Attributes:
-    """Give the look of a frame."""
+    """Return the attributes of a frame."""
     grey = item.emphasis == "neighbour"
     colour = palette.NEIGHBOUR_FRAME if grey else palette.hue(item.colour)
     classes = f"frame {item.emphasis}" + (f" hue{item.colour}" if item.colour is not None else "")

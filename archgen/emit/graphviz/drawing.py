@@ -28,7 +28,10 @@ _LOOK = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
 
 
 def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tuple[Draft, Scene]:
-    """Lay out a graph; all that was asked for is in it."""
+    """Lay out a graph with its decorations, legend and notes.
+
+    Raise LayoutError where the layout lost an arrow. `simple` takes the layout without frames and labels.
+    """
     drafted = draft(graph, links.get, merged=graph.layout in {"two-step", "overview"})
     laid_out = flow.simple(drafted) if simple else _LAYOUTS[graph.layout](drafted)
     drawn = {line.arrow for line in laid_out.lines}
@@ -41,7 +44,7 @@ def scene(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tu
 
 
 def _noted(drafted: Draft, laid_out: Scene) -> Graph:
-    """Say below the picture how many texts beside arrows found no place in it."""
+    """Add a note to the graph that says how many texts beside arrows found no place."""
     lost = len(drafted.labels) - sum(part.kind == "label" for part in laid_out.parts)
     if not lost:
         return drafted.graph
@@ -66,7 +69,7 @@ def picture(
     simple: bool = False,
     warning: str | None = None,
 ) -> Picture:
-    """Draw a graph or a chart in the formats asked for (names of Picture's fields)."""
+    """Draw a graph or a chart in these formats (names of Picture's fields)."""
     if isinstance(graph, Chart):
         return rendered(graph, chart.chart(graph, links.get), formats, quick=False, warning=warning)
     _, laid_out = scene(graph, links, simple=simple)
@@ -76,12 +79,14 @@ def picture(
 def rendered(
     graph: Drawing, laid_out: Scene, formats: Sequence[str], *, quick: bool, warning: str | None = None
 ) -> Picture:
-    """Render what has its places; every line of it must be there."""
+    """Render a placed scene. Raise LayoutError where a line of it is missing in the svg."""
     left, bottom, right, top = laid_out.bounds()
     dot = laid_out.dot(graph.id, {**_LOOK, "tooltip": '" "'})
+    # svg is always rendered, asked for or not: it is what the lost arrows are looked for in.
     wanted = [form for form in _FORMATS if form in formats]
     svg, *others = engine.render(dot, ["svg", *(_FORMATS[form] for form in wanted)])
     text = svg.decode()
+    # Only lines with an arrow id: samples in the legend have none.
     lost = {line.edge for line in laid_out.lines if line.arrow} - {edge[1:] for edge in drawn_edges(text)}
     if lost:
         message = f"{len(lost)} arrows were not drawn"

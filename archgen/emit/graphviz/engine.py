@@ -1,4 +1,4 @@
-"""The one place that calls Graphviz, through pygraphviz. Only worker processes import it."""
+"""Call Graphviz, through pygraphviz. Only worker processes import this module: Graphviz can crash its process."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pygraphviz import AGraph
 from pygraphviz import graphviz as library
 
 Attributes = dict[str, str]
-"""DOT attributes as they stand in the text: values quoted, or html-like in angle brackets."""
+"""DOT attributes as they are written: values quoted, or html-like in angle brackets."""
 
 _CONTEXT = library.gvContextWithBuiltins()
 _PDF_DATE = re.compile(rb"(/CreationDate \(D:)[^)]*\)")
@@ -22,13 +22,15 @@ class LayoutError(Exception):
 
 
 def layout(dot: str, program: str = "dot") -> dict[str, Any]:
-    """Lay out a graph; gives Graphviz's json: `objects` (nodes, clusters) and `edges`, with positions in points."""
+    """Lay out a DOT graph. Return Graphviz's json: `objects` (nodes, clusters) and `edges`, positions in points."""
     placed: dict[str, Any] = json.loads(render(dot, ("json0",), program)[0])
     return placed
 
 
 def render(dot: str, formats: Sequence[str], program: str = "nop2") -> tuple[bytes, ...]:
-    """Draw a graph in several formats; `nop2` keeps the positions that it has."""
+    """Render a DOT graph in several formats. `nop2` keeps the positions that it has."""
+    # Through the library's functions, not `AGraph.draw`: pygraphviz 2 ignores `args="-n2"` there and lays the graph out
+    # anew, without an error. `nop2` as the program is what keeps positions and lines.
     graph = AGraph(string=dot)
     try:
         if library.gvLayout(_CONTEXT, graph.handle, program.encode()):
@@ -57,5 +59,5 @@ def _no_date(found: re.Match[bytes]) -> bytes:
 
 
 def written(attributes: Attributes) -> str:
-    """Write attributes as DOT does."""
+    """Return attributes as DOT writes them."""
     return " ".join(f"{name}={value}" for name, value in attributes.items())

@@ -1,7 +1,4 @@
-"""The layouts `flow` and `group`: one run of dot, neighbours in the outer ranks, at most one frame.
-
-A frame and texts beside arrows go together in dot as long as there is only one frame.
-"""
+"""The layouts `flow` and `group`: one run of dot, neighbours in the outer ranks, at most one frame."""
 
 from __future__ import annotations
 
@@ -27,10 +24,10 @@ def flow(drafted: Draft) -> Scene:
 
 
 def group(drafted: Draft) -> Scene:
-    """Lay out one frame in the middle, with the neighbours that feed it at the left, its readers at the right.
+    """Lay out one frame in the middle, with the neighbours that feed it at the left and its readers at the right.
 
-    The frame is drawn round its boxes after the layout. As a cluster of dot's it would keep out every line that has
-    not arrived yet: those would run round the frame and enter it from above.
+    The frame is drawn round its boxes after the layout. As a cluster of dot's it would keep out every line that has not
+    arrived yet: such lines would run round the frame and enter it from above.
     """
     graph = drafted.graph
     inner = graph.clusters[0]
@@ -43,6 +40,7 @@ def group(drafted: Draft) -> Scene:
 
 
 def _settings(drafted: Draft, nodesep: float) -> str:
+    # The more arrows end at one box, the steeper they get: the ranks move apart, up to one inch.
     crowd = max((sum(item.head == box.id for item in drafted.graph.arrows) for box in drafted.graph.boxes), default=0)
     labels = bool(drafted.labels)
     ranksep = min(0.45 + 0.02 * crowd + 0.01 * len(drafted.graph.arrows), 1.0) if labels else 0.6
@@ -51,7 +49,7 @@ def _settings(drafted: Draft, nodesep: float) -> str:
 
 
 def _sides(drafted: Draft) -> list[str]:
-    """Hold neighbours in the first and the last rank."""
+    """Return statements that keep neighbours in the first and the last rank."""
     ranks = []
     for side, rank in (("left", "source"), ("right", "sink")):
         names = [drafted.names[item.id] for item in drafted.graph.boxes if item.side == side]
@@ -61,22 +59,25 @@ def _sides(drafted: Draft) -> list[str]:
 
 
 def _held_between(drafted: Draft, inside: list[Box]) -> list[str]:
-    """Keep the neighbours out of the ranks of the frame."""
+    """Return invisible edges that keep the neighbours out of the ranks of the frame."""
     names = drafted.names
     left = next((item for item in drafted.graph.boxes if item.side == "left"), None)
     right = next((item for item in drafted.graph.boxes if item.side == "right"), None)
+    # One neighbour of each side is enough, since `rank=source` and `rank=sink` hold the others beside it.
     held = [f'{names[item.id]} -> {names[right.id]} [style="invis" weight="0"];' for item in inside if right]
     return held + [f'{names[left.id]} -> {names[item.id]} [style="invis" weight="0"];' for item in inside if left]
 
 
 def _framed(drafted: Draft, inner: Cluster, scene: Scene, inside: set[str]) -> Scene:
-    """Draw the frame round its boxes and all lines that pass between them, the title above."""
+    """Add the frame round its boxes and all lines that pass between them, with the title above."""
     boxes = [part.rectangle for part in scene.parts if part.name in inside]
     heading = title(inner)
     ((width, height),) = measure([heading])
     left, right = min((box[0] for box in boxes), default=0.0), max((box[2] for box in boxes), default=width)
+    # A line may swing out above its boxes. Only what is between the frame's sides counts: neighbours are outside.
     within = [y for line in scene.lines for x, y in along(line) if left <= x <= right]
     within += [part.y + side * part.height / 2 for part in scene.parts if left <= part.x <= right for side in (-1, 1)]
+    # Neighbours are above and below here, so lines to them would stretch the frame over them.
     if drafted.graph.direction == "top-bottom":
         within = [y for box in boxes for y in (box[1], box[3])]
     bottom, top = min(within, default=0.0) - _MARGIN, max(within, default=0.0) + _MARGIN + height
@@ -87,7 +88,7 @@ def _framed(drafted: Draft, inner: Cluster, scene: Scene, inside: set[str]) -> S
 
 
 def simple(drafted: Draft) -> Scene:
-    """Lay out boxes and arrows and nothing else: what is left when everything else failed."""
+    """Lay out boxes and arrows, nothing else: the last resort when the graph's own layout failed or took too long."""
     graph = drafted.graph
     lines = [f"{drafted.names[item.id]} [{written(drafted.boxes[drafted.names[item.id]])}];" for item in graph.boxes]
     ends = set(drafted.names)

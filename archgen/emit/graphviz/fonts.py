@@ -1,4 +1,4 @@
-"""The font of all pictures: one that ships with archgen, so that text is as wide on every machine as it was laid out."""
+"""Configure the font of all pictures: it ships with archgen, so that text has the same width on every machine."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent.parent / "fonts"
-"""Where DejaVu Sans lies, with its licence."""
+"""The folder with DejaVu Sans and its licence."""
 
 _CONFIGURATION = """<?xml version="1.0"?>
 <!DOCTYPE fontconfig SYSTEM "urn:fontconfig:fonts.dtd">
@@ -19,9 +19,9 @@ _CONFIGURATION = """<?xml version="1.0"?>
 
 
 def configure(folder: Path) -> Path:
-    """Write a fontconfig file that knows this font and no other; give its path.
+    """Write a fontconfig file that knows this font and no other. Return its path.
 
-    It knows a copy: some versions of fontconfig leave a file of theirs beside the fonts that they read.
+    It refers to a copy: some versions of fontconfig leave a file of theirs beside the fonts that they read.
     """
     copies = folder / "fonts"
     copies.mkdir(parents=True, exist_ok=True)

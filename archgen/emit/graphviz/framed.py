@@ -1,6 +1,6 @@
 """The layout `framed`: one run of dot with frames round the boxes, arrows from box to box.
 
-Frames and texts together break dot, so the texts are set on the arrows afterwards: for few boxes only.
+Frames and labels together break dot (it may crash), so the labels are set on the arrows afterwards: for few boxes only.
 """
 
 from __future__ import annotations
@@ -16,22 +16,23 @@ from archgen.emit.graphviz.scene import Frame, Part, Scene, placed
 _PAD = 14
 _PAGE = (1000.0, 700.0)
 _DIRECTIONS = {"left-right": ("LR", "TB"), "top-bottom": ("TB", "LR")}
-"""The one that is asked for counts where both are as good."""
+"""Directions to try by the one that is asked for, which comes first: it is taken where both are as good."""
 
 
 def framed(drafted: Draft) -> Scene:
-    """Lay out boxes in frames, then set the texts on the arrows. The better of two directions is taken."""
+    """Lay out boxes in frames, then place the labels on the arrows. Try two directions and return the better scene."""
     tries = [_laid_out(drafted, direction) for direction in _DIRECTIONS[drafted.graph.direction]]
+    # `min` returns the first of equals: the direction that was asked for.
     return min(tries, key=lambda scene: (_lost(drafted, scene), _scale(scene)))
 
 
 def _lost(drafted: Draft, scene: Scene) -> int:
-    """Count the texts that found no place."""
+    """Count the labels that found no place."""
     return len(drafted.labels) - sum(part.kind == "label" for part in scene.parts)
 
 
 def _scale(scene: Scene) -> float:
-    """Say how many times too large a drawing is for a page on a screen; what fits it fits well."""
+    """Return how many times too large a scene is for a page on a screen. All that fit are equally good (1.0)."""
     left, bottom, right, top = scene.bounds()
     return max(1.0, (right - left) / _PAGE[0], (top - bottom) / _PAGE[1])
 
@@ -64,7 +65,7 @@ def _names(drafted: Draft) -> dict[str | None, int]:
 
 
 def _clusters(drafted: Draft, sizes: tuple[tuple[float, float], ...]) -> Iterator[str]:
-    """Write the frames with their boxes; an empty label as large as the title keeps its place free."""
+    """Yield the frames with their boxes. An empty label as large as the title keeps its place free."""
     for name, at in _names(drafted).items():
         inside = [item for item in drafted.graph.boxes if item.cluster == name]
         width, height = sizes[at]
@@ -76,7 +77,7 @@ def _clusters(drafted: Draft, sizes: tuple[tuple[float, float], ...]) -> Iterato
 
 
 def _settings(drafted: Draft, direction: str) -> str:
-    """Leave room between the ranks for the longest line of a text."""
+    """Return the settings of dot, with room between the ranks for the longest line of a label."""
     longest = max((len(line) for arrow in drafted.graph.arrows for line in arrow.label.split("\n")), default=0)
     ranksep = min(0.5 + 0.065 * longest, 1.8) if direction == "LR" else 0.7
     return f'rankdir="{direction}" nodesep="0.28" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'

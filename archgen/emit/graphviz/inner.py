@@ -1,4 +1,4 @@
-"""The inside of one frame: connected boxes laid out by dot, loose ones set in rows, all packed into a rectangle."""
+"""Lay out the inside of one frame: connected boxes by dot, loose ones in rows, all packed into a rectangle."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ Numbered = tuple[int, Arrow]
 
 
 def inside(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered], shape: float = 2.4) -> Scene:
-    """Lay out boxes and the arrows among them, about `shape` times as wide as high; the lower left corner is 0, 0."""
+    """Lay out boxes and the arrows among them, about `aspect_ratio` times as wide as high. The lower left corner is 0,
+    0.
+    """
     pieces = [_laid_out(drafted, part, arrows) for part in _connected(boxes, arrows)]
     sizes = [scene.bounds() for scene in pieces]
     widest = max((bounds[2] - bounds[0] for bounds in sizes), default=0.0)
     total = sum(bounds[2] - bounds[0] + _GAP for bounds in sizes)
     wide = [bounds[2] - bounds[0] for bounds in sizes]
+    # Row widths from the widest piece alone to everything in one row; narrow steps where most good packings are.
     tries = [_shelves(wide, widest + share * (total - widest)) for share in (0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1)]
     scenes = (_stacked([[pieces[at] for at in row] for row in rows]) for rows in dict.fromkeys(tries))
     return min(scenes, key=lambda scene: _cost(scene, shape))
@@ -29,11 +32,13 @@ def inside(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered], sha
 def _cost(scene: Scene, shape: float) -> float:
     left, bottom, right, top = scene.bounds()
     width, height = right - left, top - bottom
+    # Both count: the side that exceeds the wanted shape, and the area.
     return max(width, height * shape) * math.sqrt(width * height)
 
 
 def _connected(boxes: Sequence[Box], arrows: Sequence[Numbered]) -> list[list[Box]]:
-    """Split into connected parts, the largest first, else in order."""
+    """Split boxes into connected parts, the largest first, else in order."""
+    # Union-find: each box points to another one of its part, its root to itself.
     root = {box.id: box.id for box in boxes}
 
     def find(name: str) -> str:
@@ -52,6 +57,7 @@ def _connected(boxes: Sequence[Box], arrows: Sequence[Numbered]) -> list[list[Bo
 
 def _laid_out(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered]) -> Scene:
     names = {box.id for box in boxes}
+    # A single box needs no layout, and Graphviz is what takes the time.
     if len(names) == 1 and not any(arrow.tail in names and arrow.head in names for _, arrow in arrows):
         name = drafted.names[boxes[0].id]
         ((width, height),) = measure([drafted.boxes[name]])
@@ -66,7 +72,7 @@ def _laid_out(drafted: Draft, boxes: Sequence[Box], arrows: Sequence[Numbered]) 
 
 
 def _shelves(sizes: Sequence[float], width: float) -> tuple[tuple[int, ...], ...]:
-    """Set drawings side by side in rows that are no wider than asked, from the top down."""
+    """Split pieces into rows that are no wider than asked, in order. Return positions in `widths`, row by row."""
     rows: list[list[int]] = []
     used = 0.0
     for at, size in enumerate(sizes):
@@ -79,7 +85,7 @@ def _shelves(sizes: Sequence[float], width: float) -> tuple[tuple[int, ...], ...
 
 
 def _stacked(rows: Iterable[Sequence[Scene]]) -> Scene:
-    """Set the drawings of each row, their middles aligned; the lower left corner is 0, 0."""
+    """Place the pieces of each row side by side, their middles aligned. The lower left corner of the result is 0, 0."""
     done: list[Scene] = []
     top = 0.0
     for row in rows:

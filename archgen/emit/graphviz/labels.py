@@ -1,4 +1,4 @@
-"""Find places for texts: no box, title or text may meet another, and a title should not lie on an arrow."""
+"""Find places for labels: none may touch a box, a title or another label."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ _GAP = 1.0
 
 
 def declutter(scene: Scene) -> Scene:
-    """Move each text that meets something along its arrow, to the nearest free place.
+    """Move each label that touches something along its arrow, to the nearest free place.
 
-    A text that finds none is taken out of the picture; the arrow's tooltip and the tables still have it.
+    A label that finds none is left out of the picture; the arrow's tooltip and the tables still have it.
     """
+    # First come, first served: labels keep the order of their arrows, so the result does not depend on chance.
     taken = [part.rectangle for part in scene.parts if part.kind in {"box", "title"}]
     lines = {f"l{edge}": line for edge, line in _by_edge(scene)}
     kept = []
@@ -39,21 +40,24 @@ def _free(part: Part, taken: list[Rectangle]) -> bool:
 
 
 def _spots(part: Part, line: Line | None) -> Iterator[Part]:
-    """Give the text where it is, then all places on and beside its arrow, the nearest first."""
+    """Yield the label where it is, then at all places on and beside its arrow, the nearest first."""
     yield part
     if line is None:
         return
+    # On the line, close above and below it, and one more label's height away.
     sides = (0.0, part.height * 0.6, -part.height * 0.6, part.height * 1.4, -part.height * 1.4)
     points = list(along(line))
     spots = [(x, y + side) for x, y in points for side in sides]
+    # The point itself breaks ties, so that every machine takes the same place.
     spots.sort(key=lambda spot: (abs(spot[0] - part.x) + abs(spot[1] - part.y), spot))
     for x, y in spots:
         yield replace(part, x=x, y=y)
 
 
 def along(line: Line, steps: int = 8) -> Iterator[Point]:
-    """Walk along a spline: points on its Bézier curves."""
+    """Yield points on the Bézier curves of a line, `steps` for each curve, and its end."""
     points = line.curve
+    # Each curve shares its end with the next one's start: 3n + 1 points are n curves.
     for at in range(0, len(points) - 3, 3):
         one, two, three, four = points[at : at + 4]
         for step in range(steps):

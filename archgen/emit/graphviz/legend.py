@@ -1,4 +1,4 @@
-"""The legend below a picture: a sample of each form that the picture uses, with its meaning; then the notes."""
+"""Draw the legend below a picture: a sample of each form that it uses, with its meaning; then the notes."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ _WORDS = {"count": "A number on an arrow: how many flows it stands for.", "star"
 
 
 def below(scene: Scene, graph: Graph) -> Scene:
-    """Add the legend and the notes below a drawing, at its left."""
+    """Add a graph's legend and notes below a scene, at its left."""
     entries = [entry for key in graph.legend for entry in _entries(key)]
     entries += [(_swatch(index), text) for index, text in graph.legend_colours]
     return under(scene, entries, [_WORDS[key] for key in graph.legend if key in _WORDS] + list(graph.notes))
 
 
 def under(scene: Scene, entries: Sequence[tuple[Scene, str]], said: Sequence[str]) -> Scene:
-    """Add samples with their words, then sentences, below a drawing, at its left."""
+    """Add samples with their words, then sentences, below a scene, at its left."""
     left, bottom, right, _ = scene.bounds()
     width = max(right - left, _LEAST)
     legend = _rows(entries, width)
@@ -97,6 +97,7 @@ def _entries(key: str) -> Iterator[tuple[Scene, str]]:
 
 
 def _box(item: Box) -> Scene:
+    # A second frame is drawn outside of the node's size: less of it keeps all samples equally large.
     double = (
         6 if item.style in {"fold", "action"} or item.fill == "once" or item.change == "changed" else 0
     )  # the second frame stands outside
@@ -125,6 +126,7 @@ def _arrow(key: str, item: Arrow, *, merged: bool) -> Scene:
     attributes = {**strokes.arrow(item, lambda _: None, merged=merged), "tooltip": '" "', "edgetooltip": '" "'}
     tip = 12.0 if item.style == "action" else 0.0 if item.style == "link" else 6.0
     third = (width - tip) / 3
+    # The line must end where the arrow head begins: Graphviz draws heads at the `e,` point, beyond the curve.
     middle = f"0,0 {third:.2f},0 {2 * third:.2f},0 {3 * third:.2f},0"
     spline = f"e,{width:.2f},0 {middle}" if tip else middle
     return Scene(lines=(Line(f"x{key}", "", ends[0].name, ends[1].name, attributes, spline),), parts=ends)
@@ -140,7 +142,7 @@ def _text(words: str) -> Attributes:
 
 
 def _rows(entries: Sequence[tuple[Scene, str]], width: float) -> Scene:
-    """Set samples and words side by side, in as many rows as the width asks for."""
+    """Place samples and words side by side, in as many rows as the width needs."""
     texts = [_text(html(words)) for _, words in entries]
     done: list[Scene] = []
     x, y = 0.0, -_ROW / 2
@@ -149,6 +151,7 @@ def _rows(entries: Sequence[tuple[Scene, str]], width: float) -> Scene:
         if x and x + wide > width:
             x, y = 0.0, y - _ROW
         words = Part(f"legend{at}", text, x + _SAMPLE[0] + 5 + size[0] / 2, y, *size, kind="label")
+        # The same sample may be used twice, and names of nodes must be unique in a picture.
         done += [_renamed(sample.moved(x, y), f"k{at}"), Scene(parts=(words,))]
         x += wide
     return Scene().joined(*done)

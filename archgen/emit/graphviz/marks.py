@@ -1,4 +1,4 @@
-"""How each kind of box looks: shape, frame, fill and text. Never colour alone: form, words or place say the same.
+"""Style boxes. Never colour alone: shape, words or place say the same.
 
 | style | form |
 |---|---|
@@ -10,11 +10,11 @@
 | host, container, link | plain box, rounded box with list, small plain text |
 
 Where two versions are drawn, what is added has a thick frame, what is removed a dashed one, what changed a double one,
-and what is called otherwise a dotted one: a sign in the title says the same.
+and what was renamed or moved a dotted one. A sign in the title says the same.
 
 Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
 that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once, and sharp
-corners where it runs on events of which the rate is not known.
+corners where it runs on events of unknown rate.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _WIDTHS = {"topic": 30, "service": 30, "action": 30, "group": 22, "fold": 22, "h
 
 
 def box(item: Box, link: Link) -> Attributes:
-    """Give the DOT attributes of a box."""
+    """Return the DOT attributes of a box."""
     if item.ports_in or item.ports_out:
         return {**_common(item, link), "shape": "plain", "label": _table(item)}
     frame, fill = colours(item)
@@ -69,7 +69,7 @@ def _double(item: Box) -> bool:
 
 
 def colours(item: Box) -> tuple[str, str]:
-    """Choose the frame's and the fill's colour."""
+    """Return the colours of a box's frame and fill."""
     if item.change is not None:
         return palette.CHANGES[item.change], palette.tint(palette.CHANGES[item.change])
     if item.fill is not None:
@@ -128,9 +128,10 @@ def _common(item: Box, link: Link) -> Attributes:
 
 
 def linked(ref: str | None, tooltip: str, link: Link) -> Attributes:
-    """Give the tooltip, and the address where the target is part of the output."""
+    """Return the tooltip, and the address where the target is part of the output."""
     href = address(link(ref) or "") if ref else ""
     found = {"tooltip": quoted(tooltip)}
+    # `_top`: an SVG may be shown in a frame, and its links lead to whole pages.
     return {**found, "URL": quoted(href), "target": '"_top"'} if href else found
 
 
@@ -151,9 +152,10 @@ def _small(item: Box, width: int) -> list[str]:
 
 
 def _table(item: Box) -> str:
-    """Draw a box with its ports as rows: inputs at the left, outputs at the right."""
+    """Return the html-like label of a box with its ports as rows: inputs at the left, outputs at the right."""
     frame, fill = colours(item)
     style = "ROUNDED,DASHED" if item.status == "planned" else "ROUNDED"
+    # The BORDER of a table is a whole number of points: the first digit of the pen's width, at least 1.
     head = (
         f'<TABLE STYLE="{style}" BORDER="{_pen(item)[0].replace("0", "1")}" COLOR="{frame}" BGCOLOR="{fill}" '
         'CELLBORDER="0" CELLSPACING="0" CELLPADDING="3">'

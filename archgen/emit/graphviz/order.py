@@ -1,4 +1,4 @@
-"""In which order groups should stand, so that little flows backwards, and how to fold that order into rows."""
+"""Order groups so that little flows backwards, and fold that order into rows."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Weights = Mapping[tuple[str, str], int]
 Rows = tuple[tuple[str, ...], ...]
 _ROWS = range(2, 8)
 _EXACT = 12
-"""Up to so many items the best order is found by looking at all sets (2 to this power)."""
+"""Up to this many items the best order is found over all subsets (2 to this power)."""
 
 
 def forward(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
@@ -20,7 +20,7 @@ def forward(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
 
 
 def _exact(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
-    """Dynamic programming over sets: the cheapest way to have placed exactly this set first."""
+    """Order items by dynamic programming over subsets: the least weight with exactly this subset placed first."""
     count = len(items)
     cost = [[weights.get((items[a], items[b]), 0) for b in range(count)] for a in range(count)]
     back = [_sums(row) for row in cost]
@@ -30,6 +30,7 @@ def _exact(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
         for last in range(count):
             if chosen >> last & 1:
                 before = chosen & ~(1 << last)
+                # Of equal costs `min` takes the largest index as the last item: equals keep the order of the files.
                 tries.append((best[before][0] + back[last][before], -last))
         least, last = min(tries)
         best[chosen] = (least, -last)
@@ -42,7 +43,7 @@ def _exact(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
 
 
 def _sums(costs: Sequence[int]) -> list[int]:
-    """Give the sum of each set of costs, by the set's bits."""
+    """Return the sum of each subset of costs, by the subset's bits."""
     sums = [0]
     for cost in costs:
         sums += [each + cost for each in sums]
@@ -50,7 +51,9 @@ def _sums(costs: Sequence[int]) -> list[int]:
 
 
 def _greedy(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
-    """Take what feeds more than it is fed, again and again (Eades, Lin and Smyth, 1993, in its simplest form)."""
+    """Take the item that feeds most more than it is fed, again and again (Eades, Lin and Smyth, 1993, in its simplest
+    form).
+    """
     left, order = list(items), list[str]()
     while left:
         inside = set(left)
@@ -66,11 +69,14 @@ def _greedy(items: Sequence[str], weights: Weights) -> tuple[str, ...]:
 
 
 def folds(order: Sequence[str], judge: Callable[[Rows], float]) -> list[Rows]:
-    """Cut an order into two to seven rows, for each number the cut that is judged best; long orders only evenly."""
+    """Cut an order into two to seven rows. Return the best cut for each number of rows; long orders are cut evenly
+    only.
+    """
     count = len(order)
     if count > _EXACT:
         return [_even(order, rows) for rows in _ROWS]
     best: dict[int, tuple[float, Rows]] = {}
+    # Bit i cuts after item i: at most 2,047 ways of cutting, since longer orders went another way.
     for marks in range(1, 1 << max(count - 1, 0)):
         rows = _cut(order, marks)
         if len(rows) in _ROWS and (worth := judge(rows)) < best.get(len(rows), (math.inf,))[0]:
@@ -79,7 +85,7 @@ def folds(order: Sequence[str], judge: Callable[[Rows], float]) -> list[Rows]:
 
 
 def _cut(order: Sequence[str], marks: int) -> Rows:
-    """Begin a new row after each item whose bit is set."""
+    """Cut an order after each item whose bit is set."""
     rows: list[list[str]] = [[]]
     for at, item in enumerate(order):
         rows[-1].append(item)

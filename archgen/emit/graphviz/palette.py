@@ -1,7 +1,7 @@
-"""Colours of the pictures, each chosen and measured for light paper, with its counterpart in the dark.
+"""The colours of pictures, each chosen and measured (WCAG) for light paper, with its counterpart in the dark.
 
-Pictures are emitted in the light colours, so that a file looks the same in every viewer. Where a page embeds the svg,
-`dark_rules` gives the style rules that replace each light colour by its dark one.
+Pictures are written in the light colours, so that a file looks the same in every viewer. Where a page embeds the svg,
+`dark_rules` makes the style rules that replace each light colour by its dark one.
 """
 
 from __future__ import annotations
@@ -36,8 +36,10 @@ HUES = (
     "#1b6e8c",
     "#6b5b3e",
 )
-"""Ten hues for groups, each with at least 5:1 on white. Two of them may look alike to the colour-blind, so a hue never
-says anything alone: the title stands beside it."""
+"""Ten hues for groups, each with at least 5:1 on white. To the colour-blind some pairs look alike (simulated: 2 of 45
+pairs for protan, 4 for deutan vision are nearer than CIE76 10), so a hue never says anything alone: the title is beside
+it.
+"""
 
 _DARK_HUES = (
     "#a9b4bd",
@@ -53,9 +55,9 @@ _DARK_HUES = (
 )
 
 INK = "#1b2126"
-"""Text on a fill that stays as light in the dark as it is on paper."""
+"""The text on a fill that is as light in the dark as on paper."""
 RIM = "#3d4853"
-"""The frame of such a fill, as dark in the dark."""
+"""The frame of such a fill: it does not change in the dark either."""
 PERIODS = {
     "to_10_ms": "#08306b",
     "to_30_ms": "#08519c",
@@ -68,10 +70,10 @@ PERIODS = {
     "on_demand": "#e9dff2",
     "once": "#e3e6e9",
 }
-"""Fills by period, one lightness after the other; the same in the dark, but for the unknown."""
+"""Fills by period, each step lighter than the one before. The same in the dark, but for `unknown`."""
 OK = "#1c6b3c"
 CHANGES = {"added": OK, "removed": ERROR, "changed": WARNING, "renamed": NOTE}
-"""What happened between two versions."""
+"""Colours of what happened between two versions."""
 
 _DARK_PAPER = "#14181c"
 _DARK = {
@@ -96,26 +98,27 @@ _DARK = {
 
 
 def hue(index: int | None) -> str:
-    """Give the colour of a palette index; beyond ten they repeat."""
+    """Return the colour of a palette index; beyond ten they repeat."""
     return FRAME if index is None else HUES[index % len(HUES)]
 
 
 def tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
-    """Mix a little of a colour into the paper."""
+    """Return the paper's colour with a share of another colour mixed in."""
     pairs = ((int(colour[at : at + 2], 16), int(paper[at : at + 2], 16)) for at in (1, 3, 5))
     return "#" + "".join(f"{round(share * over + (1 - share) * under):02x}" for over, under in pairs)
 
 
 def text_on(fill: str) -> str:
-    """Choose white or dark text, whichever reads better on a fill."""
+    """Return white or dark, whichever reads better as text on a fill."""
     red, green, blue = (int(fill[at : at + 2], 16) for at in (1, 3, 5))
+    # Perceived brightness (the weights of ITU-R BT.601), 0 to 255.
     if 0.299 * red + 0.587 * green + 0.114 * blue < 135:  # noqa: PLR2004
         return PAPER
     return INK if fill in _STEADY else TEXT
 
 
 def rim_on(fill: str) -> str:
-    """Choose a frame that stands out from its fill and from the paper, in the light and in the dark."""
+    """Return a frame colour that stands out from its fill and from the paper, in the light and in the dark."""
     return RIM if text_on(fill) == INK else FRAME
 
 
@@ -123,7 +126,7 @@ _STEADY = frozenset(PERIODS.values()) - {PAPER}
 
 
 def dark_pairs() -> tuple[tuple[str, str], ...]:
-    """Pair each light colour with its dark counterpart."""
+    """Return pairs of each light colour and its dark counterpart."""
     hues = dict(zip(HUES, _DARK_HUES, strict=True))
     tints = {tint(light): tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
     tints |= {tint(light): tint(_DARK[light], 0.16, _DARK_PAPER) for light in CHANGES.values()}
@@ -131,10 +134,11 @@ def dark_pairs() -> tuple[tuple[str, str], ...]:
 
 
 def dark_rules(scope: str) -> str:
-    """Give the CSS that turns embedded pictures dark. `scope` is a selector of what stands round the svg elements."""
+    """Return the CSS that turns embedded pictures dark. `scope` is a selector of what is round the svg elements."""
     rules = []
     for light, dark in dark_pairs():
         rules.append(f'{scope} svg.archgen :not(text)[fill="{light}"]{{fill:{dark}}}')
+        # White is paper as a fill, but as a text it is on a dark fill that stays as it is: white text stays white.
         rules.append(f'{scope} svg.archgen text[fill="{light}"]{{fill:{dark if light != PAPER else light}}}')
         rules.append(f'{scope} svg.archgen [stroke="{light}"]{{stroke:{dark}}}')
     return "\n".join(rules) + "\n"

@@ -1,7 +1,7 @@
-"""Small and quick PNGs: Graphviz's gd writer takes a third of the time and bytes of cairo's, with a palette.
+"""Render small PNGs quickly: Graphviz's gd writer, with a palette, takes a third of the time and bytes of cairo's.
 
-Its palette is a little off (white comes out as 252, 254, 252): the entries next to a colour of ours are set right. In
-pictures of many hues it would take two pale grounds for one, so cairo writes those itself, as it does where gd is not
+Its palette is a little off (white comes out as 252, 254, 252): the entries next to one of our colours are corrected. In
+pictures of many hues it would take two pale fills for one, so cairo writes those itself, as it does where gd is not
 built in.
 """
 
@@ -17,15 +17,16 @@ from archgen.emit.graphviz.scene import Attributes, Scene
 _WRITERS = ("png:cairo", "png")
 _QUICK = "png:cairo:gd"
 _PAGE = 700.0
-"""As wide as pictures stand on a landscape page, in points."""
+"""The width of pictures on a landscape page, in points."""
 _MASKS = (0xFC, 0xFE, 0xFC)
-"""Which bits of red, green and blue gd's palette keeps."""
+"""The bits of red, green and blue that gd's palette keeps."""
 
 
 def png(scene: Scene, name: str, look: Attributes, *, quick: bool) -> bytes:
-    """Draw a scene at 150 dots per inch; one that is wider than a page, and will be shown smaller, at 110."""
+    """Render a scene at 150 dots per inch. One that is wider than a page, and will be shown smaller, gets 110."""
     left, bottom, right, top = scene.bounds()
     dpi = 150 if right - left <= _PAGE else 110
+    # A viewport of whole pixels. 14 points are the padding at both sides (`pad`, 0.08 inch each) and a little more.
     width, height = (math.ceil((size + 14) * dpi / 72) * 72 / dpi for size in (right - left, top - bottom))
     dot = scene.dot(name, {**look, "viewport": f'"{width:.4f},{height:.4f}"'}, dpi)
     for writer in (*([_QUICK] if quick else []), *_WRITERS[:-1]):
@@ -38,7 +39,8 @@ def png(scene: Scene, name: str, look: Attributes, *, quick: bool) -> bytes:
 
 
 def snapped(data: bytes) -> bytes:
-    """Set palette entries that are nearly one of our colours to that colour."""
+    """Replace palette entries that are nearly one of our colours by that colour."""
+    # A PNG chunk is length, type, data, CRC of type and data. PLTE comes before the image data, so the first hit is it.
     at = data.find(b"PLTE")
     if at < 0:
         return data
@@ -51,7 +53,7 @@ def snapped(data: bytes) -> bytes:
 
 
 def _coarse(colour: bytes) -> bytes:
-    """Leave out the bits that gd's palette leaves out."""
+    """Return a colour without the bits that gd's palette leaves out."""
     return bytes(part & mask for part, mask in zip(colour, _MASKS, strict=True))
 
 

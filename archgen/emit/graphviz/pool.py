@@ -1,7 +1,7 @@
-"""Worker processes that draw, several at once, each under a time limit.
+"""Draw in worker processes, several at once, each picture under a time limit.
 
-A picture whose drawing crashes, fails or takes too long is drawn once more in a simpler way, and says so; if that
-fails as well it comes without any format. The other pictures are not touched.
+A picture whose drawing crashes, fails or takes too long is drawn once more in a simpler way, and says so. If that fails
+as well, the picture comes without any format. The other pictures are not affected.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ Command = Sequence[str]
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """Who is told of each picture when it is drawn: how many of how many; which task it is of. In any thread."""
+    """Callbacks for each picture as it is drawn: `on_progress(done, total)`, `on_drawn(task's index, picture)`.
+
+    `on_drawn` is called in any thread, several at a time; `on_progress` under a lock, in order.
+    """
 
     progress: Progress | None = None
     drawn: Callable[[int, Picture], None] = lambda _at, _picture: None
@@ -47,14 +50,14 @@ _PACKAGES = {
 
 
 class MissingGraphviz(Exception):  # noqa: N818 - it says what is missing
-    """Pictures cannot be drawn on this machine: a system library, or pygraphviz itself, is not there.
+    """Pictures cannot be drawn on this machine: a system library, or pygraphviz itself, is missing.
 
-    The message says which package to install; everything else can still be made.
+    The message says which package to install. Everything else can still be made.
     """
 
 
 def explain(message: str) -> str:
-    """Say which package is missing, from what the import said."""
+    """Describe which package is missing, from the message of the ImportError."""
     package = next((package for library, package in _PACKAGES.items() if library in message), None)
     if package:
         everything = " ".join(dict.fromkeys(_PACKAGES.values()))
@@ -66,7 +69,9 @@ def explain(message: str) -> str:
 
 
 def command() -> Command:
-    """Give the command line of a worker. `-P` keeps the current folder, which may be anybody's, out of its path."""
+    """Return the command line of a worker. `-P` keeps the current folder, which anybody may fill, out of its import
+    path.
+    """
     root = str(Path(__file__).resolve().parents[3])
     return (sys.executable, "-P", "-c", _START.format(root=root))
 
@@ -81,10 +86,13 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     start: Command | None = None,
     ready: Sequence[Worker] = (),
 ) -> tuple[Picture, ...]:
-    """Draw all tasks, the largest first; gives the pictures in the order of the tasks.
+    """Draw all tasks, the largest first. Return the pictures in the order of the tasks.
 
-    Workers that are `ready` are used, and stopped; further ones are started as needed.
+    Raise MissingGraphviz where no worker can draw. Workers in `ready_workers` are used and stopped; more are started as
+    needed.
     """
+    # Threads, since each only waits for its process; `ready` workers beyond the number of tasks are stopped by who made
+    # them.
     count = max(1, min(workers, len(tasks)))
     processes = [*ready[:count], *(idle(folder, start) for _ in range(count - len(ready)))]
     run = _Run(tasks, watch, timeout)
@@ -99,19 +107,19 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
 
 
 def idle(folder: Path, start: Command | None = None) -> Worker:
-    """Give a worker whose process is not started yet."""
+    """Create a worker whose process is not started yet."""
     # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
     environment = {**os.environ, "FONTCONFIG_FILE": str(fonts.configure(folder)), "TZ": "UTC0"}
     return Worker(start or command(), environment)
 
 
 def _size(task: Task) -> int:
-    """Guess how long a drawing takes; charts have nothing to lay out."""
+    """Estimate how long a drawing takes, by its boxes; charts have nothing to lay out."""
     return 0 if isinstance(task.graph, Chart) else len(task.graph.boxes)
 
 
 class _Run:
-    """What the threads share: each holds one worker process and takes the next task when its last one is done."""
+    """What the threads share. Each has one worker process and takes the next task when its last one is done."""
 
     def __init__(self, tasks: Sequence[Task], watch: Watch, timeout: float) -> None:
         self.done: dict[int, Picture] = {}
@@ -120,11 +128,12 @@ class _Run:
         self._lock = threading.Lock()
         self._total = len(tasks)
         self._waiting: queue.SimpleQueue[tuple[int, Task]] = queue.SimpleQueue()
+        # The largest first: started last, one large picture would keep all others waiting at the end.
         for at, task in sorted(enumerate(tasks), key=lambda each: -_size(each[1])):
             self._waiting.put((at, task))
 
     def work(self, process: Worker) -> None:
-        """Take tasks until there are none."""
+        """Draw waiting tasks until there are none, or nothing can be drawn at all. Then stop the worker."""
         try:
             while not self.missing:
                 at, task = self._waiting.get_nowait()
@@ -143,6 +152,7 @@ class _Run:
 
     def _drawn(self, process: Worker, task: Task) -> Picture:
         answer = process.ask(task, self._timeout)
+        # No other worker will fare better: the run ends, and the caller makes everything else without pictures.
         if isinstance(answer, Failure) and answer.kind == "missing":
             self.missing = answer.message
         if isinstance(answer, Failure) and not self.missing:
@@ -162,8 +172,10 @@ class Worker:
         self._late = self._greeted = False
 
     def ask(self, task: Task, timeout: float) -> Picture | Failure:
-        """Have one picture drawn."""
+        """Have one picture drawn. Return a failure where the process died or took longer than `timeout` seconds."""
         self._late = False
+        # Killing the process is what ends a layout that takes too long: reading its answer then meets the end of the
+        # pipe.
         alarm = threading.Timer(timeout, self._kill)
         alarm.start()
         try:
@@ -186,7 +198,7 @@ class Worker:
         return answer
 
     def begin(self) -> subprocess.Popen[bytes]:
-        """Start the process, if it does not run, and do not wait until it can draw."""
+        """Start the process unless it runs. Does not wait until it can draw."""
         if self._process is None:
             pipe = subprocess.PIPE
             self._greeted = False
@@ -201,7 +213,7 @@ class Worker:
             self._process.kill()
 
     def stop(self) -> None:
-        """End the process."""
+        """End the process. It can be started again."""
         process, self._process = self._process, None
         if process:
             process.kill()

@@ -1,8 +1,8 @@
-"""A drawing whose parts have their places: what layouts give, and what is rendered without moving anything.
+"""Scenes: drawings whose parts have their places. Layouts make them, and they are rendered without moving anything.
 
-Edges are drawn over frames, and everything else over edges, so that a text is never crossed by a line. Coordinates
-are points, y upwards. Texts of edges and frames are parts of their own (`Part.kind`), because Graphviz draws them below
-the edges and lets them meet.
+Edges are drawn over frames, and everything else over edges, so that a text is never crossed by a line. Coordinates are
+in points, y upwards. Labels of edges and titles of frames are parts of their own (`ScenePart.kind`), because Graphviz
+draws its own below the edges and lets them overlap.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from archgen.emit.graphviz.text import quoted
 Attributes = dict[str, str]
 Point = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
-"""Left, bottom, right, top."""
+"""Left, bottom, right, top; in points."""
 
 DEFAULTS = 'node [fontname="DejaVu Sans" fontsize="9" fontcolor="#1b2127"]; edge [fontname="DejaVu Sans" fontsize="8"];'
 _POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
@@ -26,7 +26,7 @@ _POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Something with a middle and a size. `mark` decorates a box and may lie on it."""
+    """Something with a middle and a size. A `mark` decorates a box and may overlap it."""
 
     name: str
     attributes: Attributes
@@ -38,7 +38,7 @@ class Part:
 
     @property
     def rectangle(self) -> Rectangle:
-        """The rectangle that it covers."""
+        """The rectangle that the part covers."""
         return (
             self.x - self.width / 2,
             self.y - self.height / 2,
@@ -49,7 +49,9 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """An edge with its spline, as Graphviz writes it; `edge` numbers it, `arrow` is the id of what was asked for."""
+    """An edge with its spline as Graphviz writes it. `edge` is its number in the graph, `arrow` the id of the graph's
+    arrow.
+    """
 
     edge: str
     arrow: str
@@ -60,24 +62,26 @@ class Line:
 
     @property
     def curve(self) -> tuple[Point, ...]:
-        """The points of the Bézier curves, without the tips of the arrow heads."""
+        """The points of the Bézier curves, without the tips of arrow heads."""
         return tuple(point for mark, point in _read(self.spline) if not mark)
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """The points of the spline and the tips of its arrow heads, in no order."""
+        """The points of the spline and the tips of its arrow heads, in no particular order."""
         return tuple(point for _, point in _read(self.spline))
 
 
 @lru_cache(8192)
 def _read(spline: str) -> tuple[tuple[str, Point], ...]:
-    """Read a spline's points, the tips of arrow heads with their mark; layouts look at the same ones again and again."""
+    """Parse a spline: its points, with `s,` or `e,` for the tips of arrow heads. Layouts ask for the same ones
+    repeatedly.
+    """
     return tuple((each["mark"] or "", (float(each["x"]), float(each["y"]))) for each in _POINT.finditer(spline))
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A rectangle behind everything: a cluster."""
+    """A rectangle behind everything: a cluster's frame."""
 
     name: str
     attributes: Attributes
@@ -86,14 +90,14 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A placed drawing."""
+    """A drawing whose parts have their places."""
 
     frames: tuple[Frame, ...] = ()
     lines: tuple[Line, ...] = ()
     parts: tuple[Part, ...] = ()
 
     def bounds(self) -> Rectangle:
-        """Give the rectangle round everything."""
+        """Return the rectangle round everything."""
         rectangles = [frame.rectangle for frame in self.frames] + [part.rectangle for part in self.parts]
         rectangles += [(x, y, x, y) for line in self.lines for x, y in line.points]
         if not rectangles:
@@ -102,7 +106,7 @@ class Scene:
         return (min(left), min(bottom), max(right), max(top))
 
     def moved(self, dx: float, dy: float) -> Scene:
-        """Shift the whole drawing."""
+        """Return the scene shifted."""
         return Scene(
             tuple(replace(frame, rectangle=_shifted(frame.rectangle, dx, dy)) for frame in self.frames),
             tuple(replace(line, spline=_along(line.spline, dx, dy)) for line in self.lines),
@@ -110,7 +114,7 @@ class Scene:
         )
 
     def joined(self, *others: Scene) -> Scene:
-        """Lay other drawings over this one."""
+        """Return this scene with others laid over it."""
         scenes = (self, *others)
         return Scene(
             tuple(frame for scene in scenes for frame in scene.frames),
@@ -119,8 +123,9 @@ class Scene:
         )
 
     def dot(self, name: str, attributes: Attributes, dpi: int | None = None) -> str:
-        """Write the drawing as DOT with positions (`neato -n2` draws it as well)."""
+        """Return the scene as DOT with positions (`neato -n2` draws it as well)."""
         extra = {**attributes, **({"dpi": str(dpi)} if dpi else {})}
+        # edgesfirst: Graphviz draws edges before nodes, so a box is never crossed by a line that passes below it.
         lines = [f"digraph {quoted(name)} {{", f'graph [outputorder="edgesfirst" {_pairs(extra)}];', DEFAULTS]
         lines += [
             f'subgraph "cluster_{frame.name}" {{ graph [id="{frame.name}" {_pairs(frame.attributes)} bb="{_numbers(*frame.rectangle)}"]; }}'
@@ -138,9 +143,9 @@ class Scene:
 
 
 def placed(layout: dict[str, Any], boxes: dict[str, Attributes], arrows: dict[str, tuple[str, Attributes]]) -> Scene:
-    """Read boxes and arrows back from Graphviz's json. Nodes that are not asked for (helpers) are left out.
+    """Read boxes and arrows back from Graphviz's json. Nodes that are not in `box_attributes` (helpers) are left out.
 
-    `arrows` gives for each edge id of the layout the arrow's id and how it is drawn.
+    `arrow_attributes` has for each edge id of the layout the arrow's id and its attributes.
     """
     objects = layout.get("objects", [])
     names = {item["_gvid"]: item["name"] for item in objects}
@@ -186,13 +191,14 @@ def _pairs(attributes: Attributes) -> str:
 
 
 def meet(one: Rectangle, other: Rectangle, gap: float = 0.0) -> bool:
-    """Say whether two rectangles overlap, or come nearer than a gap."""
+    """Return whether two rectangles overlap, or are nearer to each other than a gap."""
     return one[0] < other[2] + gap and other[0] < one[2] + gap and one[1] < other[3] + gap and other[1] < one[3] + gap
 
 
 def meetings(scene: Scene) -> Iterable[tuple[str, str]]:
-    """Name each pair of boxes, titles and labels that overlap, by more than the rounding of a hairline."""
+    """Yield each pair of boxes, titles and labels that overlap by more than the rounding of a hairline. For tests."""
     parts = [part for part in scene.parts if part.kind != "mark"]
+    # A sweep from left to right: nothing that begins beyond a part's right side can overlap it.
     parts.sort(key=lambda part: part.rectangle[0])
     for at, part in enumerate(parts):
         for other in parts[at + 1 :]:

@@ -1,4 +1,4 @@
-"""How each kind of arrow looks, and the texts that stand beside it.
+"""Style arrows and the labels beside them.
 
 | style | line |
 |---|---|
@@ -24,16 +24,16 @@ from archgen.views.shapes import Arrow
 Attributes = dict[str, str]
 
 WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))
-"""From how many flows on an arrow is how wide."""
+"""The pen width by the least number of flows, the largest first."""
 
 
 def width(count: int) -> str:
-    """Give the pen width of an arrow that stands for so many flows."""
+    """Return the pen width of an arrow that stands for `count` flows."""
     return next((pen for least, pen in WIDTHS if count >= least), "1")
 
 
 def arrow(item: Arrow, link: Link, *, merged: bool = False) -> Attributes:
-    """Give the DOT attributes of an arrow, without its text."""
+    """Return the DOT attributes of an arrow, without its label."""
     colour = _colour(item)
     classes = [
         "arrow",
@@ -50,6 +50,7 @@ def arrow(item: Arrow, link: Link, *, merged: bool = False) -> Attributes:
         **_tooltip(item, link),
     }
     if merged:
+        # Graphviz scales heads with the pen: wider lines need a smaller factor for heads of about the same size.
         found["arrowsize"] = {"1": "0.7", "2": "0.6", "3.2": "0.5"}[width(item.count)]
     return {**found, **_changed(item, colour)} if item.change else found
 
@@ -61,7 +62,7 @@ def _colour(item: Arrow) -> str:
 
 
 def _changed(item: Arrow, colour: str) -> Attributes:
-    """Tell by the line what happened; the head still tells what runs along it."""
+    """Return attributes that show what happened by the line. The head still shows what runs along it."""
     if item.change == "added":
         return {"style": '"solid"', "color": f'"{colour}"', "penwidth": "2.2", "arrowsize": "0.5"}
     if item.change == "removed":
@@ -85,13 +86,16 @@ def _form(item: Arrow, colour: str) -> Attributes:
 
 def _tooltip(item: Arrow, link: Link) -> Attributes:
     found = linked(item.ref, "\n".join(item.flows) or item.label or "flow", link)
+    # Graphviz has two tooltips for an edge: on its line (`edgetooltip`) and on the edge as a whole; both say the same.
     return {("edgetooltip" if name == "tooltip" else name): value for name, value in found.items()} | {
         "tooltip": found["tooltip"]
     }
 
 
 def label(item: Arrow, link: Link, *, merged: bool = False, at: int = 20) -> Attributes | None:
-    """Give the DOT attributes of the text beside an arrow, a part of its own with a paper-coloured ground."""
+    """Return the DOT attributes of an arrow's label, a part of its own on paper-coloured ground; None if it has no
+    text.
+    """
     text = item.label or (str(item.count) if merged and item.count > 1 else "")
     if not text:
         return None

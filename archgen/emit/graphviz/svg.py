@@ -1,4 +1,4 @@
-"""Graphviz's svg, made fit to stand in a page: no prologue, real titles, ids of its own, a name and a description.
+"""Clean up Graphviz's svg for a page: no prologue, real titles, ids of its own, a name and a description.
 
 Hooks for a page's style: the root has the class `archgen`; its parts are `.box`, `.frame`, `.arrow`, `.label`,
 `.title`, `.legend`, `.badge`, `.bar`, with the style, emphasis, status and hue (`hue0` to `hue9`) as further classes.
@@ -22,22 +22,23 @@ _LINK = re.compile(
     r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL
 )
 _SURFACE = re.compile(rb"surface[0-9]+")
+# The lookahead keeps the search inside of one edge's group: an edge without a path must not take the next one's.
 _DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
 
 
 def drawn_edges(svg: str) -> set[str]:
-    """Name the edges that have a line."""
+    """Return the ids of the edges that have a line."""
     return set(_DRAWN.findall(svg))
 
 
 def steady(outlines: bytes) -> bytes:
-    """Give the surfaces numbers from 1 on: cairo goes on counting from one picture to the next."""
+    """Renumber cairo's surfaces from 1: cairo goes on counting from one picture to the next in the same process."""
     numbers: dict[bytes, bytes] = {}
     return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
 
 
 def finished(svg: str, graph: Drawing) -> bytes:
-    """Give the svg as an element of its own."""
+    """Return the svg as a single element, without prologue and comments."""
     head = _HEAD.match(svg)
     if head is None:
         return svg.encode()
@@ -52,7 +53,7 @@ def finished(svg: str, graph: Drawing) -> bytes:
 
 
 def _titled(found: re.Match[str]) -> str:
-    """Write a tooltip as a title element, and keep the link where there is an address."""
+    """Write a tooltip as a title element. Keep the link where there is an address."""
     href, tooltip, rest, inner = found.groups()
     title = f"<title>{tooltip}</title>\n" if tooltip.strip() else ""
     return f"<a {href}{rest.strip()}>\n{title}{inner}</a>\n" if href else f"{title}{inner}"

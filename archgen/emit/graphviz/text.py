@@ -1,8 +1,8 @@
-r"""Text for DOT: cleaned of what pictures cannot hold, escaped for its place, wrapped to fit a box.
+r"""Prepare text for DOT: clean it of what pictures cannot hold, escape it for its place, wrap it to fit a box.
 
 Titles come from files that anybody may have written. In an html-like label `&`, `<` and `>` are markup and `\N` is
 replaced by Graphviz; in a quoted string `"` ends it, and a character reference would be read as one. Both are
-escaped here and nowhere else. Control characters make an SVG that is no XML, and the marks that turn the direction of
+escaped here and nowhere else. Control characters make an SVG that is not XML, and the marks that turn the direction of
 writing make a text look like another: neither gets into a picture.
 """
 
@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Sequence
 
 LONGEST = 400
-"""A text longer than this many characters is cut, with an ellipsis; pages and tables have it whole."""
+"""A longer text (in characters) is cut, with an ellipsis; pages and tables have all of it."""
 
 _BLANKS = re.compile(r"\s+")
 _UNFIT = re.compile(
@@ -25,9 +25,10 @@ _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
 
 
 def clean(text: str, longest: int = LONGEST) -> str:
-    """Give the text on one line, without what no picture can hold."""
+    """Return the text on one line, without characters that no picture can hold, cut at `max_length`."""
     text = _BLANKS.sub(" ", text)
     if not text.isprintable():
+        # Category Cn: unassigned characters, and noncharacters, which XML does not allow.
         text = "".join(c for c in _UNFIT.sub("", text) if unicodedata.category(c) != "Cn")
     text = text.strip()
     return text if len(text) <= longest else text[: longest - 1] + "…"
@@ -39,14 +40,16 @@ def html(text: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """Write a value as DOT's quoted string; line feeds stay line feeds."""
+    """Quote a value for DOT. Line feeds stay line feeds."""
     lines = (clean(line, 4000) for line in text.split("\n"))
+    # Graphviz reads `&lt;` in a quoted string as a character reference, so `&` is escaped here too.
     escaped = (line.replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"') for line in lines)
     return '"' + "\\n".join(escaped) + '"'
 
 
 def address(href: str) -> str:
-    """Give an address that is safe to follow, or nothing: relative ones, http, https and mailto."""
+    """Return an address that is safe to follow (relative, http, https, mailto), or an empty text."""
+    # Cleaned before the scheme is looked at: browsers drop tabs and line feeds, so a scheme may be hidden by them.
     href = _BLANKS.sub("%20", _UNFIT.sub("", href).strip())
     scheme = _SCHEME.match(href)
     if scheme and scheme[1].lower() not in {"http", "https", "mailto"}:
@@ -55,7 +58,7 @@ def address(href: str) -> str:
 
 
 def wrapped(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
-    """Break a text into lines of about `width` characters, wider only where it would take too many lines."""
+    """Wrap a text into lines of about `width` characters, wider only where it would take more than `lines` lines."""
     text = clean(text)
     width = max(width, -(-len(text) // lines))
     rows = [""]
@@ -67,7 +70,9 @@ def wrapped(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
 
 
 def _pieces(text: str, width: int) -> list[str]:
-    """Cut a text where a line may end: after blanks; in longer words after `/`, then after other signs; else anywhere."""
+    """Split a text where a line may end: after blanks; in longer words before `/`, then after other signs; else
+    anywhere.
+    """
     return [piece for word in re.findall(r"\S+\s*", text) for piece in _cut(word, width, _BREAKS)]
 
 

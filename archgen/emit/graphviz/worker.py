@@ -1,7 +1,7 @@
 """A worker process: reads graphs from its standard input, one after the other, and writes pictures to its output.
 
 Messages are pickles with their length before them. Graphviz may write to the standard output or end the process: the
-output is kept apart, and who waits at the other end sees that it closed.
+output is kept apart, and whoever waits at the other end sees the pipe close.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ _LENGTH = struct.Struct("<Q")
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One graph to draw: with the addresses of its links, the formats, and how."""
+    """One graph to draw: the addresses of its links, the formats, and how.
+
+    `simple` asks for the last resort, `warning` is passed on to the picture.
+    """
 
     graph: Drawing
     links: dict[str, str]
@@ -32,7 +35,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """What went wrong: `missing` if pygraphviz cannot be imported, `layout` if this graph cannot be drawn so."""
+    """What went wrong. `kind` is `missing` if pygraphviz cannot be imported, `layout` if this graph cannot be drawn."""
 
     kind: str
     message: str
@@ -46,7 +49,7 @@ def send(stream: IO[bytes], message: object) -> None:
 
 
 def receive(stream: IO[bytes]) -> Any:  # noqa: ANN401 - whatever was sent
-    """Read one message; EOFError where the other end is gone."""
+    """Read one message. Raise EOFError where the other end is gone."""
     head = stream.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         raise EOFError
@@ -55,7 +58,8 @@ def receive(stream: IO[bytes]) -> Any:  # noqa: ANN401 - whatever was sent
 
 
 def main() -> None:
-    """Serve until the input ends."""
+    """Draw tasks until the input ends. Called by name from the command line that `worker_command` makes."""
+    # Messages go to a copy of the standard output, and descriptor 1 to nowhere: Graphviz's C code prints there.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     try:

@@ -1,4 +1,6 @@
-"""The static site: pages and pictures in, a tree of files out. It opens from the disk and asks nobody for anything."""
+"""Build the static site: pages and pictures in, a tree of files out. It opens from the disk and loads nothing from
+elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment, Template
 
 FONTS = Path(__file__).resolve().parent.parent / "fonts"
-"""The font that pictures are laid out with: pages load the same, so that text fits its boxes in every browser."""
+"""The font that pictures are laid out with. Pages load the same, so that text fits its boxes in every browser."""
 
 
 def write(  # noqa: PLR0913 - what a site is made of
@@ -34,9 +36,9 @@ def write(  # noqa: PLR0913 - what a site is made of
     notices: Sequence[Paragraph],
     chapter_files: ChapterFiles,
 ) -> FileTree:
-    """Make the site. The first page is the start page; `chapter_files` gives the pictures that chapters show.
+    """Build the site. The first page is the start page; `chapter_files` returns the pictures that chapters show.
 
-    A link in a picture is `#` and the anchor that it leads to.
+    Links in the pictures must be `#` and the anchor that they lead to.
     """
     backend = backends.shipped("site")
     links = collect(pages)
@@ -48,12 +50,13 @@ def write(  # noqa: PLR0913 - what a site is made of
         path = links.files[page.path]
         writer = Writer(here(path, links), pictures, chapters)
         frame = _frame(page, writer, way, notices)
+        # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
         found.append((path, template.render(frame, title=clean(title), revision=clean(revision)).encode()))
     return tree((*found, *chapters.files.items()))
 
 
 def _frame(page: Page, writer: Writer, way: Navigation, notices: Sequence[Paragraph]) -> dict[str, object]:
-    """Give what the template puts on a page."""
+    """Return the variables of a page's template."""
     place = writer.here
     return {
         "heading": clean(page.title),
@@ -74,12 +77,12 @@ def _kinds(backend: backends.Backend) -> tuple[tuple[str, str], ...]:
 
 @cache
 def _template(folder: Path) -> Template:
-    """Compile the frame once for all pages and all runs of a process."""
+    """Compile the template of pages, once for all pages and all runs of a process."""
     return environment(folder).get_template("page.html.j2")
 
 
 def environment(folder: Path) -> Environment:
-    """Give what templates of pages run in: all that is not marked safe is escaped."""
+    """Create Jinja's environment for the site's own templates: all that is not marked safe is escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(
@@ -92,7 +95,7 @@ def environment(folder: Path) -> Environment:
 
 
 def _pictures(pictures: Mapping[str, Picture], links: Links) -> Iterator[tuple[str, bytes]]:
-    """Give each picture as a file of its own, which a page's picture opens."""
+    """Yield a file for each picture; the page's picture links to it."""
     for graph, picture in pictures.items():
         if picture.svg is not None:
             path = drawing.path(graph)
@@ -102,10 +105,11 @@ def _pictures(pictures: Mapping[str, Picture], links: Links) -> Iterator[tuple[s
 
 @cache
 def _assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
-    """Give the files that pages load: style, script and fonts, and the style of pictures."""
+    """Read the files that pages load: style, script and fonts, and the style of pictures."""
     own = (
         (path.relative_to(folder).as_posix(), path) for path in sorted((folder / "assets").rglob("*")) if path.is_file()
     )
     fonts = ((f"assets/fonts/{path.name.lower()}", path) for path in sorted(FONTS.iterdir()))
+    # Lower case, as all paths that archgen makes.
     files = [(name.lower(), path.read_bytes()) for name, path in (*own, *fonts)]
     return (*files, ("assets/pictures.css", drawing.style_embedded().encode()))

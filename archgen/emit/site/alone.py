@@ -1,4 +1,4 @@
-"""One HTML page that stands by itself: an outline with its pictures, style and font inside. It asks nobody for anything."""
+"""Write a standalone HTML page: an outline with its pictures, style and font inside. It loads nothing from anywhere."""
 
 from __future__ import annotations
 
@@ -24,16 +24,17 @@ if TYPE_CHECKING:
 _PATH = "index.html"
 _FACE = re.compile(r"@font-face \{[^}]*\}\n?")
 _FONT = "inter-latin-wght-normal.woff2"
-"""The one font that the page brings along; letters that it lacks come from the reader's system."""
+"""The only font inside the page; letters that it lacks come from the reader's system."""
 _PICTURES = 'svg.archgen text { font-family: "DejaVu Sans", "Bitstream Vera Sans", Verdana, sans-serif; }\n'
-"""Fonts as wide as the one that pictures are laid out with: texts fit their boxes without it."""
+"""Fonts as wide as the one that pictures are laid out with, so that texts fit their boxes without it."""
 
 
 def write(outline: Outline, pictures: Mapping[str, Picture]) -> bytes:
-    """Make the page. A link in a picture is `#` and the anchor that it leads to."""
+    """Write the page. Links in the pictures must be `#` and the anchor that they lead to."""
     section = Section("page:index", outline.title, sections=outline.sections)
     page = Page(_PATH, section.anchor, outline.title, "page", section)
     place = here(_PATH, collect([page]))
+    # Pictures of chapters would be files of their own, so there are none here.
     writer = Writer(place, pictures, Chapters(lambda _path: None), alone=True)
     folder = backends.shipped("site").folder
     frame = {
@@ -50,7 +51,7 @@ def write(outline: Outline, pictures: Mapping[str, Picture]) -> bytes:
 
 
 def _navigation(outline: Outline, place: Here) -> Iterator[str]:
-    """List the chapters with their sections."""
+    """Yield a list of the chapters with their sections, as HTML."""
     yield "<ul>"
     for section in outline.sections:
         inner = "".join(f"<li>{_link(below, place)}</li>" for below in section.sections)
@@ -64,7 +65,7 @@ def _link(section: Section, place: Here) -> str:
 
 @cache
 def _style(folder: Path) -> str:
-    """Give the site's style with its font inside, that of pictures, and what only this page needs."""
+    """Return the site's style with its font inside, the style of pictures, and what only this page needs."""
     style = (folder / "assets" / "site.css").read_text("utf-8")
     data = base64.b64encode((folder / "assets" / "fonts" / _FONT).read_bytes()).decode()
     address = f'url(data:font/woff2;base64,{data}) format("woff2")'

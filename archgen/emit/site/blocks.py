@@ -1,4 +1,4 @@
-"""The blocks of a section as HTML.
+"""Write the blocks of a section as HTML.
 
 These are functions, not template macros: measured on 350 pages they take a quarter of the time.
 """
@@ -29,23 +29,23 @@ from archgen.views.shapes import (
 
 _SPOKEN = {"note": "Note: ", "warning": "Warning: ", "error": "Error: "}
 _WIDE = 3
-"""A table of fewer columns does not stretch: its values stand near their names."""
+"""A table with fewer columns is not stretched: its values stay near their names."""
 _ALIGNED = {"left": "", "right": ' class="right"', "centre": ' class="centre"'}
 
 
 @dataclass(frozen=True, slots=True)
 class Writer:
-    """Writes one page's content. `drawn` says which pictures the site has, and where."""
+    """Writes one page's content. `pictures` has the drawn pictures by the id of their graph."""
 
     here: Here
     drawn: Mapping[str, Picture]
     chapters: Chapters
     seen: set[str] = field(default_factory=set)
     alone: bool = False
-    """The page is all there is: no picture has a file of its own."""
+    """Whether the page is all there is: no picture has a file of its own."""
 
     def content(self, section: Section) -> str:
-        """Write a page's section; its title is the page's own."""
+        """Write a page's section without its title, which is the page's."""
         return self._inside(section, 1)
 
     def _inside(self, section: Section, level: int) -> str:
@@ -76,7 +76,7 @@ class Writer:
                 return self._figure(block)
 
     def paragraph(self, block: Paragraph) -> str:
-        """Write a paragraph; notes, warnings and errors stand out, and say so to who only hears them."""
+        """Write a paragraph. Notes, warnings and errors stand out, and screen readers say so too."""
         if block.kind == "text":
             return f"<p>{self.inlines(block.inlines)}</p>"
         spoken = f'<span class="spoken">{_SPOKEN[block.kind]}</span>'
@@ -84,6 +84,7 @@ class Writer:
 
     def inlines(self, runs: Inlines) -> str:
         """Write runs of text."""
+        # Lists inside of join, here and below: join builds one anyway, and is slower to do so from a generator.
         return "".join([self._run(run) for run in runs])
 
     def _run(self, run: Text) -> str:
@@ -98,6 +99,7 @@ class Writer:
         if href:
             html = f'<a href="{href}">{html}</a>'
         if run.change:
+            # Outside of the link, so that what was added or removed is marked as a whole.
             html = f'<span class="{run.change}">{html}</span>'
         if run.muted:
             html = f'<span class="muted">{html}</span>'
@@ -105,6 +107,7 @@ class Writer:
 
     def _table(self, table: Table) -> str:
         caption = escape(table.caption)
+        # A table without anchors has an empty tuple, and `zip` is strict.
         anchors = table.row_anchors or (None,) * len(table.rows)
         body = "\n".join([self._row(row, anchor, table) for row, anchor in zip(table.rows, anchors, strict=True)])
         return (
@@ -124,7 +127,7 @@ class Writer:
         return f"<tr{self._id(anchor) if anchor else ''}>{cells}</tr>"
 
     def facts(self, facts: Facts) -> str:
-        """Write names and values."""
+        """Write facts as a list of names and values."""
         rows = "\n".join(
             [f"<div><dt>{escape(name)}</dt><dd>{self.inlines(value)}</dd></div>" for name, value in facts.rows]
         )
@@ -151,18 +154,20 @@ class Writer:
         )
 
     def _natural(self, picture: Picture) -> str:
-        """Where the picture cannot be opened by itself it must stay readable: it scrolls before it gets too small."""
+        """Return the style for a picture that has no file of its own: it scrolls before it gets too small to read."""
         return f' style="--natural: {picture.width * 4 / 3:.0f}px"' if self.alone else ""
 
     def _whole(self, graph: str, caption: str) -> str:
-        """Lead to the picture's own file."""
+        """Return the link to the picture's own file."""
         if self.alone:
             return ""
         file = self.here.root + pictures.path(graph)
         return f' <a class="whole" href="{file}">Open picture<span class="spoken">: {caption}</span></a>'
 
     def _id(self, anchor: str) -> str:
-        """Write the id of an anchor where it first stands on the page."""
+        """Return the id attribute of an anchor the first time that it is used on the page, else nothing: ids are
+        unique.
+        """
         if anchor in self.seen:
             return ""
         self.seen.add(anchor)
@@ -174,7 +179,7 @@ def _heads(columns: Iterable[Column]) -> str:
 
 
 def _widths(columns: tuple[Column, ...]) -> str:
-    """Say the columns' shares of the width, where they differ; a browser takes them as hints."""
+    """Return the columns' shares of the width, where they differ. A browser takes them as hints."""
     total = sum(column.weight for column in columns)
     if len({column.weight for column in columns}) == 1 or not total:
         return ""

@@ -1,4 +1,4 @@
-"""CommonMark from the project as HTML: no HTML of its own, no request to anywhere, pictures copied into the site."""
+"""Write the project's CommonMark as HTML: no HTML of its own, no request to anywhere, pictures copied to the site."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from markdown_it.token import Token
 
 ChapterFiles = Callable[[str], bytes | None]
-"""Gives a file of the project by its path (`/`, relative to the project), or None where there is none."""
+"""Returns a file of the project by its path (`/`, relative to the project), or None if there is none."""
 
 _PICTURES = (
     (b"\x89PNG\r\n\x1a\n", ".png"),
@@ -33,14 +33,14 @@ _PICTURES = (
 
 @dataclass(frozen=True, slots=True)
 class Chapters:
-    """Writes CommonMark, and gathers the pictures that it needs (`files`: path in the site -> bytes)."""
+    """Writes CommonMark as HTML, and gathers the pictures that it needs (`files`: path in the site -> bytes)."""
 
     source: ChapterFiles
     files: dict[str, bytes] = field(default_factory=dict)
     known: dict[str, str | None] = field(default_factory=dict)
 
     def html(self, block: Markdown, level: int, here: Here) -> str:
-        """Write a text that stands below a heading of a level."""
+        """Write a text below a heading of this level."""
         parser = _parser()
         tokens = parser.parse(block.text)
         _nest_headings(tokens, level)
@@ -49,7 +49,7 @@ class Chapters:
         return str(parser.renderer.render(tokens, parser.options, {}))
 
     def _inline(self, tokens: Sequence[Token], folder: str, here: Here) -> None:
-        """Settle where links and pictures lead: renderers find the answer in the token's `meta`."""
+        """Resolve where links and pictures lead. The render rules find the answer in the token's `meta`."""
         around: list[str] = []
         for token in tokens:
             if token.type == "link_open":
@@ -61,14 +61,16 @@ class Chapters:
                 source = str(token.attrs.get("src", ""))
                 file = self._copy(_joined(folder, unquote(source)))
                 token.meta["source"] = here.root + file if file else ""
+                # A picture of the web inside of a link becomes plain words: HTML has no link in a link.
                 token.meta["address"] = "" if any(around) else web(source) or ""
 
     def _copy(self, path: str | None) -> str | None:
-        """Take a picture into the site; give its path there, or None where there is no such picture."""
+        """Copy a picture into the site. Return its path there, or None where there is no such picture."""
         if path is None:
             return None
         if path not in self.known:
             data = self.source(path)
+            # By its first bytes, not by its name: a file called .png may hold HTML, which a browser would run.
             ending = data and next((end for start, end in _PICTURES if data.lstrip()[:8].startswith(start)), None)
             self.known[path] = self._keep(path, data, ending) if data and ending else None
         return self.known[path]
@@ -83,7 +85,7 @@ class Chapters:
 
 
 def _joined(folder: str, path: str) -> str | None:
-    """Give the path in the project that a relative address means, or None where it leaves the project."""
+    """Return the path in the project that a relative address means, or None where it leaves the project."""
     if not path or "\\" in path or ":" in path.split("/", maxsplit=1)[0]:
         return None
     joined = posixpath.normpath(posixpath.join("/" if path.startswith("/") else folder, path)).lstrip("/")
@@ -91,13 +93,15 @@ def _joined(folder: str, path: str) -> str | None:
 
 
 def _address(target: str, folder: str, here: Here) -> str:
-    """Lead to the web, to a chapter's page or to an element; any other link leads nowhere, and only its words stay."""
+    """Return the address of a link: the web, a chapter's page or an element. Any other link leads nowhere: only its
+    words stay.
+    """
     path = _joined(folder, unquote(target.partition("#")[0]))
     return web(target) or (path and here.href(f"chapter:{path}")) or here.href(unquote(target)) or ""
 
 
 def _nest_headings(tokens: Sequence[Token], level: int) -> None:
-    """Move headings so that the largest is one below the heading that the text stands under, deeper ones follow."""
+    """Shift headings so that the largest is one level below the heading above the text, and deeper ones follow."""
     levels = [int(token.tag[1]) for token in tokens if token.type in {"heading_open", "heading_close"}]
     shift = level + 1 - min(levels, default=0)
     for token in tokens:
@@ -109,6 +113,7 @@ def _nest_headings(tokens: Sequence[Token], level: int) -> None:
 def _parser() -> MarkdownIt:
     from markdown_it import MarkdownIt
 
+    # The rules below replace all that writes an address or raw text; everything else is markdown-it's own HTML.
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     for name, rule in (
         ("link_open", _link_open),
@@ -134,7 +139,9 @@ def _link_close(_: object, tokens: Sequence[Token], place: int, *__: object) -> 
 
 
 def _image(_: object, tokens: Sequence[Token], place: int, *__: object) -> str:
-    """Show a copied picture; one from the web is a link (a page asks nobody), a missing one its words."""
+    """Render a copied picture; one from the web as a link (a page loads nothing from elsewhere), a missing one as its
+    words.
+    """
     token = tokens[place]
     alt = escape("".join(child.content for child in token.children or ()))
     if token.meta["source"]:

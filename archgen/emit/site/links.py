@@ -1,4 +1,4 @@
-"""Where each anchor is found: which page, and which place on it."""
+"""Find each anchor of a site: on which page it is, and with which id."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ from archgen.emit.site.markup import element_id
 from archgen.views.shapes import Figure, Page, Section, Table
 
 RESERVED = ("content", "navigation")
-"""Ids that the page's frame uses."""
+"""Ids that the page's template uses."""
 
 
 @dataclass(frozen=True, slots=True)
 class Links:
-    """The addresses of a site. `pages`: anchor -> path; `places`: anchor -> the first place, as path#id;
-    `ids`: path -> anchors on that page with their ids; `files`: the page's path as asked -> as it is.
+    """The addresses of a site.
+
+    `pages`: anchor -> path; `places`: anchor -> the first place, as path#id; `ids`: path -> anchors on that page with
+    their ids; `files`: the page's path as asked for -> its safe path.
     """
 
     pages: Mapping[str, str]
@@ -27,14 +29,14 @@ class Links:
 
 @dataclass(frozen=True, slots=True)
 class Here:
-    """The page that is being written: links are relative to it."""
+    """The page that is being written. Links are relative to it; `root` is the way up to the site's folder."""
 
     path: str
     root: str
     links: Links
 
     def href(self, ref: str) -> str | None:
-        """Give the address of an anchor from this page, or None where it leads nowhere, or to this page itself."""
+        """Return the address of an anchor from this page, or None where it leads nowhere, or to this page itself."""
         page = self.links.pages.get(ref)
         if page is not None:
             return None if page == self.path else self.root + page
@@ -45,12 +47,12 @@ class Here:
         return None if place is None else self.root + place
 
     def id(self, anchor: str) -> str:
-        """Give the id of something on this page."""
+        """Return the id of an anchor on this page."""
         return self.links.ids[self.path][anchor]
 
 
 def collect(pages: Iterable[Page]) -> Links:
-    """Find every anchor of a site. Where two pages have one, the first one has it, but each page prefers its own."""
+    """Find every anchor of a site. An anchor on several pages belongs to the first, but each page prefers its own."""
     listed = tuple(pages)
     files = safe_paths(page.path for page in listed)
     found, places = dict[str, str](), dict[str, str]()
@@ -65,12 +67,12 @@ def collect(pages: Iterable[Page]) -> Links:
 
 
 def here(path: str, links: Links) -> Here:
-    """Stand on a page."""
+    """Return the position from which a page's links are written."""
     return Here(path, "../" * path.count("/"), links)
 
 
 def _ids(page: Page) -> dict[str, str]:
-    """Give each anchor on the page an id of its own, in order of appearance."""
+    """Assign each anchor on the page an id of its own, in order of appearance."""
     taken = set(RESERVED)
     ids = dict[str, str]()
     for anchor in _anchors(page.section):

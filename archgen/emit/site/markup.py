@@ -1,4 +1,4 @@
-"""Text and addresses, made safe for HTML."""
+"""Make text and addresses safe for HTML."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WEB = re.compile(r"(?:https?://[^\s/]|mailto:[^\s:]+@)", re.IGNORECASE)
 
 
 def clean(text: str) -> str:
-    """Show characters that HTML forbids as U+FFFD."""
+    """Replace characters that HTML forbids by U+FFFD."""
     return _FORBIDDEN.sub("\ufffd", text) if _FORBIDDEN.search(text) else text
 
 
@@ -26,15 +26,16 @@ def escape(text: str) -> str:
 @lru_cache(65536)
 def words(text: str) -> str:
     """Escape text for an element, with places to break in long ids, topics and messages."""
+    # After escaping, and not across `&` or `;`, so that no entity is broken by a `<wbr>`.
     safe = escape(text)
     return _LONG.sub(lambda long: _JOINTS.sub(r"\1<wbr>", long.group()), safe) if len(safe) > 17 else safe  # noqa: PLR2004
 
 
 def web(url: str | None) -> str | None:
-    """Give an outside address, escaped, if it is one that a page may link to."""
+    """Return an outside address, escaped, if it is one that a page may link to (http, https, mailto)."""
     return escape(url) if url and _WEB.match(url) else None
 
 
 def element_id(anchor: str) -> str:
-    """Make an id (and a fragment) from an anchor."""
+    """Make an id (and a fragment) from an anchor. Different anchors may get the same id: `_assign_ids` settles that."""
     return re.sub(r"[^A-Za-z0-9_.:/-]+", "-", anchor)

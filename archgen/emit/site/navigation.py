@@ -1,7 +1,7 @@
-"""The way round the site: the tree at the side, and the path above the title.
+"""Write the navigation of the site: the tree at the side, and the path above the title.
 
-The tree is what the pages' crumbs say: a page hangs below the last of its crumbs. Those below the start page stand in
-the tree always, under their kind's heading; those below them where the reader is.
+The tree follows the pages' crumbs: a page is below the last of its crumbs. Pages below the start page are always in the
+tree, under the heading of their kind; pages below those only where the reader is.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ from archgen.emit.site.markup import escape, words
 from archgen.views.shapes import Page
 
 LISTED = 200
-"""A list longer than this is not repeated on each page of it: the page above has it whole, with a filter."""
+"""A longer list is not repeated on each of its pages: the page above has all of it, with a filter."""
 NEWLINE = "\n"
 
 
 @dataclass(frozen=True, slots=True)
 class Navigation:
-    """The tree. `kinds` are the headings (kind, title) in order; `below` holds each page's children by its anchor;
-    `start` is the start page's path, `home` what other pages call it.
+    """The navigation of a site.
+
+    `kinds` are the headings (kind, title) in order; `children` holds each page's children by its anchor, and under
+    `kind K` those below the start page; `start` is the start page's path, `home_title` what other pages call it.
     """
 
     kinds: tuple[tuple[str, str], ...]
@@ -33,35 +35,38 @@ class Navigation:
     made: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
 
     def html(self, page: Page, root: str) -> str:
-        """Write the tree for a page; trees that differ only in where the reader is are made once."""
+        """Write the tree for a page. Trees that differ only in the marked page are made once."""
         way = self._way(page.anchor)
+        # Without long lists a tree depends on the page right below the start page only, and hundreds of pages share it.
         key = (root, way if any(map(self._long, self._lists(way))) else way[-1:])
         if key not in self.made:
             self.made[key] = "\n".join(self._kind(kind, title, way, root) for kind, title in self.kinds)
         address = f'href="{root}{self.links.pages[page.anchor]}"'
+        # The first hit is the page's own entry: only the start page may be linked to again, further down.
         return self.made[key].replace(address, f'{address} aria-current="page"', 1)
 
     def crumbs(self, page: Page, root: str) -> list[tuple[str, str | None]]:
-        """Give the path from the start page: titles with addresses, where there is such a page."""
+        """Return the path from the start page: titles, with addresses where there is such a page."""
         found = ((title, self.links.pages.get(anchor)) for title, anchor in page.crumbs)
         return [(title, None if path is None else root + path) for title, path in found]
 
     def _way(self, anchor: str) -> tuple[str, ...]:
-        """Give the pages from this one up to the one right below the start page."""
+        """Return the anchors from this page up to the one right below the start page."""
         way = [anchor]
+        # `not in way`: crumbs come from views, and a circle in them must not hang the build.
         while (parent := self.parents.get(anchor)) and parent in self.parents and parent not in way:
             way.append(anchor := parent)
         return tuple(way)
 
     def _lists(self, way: tuple[str, ...]) -> tuple[str, ...]:
-        """Name the lists that the tree shows to a reader here."""
+        """Return the names of the lists that the tree shows to a reader here."""
         return (*(f"kind {kind}" for kind, _ in self.kinds), way[-1])
 
     def _long(self, name: str) -> bool:
         return len(self.below.get(name, ())) > LISTED
 
     def _shown(self, name: str, way: tuple[str, ...]) -> Sequence[Page]:
-        """Give a list as the tree shows it: whole, or where it is too long, what leads to the reader's page."""
+        """Return a list as the tree shows it: all of it, or if it is too long, what leads to the reader's page."""
         pages = self.below.get(name, ())
         return [page for page in pages if page.anchor in way] if self._long(name) else pages
 
@@ -75,7 +80,7 @@ class Navigation:
         return f"{heading}<ul>\n{NEWLINE.join(items)}\n</ul>" if items else ""
 
     def _item(self, page: Page, way: tuple[str, ...], root: str) -> str:
-        """Write an entry; the one that leads to the reader's page has its own list below it, others its length."""
+        """Write an entry. The one that leads to the reader's page has its own list below it, others its length."""
         children = len(self.below.get(page.anchor, ()))
         count = f' <span class="count" aria-hidden="true">{children}</span>' if children else ""
         shown = self._shown(page.anchor, way) if page.anchor == way[-1] else ()
@@ -90,7 +95,7 @@ class Navigation:
 
 
 def navigation(pages: Sequence[Page], links: Links, kinds: Sequence[tuple[str, str]]) -> Navigation:
-    """Make the tree of a site's pages. Kinds that nobody named come last, under their own name."""
+    """Build the navigation of a site. Kinds that `kinds` does not name come last, under their own name."""
     known = {page.anchor for page in pages}
     start = pages[0].anchor
     parents: dict[str, str] = {}

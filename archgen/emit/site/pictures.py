@@ -1,4 +1,4 @@
-"""Pictures in pages, and as files of their own: links lead to pages, colours follow light and dark.
+"""Write pictures into pages, and as files of their own: links lead to pages, colours follow light and dark.
 
 The SVGs come from archgen's own drawing, which escapes all text, so their tags can be found without parsing: an
 attribute holds no bare `<` or `>`. Whatever an address says, only one that leads to a page or the web stays.
@@ -30,14 +30,14 @@ _SIZE = re.compile(r'\s(width|height)="([0-9.]+)(?:pt|px)?"')
 
 
 def path(graph: str) -> str:
-    """Give the path of a picture's own file in the site."""
+    """Return the path of a picture's own file in the site."""
     return safe_path(f"figures/{graph}.svg")
 
 
 def inline(svg: bytes, href: Href, name: str) -> str:
-    """Make the SVG element for a page, under a name (escaped) that stands for the picture's own title and description.
+    """Return the SVG element for a page. `name` (escaped) takes the place of the picture's own title and description.
 
-    Ids go: several pictures may stand on one page, and nothing refers to them.
+    Ids are removed: several pictures may be on one page, and nothing refers to them.
     """
     text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
     text = _links(_ID.sub(r"<\1", text), href)
@@ -45,7 +45,7 @@ def inline(svg: bytes, href: Href, name: str) -> str:
 
 
 def alone(svg: bytes, href: Href, style: str = "") -> bytes:
-    """Make the file for a picture: as drawn, with its links and, where one is given, a style."""
+    """Return a picture as a file of its own: as drawn, with its links and, where one is given, a style."""
     text = _HEAD.sub('<?xml version="1.0" encoding="UTF-8"?>\n', svg.decode("utf-8"), count=1)
     text = _links(_COMMENT.sub("", text), href)
     if not style:
@@ -54,12 +54,12 @@ def alone(svg: bytes, href: Href, style: str = "") -> bytes:
 
 
 def _kept(attributes: str) -> str:
-    """Drop what HTML does not need, and give the size in pixels (a point is 4/3 of one)."""
+    """Keep the attributes that HTML needs, with the size in pixels (a point is 4/3 of one)."""
     return _SIZE.sub(lambda found: f' {found[1]}="{float(found[2]) * 4 / 3:.0f}"', _UNUSED.sub("", attributes))
 
 
 def _links(text: str, href: Href) -> str:
-    """Point each link at its page. A link that leads nowhere becomes a group, so that its tooltip stays."""
+    """Resolve all links. A link that leads nowhere becomes a group, so that its tooltip stays."""
     open_tags: list[str] = []
 
     def replace(found: re.Match[str]) -> str:
@@ -69,6 +69,7 @@ def _links(text: str, href: Href) -> str:
         tip = _TIP.search(found[1])
         title = f"<title>{tip[1]}</title>" if tip else ""
         address = target and _address(unescape(target[1]), href)
+        # A stack, since the closing tag must match what became of the opening one.
         open_tags.append("</a>" if address else "</g>")
         return f'<a href="{address}">{title}' if address else f"<g>{title}"
 
@@ -76,7 +77,7 @@ def _links(text: str, href: Href) -> str:
 
 
 def _address(target: str, href: Href) -> str | None:
-    """Give the escaped address that a link's target means: `#` and an anchor, or an address of the web."""
+    """Return the escaped address that a link's target means: `#` and an anchor, or an address of the web."""
     if target.startswith("#"):
         found = href(unquote(target[1:]))
         return escape(found) if found else None
@@ -84,14 +85,14 @@ def _address(target: str, href: Href) -> str | None:
 
 
 def style_embedded() -> str:
-    """Give the style of pictures in pages: dark where the reader or the system wants it, light on paper."""
+    """Return the style of pictures in pages: dark where the reader or the system wants it, light on paper."""
     chosen, system = _dark(":root[data-theme=dark]"), _dark(":root:not([data-theme=light])")
     return f"@media screen {{\n{chosen}@media (prefers-color-scheme: dark) {{\n{system}}}\n}}\n"
 
 
 @cache
 def style_alone(root: str) -> str:
-    """Give the style of a picture's own file: the font that it was laid out with, and the dark colours."""
+    """Return the style of a picture's own file: the font that it was laid out with, and the dark colours."""
     faces = "".join(
         f'@font-face{{font-family:"DejaVu Sans";font-weight:{weight};src:local("{local}"),url({root}assets/fonts/{file})}}'
         for weight, local, file in (
@@ -103,7 +104,7 @@ def style_alone(root: str) -> str:
 
 
 def _dark(scope: str) -> str:
-    """Give the rules that turn a picture dark: its colours, and text that has none (which is black)."""
+    """Return the rules that turn a picture dark: its colours, and text without a colour (which is black)."""
     from archgen.emit.graphviz.palette import dark_rules
 
     return f"{dark_rules(scope)}{scope} svg.archgen text:not([fill]){{fill:#e6eaee}}\n"

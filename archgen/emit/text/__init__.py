@@ -1,6 +1,6 @@
-"""Text outputs by templates: a backend of the emitter `text` needs no Python, and can do no harm.
+"""Write text outputs by templates: a backend of the emitter `text` needs no Python, and can do no harm.
 
-The templates run in a process of their own (see worker.py); what comes back is text with safe paths.
+The templates run in a process of their own (`template_worker`). What comes back is text with safe paths.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ _LARGEST_ASSETS = 64_000_000
 def write(
     backend: Backend, views: Mapping[str, object], limits: Limits = LIMITS
 ) -> tuple[FileTree | None, tuple[Diagnostic, ...]]:
-    """Make a backend's files. `views` holds the shapes by their names in the manifest (`pages`, `record`, ...).
+    """Render a backend's files. `views` has the shapes by their names in the manifest (`pages`, `record`, ...).
 
-    Where a template fails, there is no tree, and a diagnostic that names the template and the line.
+    Where a template fails, there is no tree, but a diagnostic that names the template and the line.
     """
     request = {
         "templates": str(backend.folder / "templates"),
@@ -54,11 +54,13 @@ def write(
 
 
 class _AssetError(Exception):
-    """An asset cannot be taken."""
+    """An asset cannot be copied."""
 
 
 def _ask(request: Mapping[str, Any], limits: Limits) -> Mapping[str, Any]:
-    """Run the worker; it answers, or dies of one of its limits."""
+    """Run the worker process and return its answer, or an `error` where one of its limits ended it."""
+    # -I: neither the current folder nor the environment decides what is imported. -B: a confined process writes no
+    # files.
     command = [sys.executable, "-I", "-B", "-c", _START, str(_ROOT)]
     try:
         done = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
@@ -76,9 +78,10 @@ def _ask(request: Mapping[str, Any], limits: Limits) -> Mapping[str, Any]:
 
 
 def _cause(done: subprocess.CompletedProcess[bytes], limits: Limits) -> str:
-    """Say what ended a worker that could not answer."""
+    """Describe what ended a worker that could not answer."""
     if b"MemoryError" in done.stderr:
         return f"it needs more than {limits.memory // 1_000_000} MB of memory"
+    # Ended by a signal: SIGXCPU or SIGKILL from the limit on computing time.
     if done.returncode < 0:
         return f"its templates were stopped: they may compute for {limits.computing} s"
     last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no reason was given"]
@@ -86,7 +89,7 @@ def _cause(done: subprocess.CompletedProcess[bytes], limits: Limits) -> str:
 
 
 def _assets(backend: Backend) -> list[tuple[str, bytes]]:
-    """Copy what stands in assets/, but no link and not without bound."""
+    """Read the files in assets/: no link, and not more than `_MAX_ASSET_BYTES` in all."""
     folder = backend.folder / "assets"
     found, size = [], 0
     for path in sorted(folder.rglob("*")) if folder.is_dir() and not folder.is_symlink() else ():

@@ -1,4 +1,7 @@
-"""What templates can call to put text safely where it stands: Markdown, a code span, Mermaid, an identifier."""
+"""The filters of templates: they put text safely where it is needed, be it Markdown, code span, Mermaid or identifier.
+
+The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +22,15 @@ _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 
 
 def markdown(text: object) -> str:
-    """Escape text for a line of Markdown: nothing in it is a mark, whatever it holds."""
+    """Escape text for a line of Markdown: nothing in the result is a mark."""
     line = _line(text)
     return _START.sub(r"\1\\\2", _MARKS.sub(r"\\\1", line))
 
 
 def code(text: object) -> str:
-    """Make a code span of a line; more ticks stand around it than in it."""
+    """Make a code span of one line, with more ticks around it than in it."""
     line = _line(text) or " "
+    # CommonMark: a code span ends at the first run of exactly as many ticks as began it.
     ticks = "`" * (max((len(run) for run in _TICKS.findall(line)), default=0) + 1)
     pad = " " if line[0] == "`" or line[-1] == "`" else ""
     return f"{ticks}{pad}{line}{pad}{ticks}"
@@ -37,7 +41,9 @@ def _line(text: object) -> str:
 
 
 def commonmark(text: object) -> str:
-    """Give CommonMark from the project as it is, if it holds no HTML and no address but of the web; else as text."""
+    """Return CommonMark as it is if it holds no HTML, and only relative, http, https and mailto addresses; else as
+    plain text.
+    """
     parser = _reader()
     text = _CONTROL.sub("\ufffd", str(text))
     tokens = [token for block in parser.parse(text) for token in (block, *(block.children or ()))]
@@ -49,7 +55,7 @@ def commonmark(text: object) -> str:
 
 @cache
 def _reader() -> MarkdownIt:
-    """Make a parser that takes every address for a link: which of them are strange is judged here."""
+    """Create a parser that takes every address for a link: `_is_strange` judges them, not the library."""
     from markdown_it import MarkdownIt
 
     class Reader(MarkdownIt):
@@ -70,7 +76,8 @@ def mermaid(text: object) -> str:
 
 
 def identifier(text: object) -> str:
-    """Make an identifier of any text: different texts give different ones, and none is a word of a language."""
+    """Make an identifier from any text. Different texts give different ones, and none is a word of a language."""
+    # Doubled underscores keep escapes apart from texts that look like them: `a.b` is `a_2e_b`, `a_2e_b` is `a__2e__b`.
     doubled = str(text).replace("_", "__")
     return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)
 

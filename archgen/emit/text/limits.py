@@ -1,4 +1,4 @@
-"""What a template may use up, and how the process that runs it is held to it."""
+"""Limits of what templates may use, and how the process that runs them is bound to them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Bounds for one backend: seconds of computing, seconds in all, bytes of memory, bytes of output, files."""
+    """Limits for one backend: seconds of computing, seconds in all, bytes of memory, characters of output, number of
+    files.
+    """
 
     computing: int = 20
     waiting: float = 60.0
@@ -18,9 +20,9 @@ class Limits:
 
 
 def confine(limits: Limits) -> None:
-    """Bind this process: computing time, memory, no files written, few opened, no further process.
+    """Bind this process: computing time, memory, no files written, few open ones.
 
-    Systems that have no such limits (Windows) leave the time in all, which the parent process keeps, and the output.
+    Systems without such limits (Windows) still have the time in all, which the parent process watches, and the output.
     """
     with contextlib.suppress(ImportError):
         import resource

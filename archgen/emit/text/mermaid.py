@@ -1,4 +1,4 @@
-"""A graph as a Mermaid flowchart: what changed between two versions is told by signs, lines and colours."""
+"""Write a graph as a Mermaid flowchart. What changed between two versions is shown by signs, lines and colours."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CLASSES: dict[Changed, str] = {
     "changed": "stroke:#b7791f,stroke-width:2px",
     "renamed": "stroke:#2f81c7,stroke-width:3px,stroke-dasharray:2 3",
 }
-"""Lines that stand out from a light and from a dark page."""
+"""Lines that can be seen on a light and on a dark page: GitHub shows both."""
 _LINKS: dict[Changed | None, str] = {
     "added": "stroke:#2e8b57,stroke-width:3px",
     "removed": _CLASSES["removed"],
@@ -28,7 +28,7 @@ _ARROWS = {"service": "-.->", "action": "==>", "physical": "-.->"}
 
 
 def flowchart(graph: Graph) -> Iterator[str]:
-    """Give the lines of a flowchart. Boxes are `n0`, `n1`: nothing of the model is a name or a word of Mermaid."""
+    """Yield the lines of a flowchart. Boxes are `n0`, `n1`: no text of the model is a name or a word of Mermaid."""
     names = {box.id: f"n{at}" for at, box in enumerate(graph.boxes)}
     yield f"flowchart {'LR' if graph.direction == 'left-right' else 'TB'}"
     framed = {cluster.id for cluster in graph.clusters}
@@ -61,13 +61,15 @@ def _styles(graph: Graph) -> Iterator[str]:
     if any(box.emphasis == "neighbour" and not box.change for box in graph.boxes):
         yield "  classDef neighbour stroke:#8a8a8a,stroke-width:1px"
     for kind, style in _LINKS.items() if any(arrow.change for arrow in graph.arrows) else ():
+        # linkStyle addresses arrows by their position, so all of them must be counted in the order written.
         lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind]
         if lines:
             yield f"  linkStyle {','.join(lines)} {style}"
 
 
 def _text(text: str) -> str:
-    """Write one line of a label. Mermaid takes some beginnings for a list: a space of no width keeps it from that."""
+    """Return one line of a label, shortened."""
     line = " ".join(text.split())
     line = line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
+    # Mermaid reads labels as Markdown, and some beginnings as a list: a zero-width space prevents that.
     return ("#8203;" if _LIST.match(line) else "") + filters.mermaid(line)

@@ -1,8 +1,7 @@
-"""Run a backend's templates in a process of their own, confined, and hand back what they wrote.
+"""Render a backend's templates in a process of their own, confined, and answer with what they wrote.
 
-Reads one JSON object from standard input and writes one to standard output. Templates are somebody's text: they get
-plain data, no attribute that leads into Python, no file but their own folder's, and only so much time, memory and
-output.
+Reads one JSON object from standard input and writes one to standard output. Templates are untrusted: they get plain
+data, no attribute that leads into Python, no file but those in their own folder, and limited time, memory and output.
 """
 
 from __future__ import annotations
@@ -28,18 +27,19 @@ _ESCAPED = (".html", ".htm", ".xhtml", ".xml", ".svg")
 
 
 class BoundError(Exception):
-    """A template asks for more than it may have, or for what is not there; says so in our words."""
+    """A template asks for more than it may have, or for what does not exist. The message is for the user."""
 
 
 class Templates(BaseLoader):
-    """Reads templates from one folder, and from nowhere else: no `..`, and no link that leads out of it."""
+    """Load templates from one folder only: no `..`, and no link that leads out of it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
 
     def get_source(self, environment: object, template: str) -> tuple[str, str | None, Callable[[], bool] | None]:
-        """Give a template's text."""
+        """Return a template's text, name, and no function that watches it for changes."""
         del environment
+        # Resolved before the test, so that a link out of the folder is refused as well.
         path = (self.folder / template).resolve() if is_safe(template) else self.folder
         if not path.is_relative_to(self.folder) or not path.is_file():
             raise TemplateNotFound(template)
@@ -50,7 +50,7 @@ class Templates(BaseLoader):
 
 
 def environment(folder: Path) -> ImmutableSandboxedEnvironment:
-    """Make the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is left to chance."""
+    """Create the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is random."""
     made = ImmutableSandboxedEnvironment(
         loader=Templates(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED),
@@ -60,24 +60,26 @@ def environment(folder: Path) -> ImmutableSandboxedEnvironment:
         keep_trailing_newline=True,
     )
     made.filters.update(FILTERS)
+    # Random words, random choice: the same input must give the same bytes.
     del made.globals["lipsum"]
     del made.filters["random"]
     return made
 
 
 def run(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Render every file; gives `files` (path, text), or `error` with its `template` and `line`."""
+    """Render every file. Return `files` (path, text), or `error` with its `template` and `line`."""
     bounds = Limits(**request["limits"])
     place: dict[str, str] = {}
     try:
         return {"files": list(_render(environment(Path(request["templates"])), request, bounds, place))}
+    # MemoryError and RecursionError are caught here too; what is worse ends the process, and the parent explains it.
     except Exception as error:  # noqa: BLE001 - whatever a template raises is the template's mistake
         template, line = _where(error, place)
         return {"error": _said(error, bounds), "template": template, "line": line}
 
 
 def _said(error: Exception, bounds: Limits) -> str:
-    """Say what went wrong, in a line."""
+    """Describe what went wrong in one line."""
     match error:
         case TemplateSyntaxError():
             message = f"this is no template: {error.message}"
@@ -99,7 +101,11 @@ def _said(error: Exception, bounds: Limits) -> str:
 def _render(
     made: ImmutableSandboxedEnvironment, request: Mapping[str, Any], bounds: Limits, place: dict[str, str]
 ) -> Iterator[tuple[str, str]]:
-    """Plan all paths first, so that templates can link to files that come later; then render each file."""
+    """Yield path and text of each file. All paths are planned first, so that templates can link to files that come
+    later.
+
+    `current_template["template"]` always names the template in work, for the message of an error.
+    """
     planned = list(_plan(made, request, bounds, place))
     paths = {item["anchor"]: path for path, _, item, _ in planned if isinstance(item, dict) and "anchor" in item}
     left = bounds.output
@@ -114,7 +120,7 @@ def _render(
 def _plan(
     made: ImmutableSandboxedEnvironment, request: Mapping[str, Any], bounds: Limits, place: dict[str, str]
 ) -> Iterator[tuple[str, str, Any, Any]]:
-    """Give (path, template, item, key) for each file to write; paths are safe, and no two are one."""
+    """Yield (path, template, item, key) for each file to write. Paths are safe, and no two are equal."""
     taken: set[str] = set()
     for file in request["files"]:
         place["template"] = file["template"]
@@ -134,7 +140,7 @@ def _plan(
 
 
 def _items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[Any, Any]]:
-    """Give the items that a file is written for: one, nothing in particular, where it says no `for_each`."""
+    """Return (key, item) pairs that a file is written for: a single pair of None where it has no `for_each`."""
     if not file.get("for_each"):
         return [(None, None)]
     found: Any = data
@@ -153,7 +159,7 @@ def _items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[A
 
 
 def _href(path: str, paths: Mapping[str, str]) -> Callable[[str | None], str]:
-    """Make the function `href(ref)`: the address of the file written for a page, from this one, or nothing."""
+    """Make templates' function `href(ref)`: the address of a page's file relative to this one, or an empty text."""
     folder = posixpath.dirname(path) or "."
 
     def href(ref: str | None) -> str:
@@ -163,7 +169,7 @@ def _href(path: str, paths: Mapping[str, str]) -> Callable[[str | None], str]:
 
 
 def _bounded(template: Template, values: Mapping[str, Any], left: int) -> str:
-    """Render, and stop as soon as it is too much."""
+    """Render a template piece by piece, and stop as soon as it is too much."""
     parts = []
     for part in template.generate(**values):
         left -= len(part)
@@ -175,14 +181,16 @@ def _bounded(template: Template, values: Mapping[str, Any], left: int) -> str:
 
 
 def _where(error: BaseException, place: Mapping[str, str]) -> tuple[str | None, int | None]:
-    """Find the template and line that an error comes from: the last frame that Jinja2 rewrote to a template's.
+    """Return the template and line that an error comes from: the last frame that Jinja2 rewrote to a template's.
 
-    What is not a file (`<template>`) is a path in the manifest.
+    What is not a file (`<template>`) is a path in the manifest: then both are None.
     """
     if isinstance(error, TemplateSyntaxError):
         return error.name, error.lineno
     found: tuple[str | None, int | None] = (place.get("template"), None)
     for frame, line in walk_tb(error.__traceback__):
+        # Jinja2 replaces frames of compiled templates in tracebacks by frames with the template's name and line; this
+        # global is how they can be told from others.
         if "__jinja_exception__" in frame.f_globals:
             name = frame.f_code.co_filename
             found = (None, None) if name.startswith("<") else (name, line)
@@ -190,8 +198,9 @@ def _where(error: BaseException, place: Mapping[str, str]) -> tuple[str | None, 
 
 
 def main() -> NoReturn:
-    """Answer one request."""
+    """Answer one request. Called by name from the command line of `_run_worker`."""
     request = json.load(sys.stdin.buffer)
+    # After the request is read, before the first template is: no file can be opened for writing from here on.
     confine(Limits(**request["limits"]))
     answer = json.dumps(run(request))
     sys.stdout.write(answer)

@@ -19,7 +19,7 @@ __all__ = ["Made", "agreement", "between"]
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """An agreement: its outline, its picture, and what changed (None where nobody asked)."""
+    """An agreement: its outline, its picture, the number of interfaces, and the changes (None: not asked for)."""
 
     outline: Outline
     graph: Graph
@@ -36,7 +36,7 @@ def agreement(  # noqa: PLR0913 - what a document is made of
     since: tuple[str, Index] | None = None,
     notices: Sequence[Paragraph] = (),
 ) -> Made:
-    """Make the agreement of two partners. `since` names an earlier revision, and gives its architecture."""
+    """Make the agreement of two partners. `since` is the name of an earlier revision with its look-ups."""
     held = _held(view, first, second)
     changes = compare(since[0], _held(since[1], first, second), held) if since else None
     graph = picture(view, f"interfaces/{first}-{second}", (first, second), [each.terms.interface for each in held])

@@ -1,4 +1,4 @@
-"""The agreement as a document: who with whom, the whole at a glance, each interface, what stands open, and signatures."""
+"""The outline of an agreement: the partners, all interfaces at a glance and in detail, open points, signatures."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _READING = (
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """What an agreement is made of. `before` is empty where nobody asks what changed; `notices` are said first."""
+    """What an agreement is made of. `earlier_lookup` is None unless changes are asked for; `notices` come first."""
 
     view: Index
     pair: tuple[str, str]
@@ -45,17 +45,18 @@ class Agreement:
     changes: Changes | None = None
     notices: tuple[Paragraph, ...] = ()
     before: Index | None = None
-    """The architecture at the earlier revision."""
+    """Look-ups of the architecture at the earlier revision."""
 
     @property
     def titles(self) -> tuple[str, str]:
-        """Name the two partners."""
+        """Return the titles of both partners."""
         return partners(self.view, self.pair[:1]), partners(self.view, self.pair[1:])
 
 
 def document(of: Agreement) -> Outline:
-    """Make the outline of an agreement."""
+    """Return the outline of an agreement."""
     first, second = of.titles
+    # One writer for both directions: it remembers which messages' fields are already in the document.
     writing = Writing(of.view, of.changes)
     ways = (of.pair, of.pair[::-1])
     return Outline(
@@ -126,7 +127,7 @@ def _parties(of: Agreement) -> Section:
 
 
 def _summary(of: Agreement) -> Section:
-    """List all interfaces, those that are gone included."""
+    """List all interfaces, including removed ones."""
     rows = [_row(of, held) for held in of.held]
     rows += [_gone(of, held) for held in (of.changes.removed if of.changes else ())]
     columns = (
@@ -160,7 +161,7 @@ def _row(of: Agreement, held: Held) -> tuple[Inlines, ...]:
 
 
 def _rate(found: Terms) -> Inlines:
-    """Give how often it flows, or within what it is answered, without where that is from."""
+    """Return how often it flows, or within what it is answered, without the origin of the figure."""
     for name, value in found.facts:
         if name.startswith("Rate"):
             return value[:1]
@@ -182,21 +183,21 @@ def _gone(of: Agreement, held: Held) -> tuple[Inlines, ...]:
 
 
 def carried(interface: Interface) -> Inlines:
-    """Say what flows in a few words: the type, and the message that carries it."""
+    """Return what flows in a few words: the type, and the message that carries it."""
     said = [words.text(interface.type)] if interface.type and interface.type != interface.message else []
     said += [words.text(Text(interface.message, code=True))] if interface.message else []
     return words.lines(said) or words.text(interface.flow)
 
 
 def opened(missing: Sequence[str], points: int) -> Inlines:
-    """Say what is still to be settled: the terms that are not known, and the findings."""
+    """Return what is still to be settled: the unknown terms, and the number of findings."""
     said = [", ".join(missing)] if missing else []
     said += [words.plural(points, "finding")] if points else []
     return words.text("; ".join(said)) if said else ()
 
 
 def mark(changes: Changes | None, held: Held) -> Inlines:
-    """Say what happened to an interface, by a sign and in a word, and which terms changed."""
+    """Return the change of an interface as sign and word, with the kinds of terms that changed."""
     kind = changes.mark(held.key) if changes else ""
     if not changes or not kind:
         return ()
@@ -216,6 +217,7 @@ def _way(of: Agreement, writing: Writing, way: tuple[str, ...]) -> Iterator[Sect
 
 def _removed(of: Agreement) -> Iterator[Section]:
     if of.changes and of.changes.removed and of.before:
+        # Removed interfaces are described by the architecture that had them.
         writing = Writing(of.before)
         lead = Paragraph(words.text(f"These stood in the agreement at {of.changes.since}, and are gone."), "warning")
         sections = tuple(writing.removed(held, f"removed:{held.terms.interface.anchor}") for held in of.changes.removed)

@@ -1,8 +1,8 @@
-"""Which interfaces two partners have with each other: each output of one that the other reads, with all who read it.
+"""Find the interfaces between two partners: each output of one that the other reads, with all its readers.
 
-Who answers for an end: the owners of its component, and those of the nodes that carry the port where they are others.
-A flow both of whose ends belong to both partners is theirs together, and none between them. Topics that join nodes of
-both without a connection (/tf, for instance) are interfaces too.
+An end belongs to the owners of its component, and to those of the nodes that carry the port if they differ. If both
+ends of a flow belong to both partners, it is theirs together and not between them. Topics that join nodes of both
+without a connection (/tf, for instance) are interfaces too.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from archgen.views.index import Index
 
 Flow = Literal["topic", "service", "action", "physical"]
 Pair = tuple[str, str]
-"""Ids of two partners; of an interface: who gives, then who takes."""
+"""Ids of two partners; for an interface: the giver, then the taker."""
 
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """What one partner gives another: an output, or (`output` None) a topic that only their nodes share.
+    """What one partner gives another: an output, or (`output` is None) a topic that only their nodes share.
 
-    `key` is the output's complete id, or the topic's name. `givers` and `takers` are endpoints of nodes, those of takers
-    of this partner alone; `inputs` are the takers' ports; `others` those of everybody else.
+    `key` is the output's complete id, or the topic's name. `giver_endpoints` and `taker_endpoints` are endpoints of
+    nodes, the latter only of this partner; `inputs` are the taker's ports; `other_inputs` those of everybody else.
     """
 
     key: str
@@ -43,24 +43,24 @@ class Interface:
 
     @property
     def anchor(self) -> str:
-        """Give the anchor of its section; a topic may flow both ways."""
+        """Return the anchor of its section; it includes the giver, since a topic may flow both ways."""
         return f"interface:{self.key}:{self.pair[0]}"
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Name the topics (services, actions) that carry it."""
+        """Return the topics (services, actions) that carry it."""
         return tuple(dict.fromkeys(end.name for end in self.givers))
 
 
 def between(view: Index, first: str, second: str) -> tuple[Interface, ...]:
-    """Give the interfaces between two partners, those of the first before those of the second, in order of the outputs."""
+    """Return the interfaces between two partners, those the first one gives before those of the second."""
     found = _Between(view, (first, second))
     made = [*found.of_outputs(), *found.of_topics()]
     return tuple(each for giver in (first, second) for each in made if each.pair[0] == giver)
 
 
 def guests(architecture: Architecture, node: Node) -> tuple[str, ...]:
-    """Give a node's owners where somebody wrote others than its components have."""
+    """Return a node's owners if somebody wrote others than those of its components."""
     inherited = {owner for component in node.implements for owner in architecture.components[component].owners}
     return node.owners if set(node.owners) != inherited else ()
 
@@ -77,7 +77,7 @@ class _Between:
                 self._ends.setdefault(f"{end.use in {'publishes', 'serves'}} {end.port}", []).append(end)
 
     def of_outputs(self) -> Iterator[Interface]:
-        """Give an interface for each output and direction: the connections between components."""
+        """Yield an interface for each output and direction: the connections between components."""
         found = self.view.architecture
         readers: dict[tuple[str, Pair], dict[str, None]] = {}
         others: dict[str, dict[str, None]] = {}
@@ -115,7 +115,7 @@ class _Between:
         return tuple(end for end in self._ends.get(f"False {port.id}", ()) if output.id in end.sources)
 
     def _way(self, output: Output, port: Input) -> Pair | None:
-        """Tell who gives whom: by the components' owners, else by those of their nodes too."""
+        """Return who gives whom: by the components' owners, else by those of their nodes as well."""
         found = self.view.architecture
         giver, taker = found.components[output.component], found.components[port.component]
         if set(self.pair) <= set(giver.owners) and set(self.pair) <= set(taker.owners):
@@ -131,6 +131,7 @@ class _Between:
 
     def _direction(self, givers: Collection[str], takers: Collection[str]) -> Pair | None:
         first, second = self.pair
+        # Owned together at both ends: nothing flows between them.
         if {first, second} <= set(givers) and {first, second} <= set(takers):
             return None
         if first in givers and second in takers:
@@ -138,7 +139,7 @@ class _Between:
         return (second, first) if second in givers and first in takers else None
 
     def of_topics(self) -> Iterator[Interface]:
-        """Give an interface for each topic that joins nodes of both without a connection."""
+        """Yield an interface for each topic that joins nodes of both partners without a connection."""
         for topic in self.view.architecture.topics.values():
             ends: dict[Pair, tuple[dict[int, Endpoint], dict[int, Endpoint]]] = {}
             for writer in filter(self._mine, topic.writers):
@@ -146,11 +147,13 @@ class _Between:
                     way = self._joined(writer, reader)
                     if way:
                         givers, takers = ends.setdefault(way, ({}, {}))
+                        # By object identity: endpoints are not hashable by value, and each must be listed once.
                         givers[id(writer)], takers[id(reader)] = writer, reader
             for way, (givers, takers) in ends.items():
                 yield self._topic(topic, way, tuple(givers.values()), tuple(takers.values()))
 
     def _joined(self, writer: Endpoint, reader: Endpoint) -> Pair | None:
+        # What is connected as ports is an interface of the output already.
         if writer.node == reader.node or (writer.port is not None and writer.port in reader.sources):
             return None
         return self._direction(self._owners(writer), self._owners(reader))
@@ -170,7 +173,7 @@ class _Between:
 
 
 def components(view: Index, interface: Interface) -> tuple[tuple[Component, ...], tuple[Component, ...]]:
-    """Give the components that give and that take, each once."""
+    """Return the giving and the taking components, each once."""
     found = view.architecture
     giving = [interface.output.component] if interface.output else [end.component for end in interface.givers]
     taking = [end.component for end in (interface.inputs or interface.takers)]

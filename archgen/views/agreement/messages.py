@@ -1,4 +1,4 @@
-"""The fields of a message, nested by one level, as far as archgen holds the definitions."""
+"""The fields of a message, nested by one level, as far as archgen has the definitions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PARTS = {"msg": ("",), "srv": ("request", "answer"), "action": ("goal", "result
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A field: which part of a service or action it is in, its name (`header.stamp`), its type, and a remark."""
+    """A field: the part of a service or action that it is in, its name (`header.stamp`), its type, and a remark."""
 
     part: str
     name: str
@@ -23,12 +23,12 @@ class Row:
 
     @property
     def path(self) -> str:
-        """Name the field with its part: `request.header.stamp`."""
+        """Return the field's name with its part: `request.header.stamp`."""
         return f"{self.part}.{self.name}" if self.part else self.name
 
 
 def rows(interfaces: Interfaces, message: str) -> tuple[Row, ...] | None:
-    """Give the fields of `pkg/msg/Name`; None where its definition is not held."""
+    """Return the fields of `pkg/msg/Name`, None if archgen has no definition of it."""
     found = interfaces.definitions.get(message)
     if found is None:
         return None
@@ -46,7 +46,7 @@ def _nested(interfaces: Interfaces, part: str, each: Field) -> Iterator[Row]:
 
 
 def table(message: str, found: tuple[Row, ...]) -> Table:
-    """Lay the fields out."""
+    """Return the fields as a table."""
     parts = any(row.part for row in found)
     columns = (Column("Field", 1.4), Column("Type", 1.6))
     cells = tuple(

@@ -1,4 +1,4 @@
-"""The picture of an agreement: the second partner's components in a frame, the first one's where they feed and read them."""
+"""The picture of an agreement: the second partner's components in a frame, the first one's on both sides of it."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from archgen.views.words import plural
 
 Side = Literal["left", "right"]
 _HUES = (1, 4)
-"""Of the first and of the second partner; each box names its partner or stands in the frame that does."""
+"""Hue numbers of both partners; every box also names its partner or is in the frame that does."""
 _NAMED = 3
 
 
 @dataclass(frozen=True, slots=True)
 class _Flow:
-    """One interface between two elements, as drawn: a service or action runs from its client to its server."""
+    """One interface between two boxes, as drawn: a service or action runs from its client to its server."""
 
     interface: Interface
     tail: str
@@ -65,9 +65,11 @@ def _flows(view: Index, interface: Interface) -> Iterator[_Flow]:
 
 
 def _placed(flow: _Flow, first: str) -> tuple[_Flow, str, str]:
-    """Give a flow with the boxes that it joins: the first partner stands left where it begins, right where it ends."""
+    """Return a flow with its boxes: the first partner's on the left where it begins, on the right where it ends."""
     calls = flow.interface.flow in {"service", "action"}
     begins = (flow.interface.pair[0] == first) is not calls
+    # "<" and ">" in a box's id put the first partner's component on the left, the right, or both: `_draw_box` reads
+    # them.
     return (flow, f"<{flow.tail}", flow.head) if begins else (flow, flow.tail, f">{flow.head}")
 
 
@@ -86,7 +88,7 @@ def _box(view: Index, end: str, pair: tuple[str, str]) -> Box:
 
 
 def _arrows(placed: Sequence[tuple[_Flow, str, str]]) -> Iterator[Arrow]:
-    """Draw one arrow for all that runs between two boxes in one way."""
+    """Yield one arrow for all flows between two boxes in one direction."""
     bundles: dict[tuple[str, str, Style], list[_Flow]] = {}
     for flow, tail, head in placed:
         kind = flow.interface.flow

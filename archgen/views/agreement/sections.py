@@ -1,4 +1,4 @@
-"""The section of one interface: its terms, who is at each end, the message's fields, chains, requirements, open points."""
+"""The section of one interface: terms, ends, fields of the message, chains, requirements, open points."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Secti
 from archgen.views.shapes import without_empty_columns as tidy
 
 _CUT = 400
-"""Characters of a value that a table of changes shows."""
+"""Maximal number of characters of a value in a table of changes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """Writes sections; the fields of a message stand at its first interface, later ones refer to it."""
+    """Writes sections. The fields of a message are at its first interface, later ones refer to it."""
 
     view: Index
     changes: Changes | None = None
     written: dict[str, str] = field(default_factory=dict)
 
     def section(self, held: Held, anchor: str, mark: Inlines) -> Section:
-        """Write one interface."""
+        """Return the section of one interface."""
         found = held.terms
         blocks = [
             *self._changed(held, mark),
@@ -39,12 +39,12 @@ class Writing:
         return Section(anchor, found.title, tuple(blocks))
 
     def removed(self, held: Held, anchor: str) -> Section:
-        """Write an interface that is gone, as it was."""
+        """Return the section of a removed interface, as it was."""
         gone = Paragraph(words.text(Text(SIGNS["removed"], change="removed")), "error")
         return Section(anchor, held.terms.title, (gone, Facts(held.terms.facts), self._ends(held.terms)))
 
     def _changed(self, held: Held, mark: Inlines) -> Iterator[Block]:
-        """Say what happened to the interface since the earlier revision, old beside new."""
+        """Yield what happened to the interface since the earlier revision, old beside new."""
         if not self.changes or not mark:
             return
         kind = self.changes.mark(held.key)
@@ -94,6 +94,7 @@ class Writing:
             first = Text("the first interface that carries it", ref=self.written[message])
             yield Paragraph(words.text("The fields of ", Text(message, code=True), " stand at ", first, "."))
             return
+        # The writer is stateful: sections must be written in the order of the document.
         self.written[message] = anchor
         if found.rows:
             yield messages.table(message, found.rows)
@@ -129,12 +130,12 @@ def _change(change: Change) -> tuple[Inlines, ...]:
 
 
 def cut(text: str) -> str:
-    """Shorten a long value, and say so."""
+    """Shorten a long value, with the number of omitted characters."""
     return text if len(text) <= _CUT else f"{text[:_CUT]} … ({len(text) - _CUT} more characters)"
 
 
 def _rest(found: Terms) -> Iterator[tuple[str, Inlines]]:
-    """Give what stands behind the interface, and what is open."""
+    """Yield the requirements behind the interface, and its open points."""
     if found.requirements:
         yield "Requirements", words.lines(found.requirements)
     if found.points:

@@ -1,4 +1,4 @@
-"""What an interface says, term by term: for the eye, and as plain text that two revisions are compared by.
+"""The terms of an interface: for readers, and as plain text that two revisions are compared by.
 
 No term names a line of a file: text that moves changes nothing between the partners.
 """
@@ -22,12 +22,12 @@ from archgen.views.shapes import Inlines, Text
 
 _FLOWS = {"topic": "Topic", "service": "Service", "action": "Action", "physical": ""}
 _OPEN = ("Type", "Message", "Rate", "Size", "Answers within", "QoS offered")
-"""Facts without which an interface is not settled; those that begin with these words count."""
+"""Facts without which an interface is not settled, by the beginning of their name."""
 
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """One row of who gives and who takes: the partners, the component with its port, and the node with its quality."""
+    """One row of who gives and who takes: partners, component with port, and node with its QoS."""
 
     role: str
     owners: tuple[str, ...]
@@ -40,7 +40,7 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """An interface with all that is said of it. `rows` are its message's fields, None where they are not held."""
+    """An interface with all that is said of it. `field_rows` is None if the message has no definition."""
 
     interface: Interface
     title: str
@@ -51,18 +51,18 @@ class Terms:
     requirements: tuple[Inlines, ...]
     points: tuple[Diagnostic, ...]
     shared: tuple[str, ...]
-    """Sentences on what both partners, or a partner and a third, answer for together."""
+    """Sentences on what both partners, or a partner and a third one, are responsible for together."""
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Name the facts that are still to be settled."""
+        """Return the names of the facts that are still to be settled."""
         unheld = ["definition of the message"] if self.interface.message and self.rows is None else []
         unknown = (name for name, value in self.facts if name.startswith(_OPEN) and _unknown(value))
         return (*(name if name.startswith("QoS") else name.lower() for name in unknown), *unheld)
 
 
 def terms(view: Index, named: activities.Names, interface: Interface) -> Terms:
-    """Gather what is said of an interface."""
+    """Gather all terms of an interface."""
     return Terms(
         interface,
         title(view, interface),
@@ -77,7 +77,7 @@ def terms(view: Index, named: activities.Names, interface: Interface) -> Terms:
 
 
 def title(view: Index, interface: Interface) -> str:
-    """Name an interface as people do: by component and port, or by its topic."""
+    """Return the name of an interface for people: component and port, or its topic."""
     if interface.output is None:
         return interface.key
     return f"{view.architecture.components[interface.output.component].title} · {interface.output.name}"
@@ -118,7 +118,7 @@ def _qos(ends: Iterable[Endpoint]) -> Inlines:
 
 
 def quality(end: Endpoint) -> str:
-    """Say a quality of service; one that nobody wrote is the default."""
+    """Return a QoS in words; one that nobody wrote is the default."""
     return words.qos_words(end.qos) if end.qos.written else "default (not written)"
 
 
@@ -129,7 +129,7 @@ def _other(view: Index, component: str) -> Inlines:
 
 
 def partners(view: Index, owners: Iterable[str]) -> str:
-    """Name partners by their titles."""
+    """Return partners' titles, comma separated."""
     known = view.architecture.partners
     return ", ".join(known[owner].title if owner in known else owner for owner in owners)
 
@@ -161,6 +161,7 @@ def _side(  # noqa: PLR0913 - the columns of a row
     with_qos = not is_ros_1(found.distro)
     rows: dict[tuple[str, str], None] = {}
     for end in (end for end in ends if found.nodes[end.node].written):
+        # A dict as an ordered set: several endpoints of a node with one QoS are one row.
         rows[end.node, quality(end) if end.flow == "topic" and with_qos else ""] = None
     for node, qos in rows:
         owners = dict.fromkeys((*own, *guests(found, found.nodes[node]))) or found.nodes[node].owners
@@ -170,12 +171,12 @@ def _side(  # noqa: PLR0913 - the columns of a row
 
 
 def _both(view: Index, interface: Interface) -> Iterable[Component]:
-    """Give the components at both ends, each once."""
+    """Return the components at both ends, each once."""
     return {each.id: each for side in components(view, interface) for each in side}.values()
 
 
 def _requirements(view: Index, interface: Interface) -> Iterator[Inlines]:
-    """Give the requirements that the components at the ends serve, each once, with who serves it."""
+    """Yield the requirements that the components at the ends serve, each once, with the components."""
     found: dict[str, dict[str, None]] = {}
     for component in _both(view, interface):
         for use in component.requirements:
@@ -187,7 +188,7 @@ def _requirements(view: Index, interface: Interface) -> Iterator[Inlines]:
 
 
 def _points(view: Index, named: activities.Names, interface: Interface) -> Iterator[Diagnostic]:
-    """Give the findings on the interface itself: on its ports, topics, type and chains, or that name them."""
+    """Yield the findings about the interface itself: its ports, topics, type and chains, or that name them."""
     ports = {interface.key, *(port.id for port in interface.inputs)}
     exact = {*ports, *interface.names, *([interface.type] if interface.type else [])}
     exact |= {result.id for result in timing.chains(view, named, interface)}
@@ -212,11 +213,14 @@ def _shared(view: Index, interface: Interface) -> Iterator[str]:
 
 
 def plain(view: Index, of: Terms) -> Mapping[str, tuple[str, str]]:
-    """Give the terms as plain text to compare two revisions: by a key that outlives new titles, name and text."""
+    """Return the terms as plain text by a key that survives new titles: (name, text) each."""
     found = {"": ("Title", of.title)} | {name: (name, text(value)) for name, value in of.facts}
     for end in of.ends:
         name = f"{end.component.title} · {end.port}" if end.component else ""
+        # The key holds ids: a renamed component or node is one end removed and one added, see
+        # `term_changes.compare_revisions`.
         key = f"end {end.component.id if end.component else ''} {end.port} {end.taker} {end.node}"
+        # What is offered is a term of its own ("QoS offered").
         qos = end.qos if end.taker else ""  # what is offered is a term of its own
         said = "; ".join(part for part in (end.role, partners(view, end.owners), qos) if part)
         found[key] = (f"{name} (node {end.node})" if name and end.node else name or f"Node {end.node}", said)
@@ -231,13 +235,13 @@ def plain(view: Index, of: Terms) -> Mapping[str, tuple[str, str]]:
 
 
 def figure(chain: ChainResult) -> str:
-    """Say a chain's bound, deadline and verdict in a line."""
+    """Return a chain's bound, deadline and verdict in one line."""
     deadline = f"; deadline {figures.duration(chain.deadline)}" if chain.deadline else ""
     return f"{figures.duration(chain.bound)}{deadline}; {chain.verdict}"
 
 
 def text(value: Inlines) -> str:
-    """Give the words of runs of text, lines parted by semicolons."""
+    """Return the text of runs, lines separated by semicolons."""
     return "".join(f"; {run.text}" if run.line_break else run.text for run in value)
 
 

@@ -1,4 +1,4 @@
-"""How often an interface carries something, how much, and which chains pass through it."""
+"""How often and how much an interface carries, and which chains pass through it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _PARTS = {
 
 
 def facts(view: Index, named: activities.Names, interface: Interface) -> Iterator[Fact]:
-    """Give rate, largest gap, size and traffic; of a service or action, how soon it answers."""
+    """Yield rate, largest gap, size and traffic; for a service or action, how soon it answers."""
     if interface.flow == "physical":
         return
     timed = view.timed
@@ -103,7 +103,7 @@ def _traffic(timed: Timed, interface: Interface) -> Inlines:
 
 
 def chains(view: Index, named: activities.Names, interface: Interface) -> Iterator[ChainResult]:
-    """Give the chains whose way leads over the interface from who gives to who takes."""
+    """Yield the chains that lead over the interface from giver to taker."""
     if view.timed is None:
         return
     keys = {activities.key(end) for end in interface.givers}
@@ -117,6 +117,6 @@ def chains(view: Index, named: activities.Names, interface: Interface) -> Iterat
 
 
 def _joining(system: System, before: str, after: str) -> list[Arc]:
-    """Give what joins two steps of a chain: topics, and only where there is none services and actions."""
+    """Return what joins two steps of a chain: topics; services and actions only if there is no topic."""
     found = [arc for arc in system.out_of.get(before, ()) if arc.target == after]
     return [arc for arc in found if arc.role == "data"] or found

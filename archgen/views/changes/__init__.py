@@ -1,1 +1,1 @@
-"""A comparison as a document: what is said of it, in which order, and the outline that pages are made from."""
+"""A comparison as a document: the wording shared by all formats, and the outline that pages are made from."""

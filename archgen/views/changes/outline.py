@@ -1,4 +1,4 @@
-"""The outline of a comparison: what breaks, the pictures, changes by group, chains, findings."""
+"""The outline of a comparison: breaking changes, pictures, changes by group, chains, findings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ERRORS = 8
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A comparison, what to call its sides, the errors of reading either, and its pictures."""
+    """A comparison with the names of its versions, the errors of reading either of them, and its pictures."""
 
     found: Comparison
     before: str
@@ -38,7 +38,7 @@ class Told:
 
 
 def outline(told: Told) -> Outline:
-    """Make the document."""
+    """Return the outline of a comparison document."""
     found = told.found
     sections = (
         _breaking(found),
@@ -119,6 +119,7 @@ def _pictures(told: Told) -> Section | None:
 
 
 def _changes(found: Comparison) -> Section | None:
+    # Breaking changes have a section of their own and are not repeated.
     others = [change for change in found.changes if not change.breaks]
     sections = tuple(
         Section(
@@ -179,6 +180,7 @@ def _findings(name: str, title: str, caption: str, findings: Sequence[Diagnostic
     if not findings:
         return None
     order = list(Severity)
+    # Gravest first; the sort is stable, so that findings of one severity keep the order of the files.
     listed = sorted(findings, key=lambda each: -order.index(each.severity or Severity.ERROR))
     rows = tuple(
         (

@@ -1,4 +1,4 @@
-"""How a comparison is told, in every format: signs, headings, what weighs most, the figures of chains."""
+"""The wording of a comparison that all formats share: signs, headings, what is only text, figures of chains."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from archgen.views.shapes import Inlines, Text
 from archgen.views.words import plural
 
 SIGNS = {"added": "+", "removed": "\u2212", "changed": "~", "renamed": "→", "moved": "→"}
-"""What happened, by a sign: colour is never needed to tell it."""
+"""A sign for each kind of change, so that nothing depends on colour."""
 _MARKS: dict[str, Literal["added", "removed", "changed"]] = {"added": "added", "removed": "removed"}
 _SECTIONS = {
     "project": "Project",
@@ -35,7 +35,7 @@ _SECTIONS = {
     "policy": "Policies",
     "view": "Views",
 }
-"""The headings of what stands in no group, in their order."""
+"""The headings for changes outside of all groups, in the order of the document."""
 _TEXT_SORTS = frozenset({"chapter", "view", "use_case"})
 _TEXT_KEYS = frozenset(
     {"title", "description", "functionality", "comment", "tags", "layout", "colour", "text", "external"}
@@ -45,7 +45,7 @@ _TEXT_STARTS = ("urls.", "performance.")
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """The changes below one heading. `id` is the group's, empty for what stands in no group."""
+    """The changes below one heading. `group_id` is empty for changes outside of all groups."""
 
     id: str
     title: str
@@ -53,15 +53,16 @@ class Part:
 
     @property
     def heading(self) -> str:
-        """Name it in a line of text."""
+        """Return the heading as one line of text."""
         return f"{self.id}: {self.title}" if self.id and self.title else self.title or self.id
 
 
 def parts(changes: Iterable[Change], found: Comparison) -> Iterator[Part]:
-    """Put changes of a comparison under the group that they stand in, then those that stand in none by sort."""
+    """Group changes by the group of their element, then those outside of all groups by kind."""
     groups = {**found.before.architecture.groups, **found.after.architecture.groups}
     held: dict[tuple[bool, str], list[Change]] = {}
     for change in changes:
+        # Kinds without a heading are those inside of groups: their ids begin with the group's.
         name = _SECTIONS.get(change.sort)
         held.setdefault((name is not None, name or change.element.partition(".")[0]), []).append(change)
     for outside, name in sorted(key for key in held if not key[0]):
@@ -72,7 +73,7 @@ def parts(changes: Iterable[Change], found: Comparison) -> Iterator[Part]:
 
 
 def textual(change: Change) -> bool:
-    """Say whether a change only concerns texts, pictures and addresses: nothing of the system itself."""
+    """Whether a change only concerns texts, pictures and addresses: nothing of the system itself."""
     if change.kind == "changed" and change.key:
         return change.sort in _TEXT_SORTS or change.key in _TEXT_KEYS or change.key.startswith(_TEXT_STARTS)
     return change.sort in _TEXT_SORTS
@@ -86,7 +87,7 @@ def summary(found: Comparison) -> str:
 
 
 def counted(found: Comparison) -> str:
-    """Count what changed."""
+    """Count changes and findings: `3 changes (1 added, 2 removed), 1 new finding`."""
     counts = by_kind(found.changes)
     words = [plural(len(found.changes), "change") + (f" ({counts})" if counts else "")]
     words += [plural(len(found.new), "new finding")] if found.new else []
@@ -96,22 +97,22 @@ def counted(found: Comparison) -> str:
 
 
 def by_kind(changes: Iterable[Change]) -> str:
-    """Count changes by what happened: `1 added, 2 removed`."""
+    """Count changes by kind: `1 added, 2 removed`."""
     kinds = Counter(str(change.kind) for change in changes)
     return ", ".join(f"{kinds[kind]} {kind}" for kind in SIGNS if kinds[kind])
 
 
 def broken(changes: Iterable[Change]) -> tuple[str, ...]:
-    """Name the partners for whom something breaks."""
+    """Return the partners for whom something breaks, sorted."""
     return tuple(sorted({partner for change in changes for partner in change.broken}))
 
 
 REFUSED = "`review.breaking: error` refuses this: mend it, or agree on it and write the reason below `review: accepted:` at the element."
-"""What to do about changes that the project's policy does not let pass."""
+"""What to do about changes that the project's policy refuses."""
 
 
 def reasons(change: Change) -> dict[str, list[str]]:
-    """Give each reason why a change breaks somebody, with the partners whom it breaks."""
+    """Return each reason why a change breaks somebody, with the partners it breaks."""
     found: dict[str, list[str]] = {}
     for each in change.breaks:
         found.setdefault(each.why, []).append(each.partner)
@@ -119,27 +120,30 @@ def reasons(change: Change) -> dict[str, list[str]]:
 
 
 def accepted(change: Change, found: Comparison) -> str:
-    """Say why a breaking change is accepted, and whether that was written for another change; empty where it is not."""
+    """Describe why a breaking change is accepted, and whether the entry is older; empty if it is not."""
     if change.accepted is None:
         return ""
     older = found.before.architecture.review.accepted.get(change.element)
+    # Old entries count, since many teams agree first; whoever reviews should see that this one was not written for the
+    # change (docs/decisions/0007-breaking-changes.md).
     entry = " (by an entry that was there before)" if older and older.reason == change.accepted else ""
     return f"accepted{entry}: {change.accepted}"
 
 
 def runs(text: str) -> Inlines:
-    """Give a sentence with what stands in backticks as code; a backtick without its second one is a backtick."""
+    """Split a sentence into runs, with what is in backticks as code; a backtick without a second one is a backtick."""
+    # Splitting with one capturing group alternates: odd pieces were in backticks.
     pieces = re.split(r"`([^`]*)`", text)
     return tuple(Text(piece, code=at % 2 == 1) for at, piece in enumerate(pieces) if piece)
 
 
 def sign(change: Change) -> Text:
-    """Give the sign of a change."""
+    """Return the sign of a change as a run."""
     return Text(SIGNS[change.kind], strong=True, change=_MARKS.get(change.kind, "changed"))
 
 
 def bound(result: ChainResult | None) -> str:
-    """Say how long a chain takes at most."""
+    """Format how long a chain takes at most."""
     if result is None:
         return "not there"
     if boundless(result.bound):
@@ -150,7 +154,8 @@ def bound(result: ChainResult | None) -> str:
 
 
 def grown(each: ChainChange) -> str:
-    """Say by how much a bound grew or shrank; empty where that is not known or nothing."""
+    """Format by how much a bound grew or shrank; empty if that is unknown or nothing."""
+    # The difference to an "at least" is no difference.
     old, new = (side.bound.value if side and side.bound.complete else None for side in (each.before, each.after))
     if old is None or new is None or old == new:
         return ""
@@ -158,7 +163,7 @@ def grown(each: ChainChange) -> str:
 
 
 def deadline(each: ChainChange) -> str:
-    """Give the deadline that counts now; where it changed, the one before too."""
+    """Format the deadline of the second version; if it changed, with the old one."""
     old, new = (_deadline(side) for side in (each.before, each.after))
     if each.before and each.after and old != new:
         return f"{old or 'none'} → {new or 'none'}"
@@ -170,7 +175,7 @@ def _deadline(result: ChainResult | None) -> str:
 
 
 def verdict(each: ChainChange) -> str:
-    """Say whether the deadline is met, and whether it was before where that is another thing."""
+    """Format whether the deadline is met, and whether it was before if that differs."""
     old, new = (
         side.verdict if side and side.deadline and side.deadline.value else "" for side in (each.before, each.after)
     )

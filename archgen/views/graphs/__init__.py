@@ -1,4 +1,4 @@
-"""Pictures of an architecture, as graphs: which there are, and what each shows.
+"""Make the pictures of an architecture, as graphs: which there are, and what each shows.
 
 | id | shows |
 |---|---|
@@ -12,7 +12,6 @@
 | `views/V` | a view of the project |
 | `timing` | all activities by their period, or those of the selection |
 | `timing/G` | the activities of a group by their period |
-
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ def all_graphs(
     findings: Iterable[Diagnostic] = (),
     timed: Timed | None = None,
 ) -> tuple[Graph, ...]:
-    """Make all pictures; with a selection, one of the selection and those of what is selected."""
+    """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out."""
     return tuple(graph for graph in _all(index(architecture, findings, timed=timed), selection) if graph.boxes)
 
 
@@ -66,6 +65,8 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
         yield fold(components(view))
     else:
         shown = [component for component in shown if component.id in selection.components]
+        # The same ids as without a selection (`overview` here, `ros` below), since pages and reports refer to graphs by
+        # id.
         yield selected.functional(view, "overview", "The selected part", selection.components)
     for name in dict.fromkeys(each.group for each in shown):
         yield fold(group(view, name))
@@ -81,6 +82,7 @@ def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
         groups = dict.fromkeys(each.group for each in shown)
         yield from timing.pictures(view, view.timed, groups, selection.nodes if selection else None)
     selecting = Selecting(architecture)
+    # Views of the project show what they say, whatever is selected.
     for asked in architecture.views.values():
         chosen, _ = selecting.select(asked.show)
         yield selected.of_view(view, asked, chosen)

@@ -1,4 +1,4 @@
-"""Boxes and frames of the model's elements, the same in every picture."""
+"""Make the boxes and frames of the model's elements, the same in every picture."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SEVERITIES: tuple[Literal["error", "warning", "note"], ...] = ("error", "warnin
 
 
 def component(view: Index, item: Component, *, lines: tuple[str, ...] = ()) -> Box:
-    """Draw a component in the hue of its group."""
+    """Return the box of a component, in the hue of its group."""
     return Box(
         item.id,
         item.title,
@@ -42,24 +42,26 @@ def _tooltip(view: Index, item: Component) -> str:
 
 
 def owners(view: Index, partners: Iterable[str]) -> str:
-    """Name partners by their titles; empty where there is none."""
+    """Join the titles of partners; empty where there are none."""
+    # An owner that is no declared partner is a finding, not an error: it is shown as written.
     found = view.architecture.partners
     return ", ".join(found[partner].title if partner in found else partner for partner in partners)
 
 
 def hue(view: Index, group: str) -> int:
-    """Give a group's colour."""
+    """Return a group's colour, an index of the palette's ten hues."""
+    # Ten as in `palette.HUES`, which views must not import: emitters are above them.
     return view.hues[group] % 10
 
 
 def badge(view: Index, element: str) -> Literal["error", "warning", "note"] | None:
-    """Give the worst finding of an element."""
+    """Return the severity of an element's worst finding."""
     severities = {str(finding.severity) for finding in view.findings_of.get(element, ())}
     return next((each for each in _SEVERITIES if each in severities), None)
 
 
 def neighbour(view: Index, item: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:
-    """Draw a component of another group: grey, its group's title below its own."""
+    """Return the box of a component of another group: grey, with its group's title below its own."""
     return replace(
         component(view, item, lines=(view.architecture.groups[item.group].title,)),
         id=item.id + suffix,
@@ -72,7 +74,7 @@ def neighbour(view: Index, item: Component, side: Literal["left", "right"] | Non
 
 
 def whole_group(view: Index, group: str, *, lines: Iterable[str] = ()) -> Box:
-    """Draw a group as one box."""
+    """Return a group as one box."""
     found = view.architecture.groups[group]
     count = plural(len(found.components), "component")
     said = [line for line in (owners(view, found.owners), count) if line]
@@ -88,7 +90,7 @@ def whole_group(view: Index, group: str, *, lines: Iterable[str] = ()) -> Box:
 
 
 def frame(view: Index, group: str, *, subject: bool = False, grey: bool = False) -> Cluster:
-    """Draw a group as a frame round its components."""
+    """Return a group as a frame round its components."""
     found = view.architecture.groups[group]
     return Cluster(
         group,

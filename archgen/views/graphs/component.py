@@ -1,7 +1,7 @@
-"""The picture of one component at the high level: its ports as rows, where each comes from and goes to.
+"""Draw one component at the functional level: its ports as rows, where each comes from and goes to.
 
-Arrows end at the port. One type is written once for all arrows out of an output. A whole component or group as source
-is one box with an asterisk on its arrow; partners outside the architecture are dashed.
+Arrows end at the port. A type is written once for all arrows out of an output. A whole component or group as source is
+one box with an asterisk on its arrow. Partners outside of the architecture are dashed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from archgen.views.words import plural, short_timing
 
 Drawn = tuple[Box, Arrow]
 MANY = 40
-"""From how many neighbours on they are folded by group."""
+"""With more neighbours they are folded by group."""
 
 
 def component(view: Index, name: str) -> Graph:
@@ -77,6 +77,8 @@ def _fed(view: Index, item: Component, port: Input, connection: Connection) -> D
     else:
         producer = architecture.components[_component(connection.target)]
         box = boxes.neighbour(view, producer, "left")
+        # `<` and `>` before an id: a neighbour that feeds and reads is two boxes, one at each side, so nothing runs
+        # backwards.
         box = replace(box, id=f"<{box.id}")
     star = connection.kind != "output"
     label = (
@@ -120,12 +122,13 @@ def _out_of(view: Index, item: Component) -> Iterator[Drawn]:
                 flows=(f"{output.name} → {reader.title} · {connection.input.rsplit('.', 1)[1]}",),
                 ref=f"type:{output.type}" if output.type else None,
             )
+            # The type is written beside the first arrow only; the next ones out of the same output have no label.
             yield box, _directed(arrow)
             label = ""
 
 
 def _directed(arrow: Arrow) -> Arrow:
-    """Turn a service or action round: from the client, which has it as an input, to the server."""
+    """Reverse a service or action: from the client, which has it as an input, to the server."""
     if arrow.style not in {"service", "action"}:
         return arrow
     ends = {"tail": arrow.head, "head": arrow.tail, "tail_port": arrow.head_port, "head_port": arrow.tail_port}
@@ -156,10 +159,11 @@ def _external(port: Input | Output, item: Component, side: str) -> Drawn:
 
 
 def _folded(view: Index, drawn: list[Drawn]) -> list[Drawn]:
-    """Put the neighbours of one group at one side into one box."""
+    """Fold the neighbours of one group at one side into one box."""
     folded = []
     for box, arrow in drawn:
         group = box.id[1:].split(".", 1)[0]
+        # Only neighbours have the sign; boxes outside of the architecture stay single.
         if box.id[0] not in "<>" or group not in view.architecture.groups:
             folded.append((box, arrow))
             continue
@@ -171,7 +175,7 @@ def _folded(view: Index, drawn: list[Drawn]) -> list[Drawn]:
 
 
 def style_of(architecture: Architecture, output: Output) -> str:
-    """Say how what an output carries is drawn."""
+    """Return the style of arrow for what an output carries."""
     if output.physical:
         return "physical"
     flow = flow_of(architecture.message(output))

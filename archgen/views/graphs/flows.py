@@ -1,6 +1,6 @@
-"""What runs between components, as pictures count it: each connection, by the components at its ends.
+"""List what runs between components, as pictures count it: each connection, by the components at its ends.
 
-Data runs from the producer to the reader; a service or action is drawn from its client to its server, with an arrow
+Data runs from the producer to the reader. A service or action is drawn from its client to its server, with an arrow
 of its own. A connection to a whole group is one flow for each component of the group that it takes something from.
 """
 
@@ -32,20 +32,21 @@ class Flow:
 
     @property
     def label(self) -> str:
-        """What stands beside the arrow: the type, or how many."""
+        """The label beside the arrow: the type, or the number of types."""
         if len(self.types) == 1:
             return self.types[0]
         return f"* {len(self.types)} types" if self.types else ""
 
 
 def flows(architecture: Architecture) -> tuple[Flow, ...]:
-    """Give all flows, in order of the connections."""
+    """Return all flows, in the order of the connections."""
     return tuple(flow for connection in architecture.connections for flow in _of(architecture, connection))
 
 
 def flows_at(architecture: Architecture, components: Collection[str]) -> list[Flow]:
-    """Give the flows that begin or end at some components, in order of the connections."""
+    """Return the flows that begin or end at some components, in the order of the connections."""
     inputs, outputs = architecture.inputs, architecture.outputs
+    # Connections are filtered before flows are made of them: every group's picture asks, so all of it stays linear.
     near = (
         connection
         for connection in architecture.connections
@@ -79,7 +80,7 @@ def _of(architecture: Architecture, connection: Connection) -> Iterable[Flow]:
 
 
 def style_of(architecture: Architecture, output: str) -> Style:
-    """Say how what an output gives is drawn."""
+    """Return the style of arrow for what an output carries."""
     found = architecture.outputs[output]
     if found.physical:
         return "physical"
@@ -90,7 +91,7 @@ def style_of(architecture: Architecture, output: str) -> Style:
 def merged(
     items: Iterable[Flow], ends: Callable[[Flow], tuple[str, str]], *, labels: bool, by_style: bool = True
 ) -> tuple[Arrow, ...]:
-    """Draw one arrow for all flows with the same ends (and of the same style, if asked)."""
+    """Merge flows with the same ends (and of the same style, if asked) into one arrow each."""
     bundles: dict[tuple[str, str, Style], list[Flow]] = {}
     for flow in items:
         tail, head = ends(flow)
@@ -111,6 +112,6 @@ def merged(
 
 
 def _label(bundle: list[Flow]) -> str:
-    """Name the types of a bundle, each on a line; more than three are counted."""
+    """Return the types of a bundle, each on a line; of more than three the rest is counted."""
     names = list(dict.fromkeys(flow.label for flow in bundle if flow.label))
     return "\n".join(names) if len(names) <= 3 else "\n".join([*names[:2], f"and {len(names) - 2} more types"])  # noqa: PLR2004

@@ -1,4 +1,4 @@
-"""The budget of a picture: above it, frames are folded into one box each, the largest first, and the picture says so."""
+"""Keep pictures within a budget: above it frames are folded into a box each, the largest first, and a note says so."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ ARROWS = 160
 
 
 def fold(graph: Graph) -> Graph:
-    """Fold a graph until it fits the budget; one that cannot be folded any further says that it is larger."""
+    """Fold a graph until it fits the budget. One that still does not fit gets a note that says so."""
     members = Counter(box.cluster for box in graph.boxes)
+    # Folding a frame with a single box saves nothing.
     names = [cluster.id for cluster in graph.clusters if members[cluster.id] > 1]
+    # Stable, so frames of the same size are folded in the order of the files.
     largest = sorted(names, key=lambda name: -members[name])
     folded, left = graph, len(graph.boxes)
     for count in range(len(largest) + 1):
+        # Counted on, instead of folded, as long as the boxes alone are too many.
         left -= members[largest[count - 1]] - 1 if count else 0
         if left > BOXES and count < len(largest):
             continue  # whatever its arrows, it does not fit
@@ -75,9 +78,10 @@ def _box(graph: Graph, cluster: Cluster, flows: int) -> Box:
 
 
 def _merged(arrows: list[Arrow], ends: dict[str, str]) -> tuple[Arrow, ...]:
-    """Draw one arrow for all that now have the same ends."""
+    """Merge arrows that now have the same ends."""
     bundles: dict[tuple[str, str, bool], list[Arrow]] = {}
     for arrow in arrows:
+        # Network links are kept apart from what flows: their arrows have no head.
         bundles.setdefault((ends[arrow.tail], ends[arrow.head], arrow.style == "link"), []).append(arrow)
     return tuple(
         bundle[0]

@@ -1,6 +1,7 @@
-"""The picture of one group: its components in the middle, grey neighbours where they feed it and where they read it.
+"""Draw one group: its components in the middle, grey neighbours at the left where they feed it, at the right where they
+read.
 
-A neighbour that does both stands at both sides, so that nothing runs backwards. Above `MANY` flows the neighbours are
+A neighbour that does both is at both sides, so that nothing runs backwards. Above `MAX_FLOWS` flows the neighbours are
 folded, a box for each of their groups.
 """
 
@@ -18,7 +19,7 @@ from archgen.views.shapes import Arrow, Box, Graph
 from archgen.views.words import plural
 
 MANY = 45
-"""From how many flows on the neighbours are folded by group."""
+"""With more flows the neighbours are folded by group."""
 
 
 def group(view: Index, name: str) -> Graph:
@@ -29,6 +30,7 @@ def group(view: Index, name: str) -> Graph:
     fold = len(touching) > MANY
     placed = [_placed(flow, mine, fold=fold) for flow in touching]
     around = _neighbours(view, placed, mine, fold=fold)
+    # By identity: hashing a flow would hash its connection with all that it holds.
     ends = {id(flow): (tail, head) for flow, tail, head in placed}
     arrows = merged(touching, lambda flow: ends[id(flow)], labels=not fold)
     arrows = tuple(_counted(view, arrow, mine, name, fold=fold) for arrow in arrows)
@@ -36,6 +38,7 @@ def group(view: Index, name: str) -> Graph:
         f"groups/{name}",
         found.title,
         "group",
+        # Without a hue: all of them are in the same group, and its frame has it.
         (*(replace(boxes.component(view, each), colour=None) for each in found.components.values()), *around),
         arrows,
         (boxes.frame(view, name),),
@@ -48,7 +51,9 @@ def group(view: Index, name: str) -> Graph:
 
 
 def _placed(flow: Flow, mine: set[str], *, fold: bool) -> tuple[Flow, str, str]:
-    """Give a flow with the boxes that it joins: neighbours stand left where they feed, right where they read."""
+    """Return a flow with the ids of the boxes that it joins: neighbours are at the left where they feed, at the right
+    where they read.
+    """
     tail = flow.tail if flow.tail in mine else _outer(flow.tail, "<", fold=fold)
     head = flow.head if flow.head in mine else _outer(flow.head, ">", fold=fold)
     return flow, tail, head
@@ -74,7 +79,7 @@ def _neighbours(view: Index, placed: Sequence[tuple[Flow, str, str]], mine: set[
 
 
 def _listed(titles: Sequence[str]) -> tuple[str, ...]:
-    """List the components that a folded group stands for; the tooltip of the group has them all."""
+    """Shorten the list of components that a folded group stands for; the tooltip of the group has them all."""
     return tuple(titles) if len(titles) <= 6 else (*titles[:5], f"and {len(titles) - 5} more")  # noqa: PLR2004
 
 

@@ -1,4 +1,4 @@
-"""Where nodes run: hosts as frames, with their containers and the nodes that stand alone, and the links between hosts."""
+"""Draw where nodes run: hosts as frames, with their containers and single nodes, and the links between hosts."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _frame(host: Host, at: int) -> Cluster:
 
 
 def _inside(view: Index) -> Iterator[Box]:
-    """Give the containers, and the nodes that have a process of their own; what has no host yet is one box."""
+    """Yield the containers, and the nodes with a process of their own. All without a host are one box."""
     architecture = view.architecture
     for container in architecture.containers.values():
         yield _container(view, container)
@@ -52,6 +52,7 @@ def _inside(view: Index) -> Iterator[Box]:
         if node.host in architecture.hosts:
             yield replace(nodes.node(view, node), cluster=node.host)
     homeless = [node.id for node in alone if node.host not in architecture.hosts]
+    # Where no host is declared at all, nothing is deployed yet: a box of all nodes would say nothing.
     if homeless and architecture.hosts:
         yield Box(
             "no host",
@@ -93,7 +94,7 @@ def _hub(link: Link) -> Box:
 
 
 def _arrows(view: Index, link: Link) -> Iterator[Arrow]:
-    """Draw a link of two hosts as a line, one of more as a box with a line to each."""
+    """Yield the arrows of a link: a line between two hosts, or a line from its own box to each of more."""
     ends = _ends(view, link)
     if len(ends) == 2:  # noqa: PLR2004
         yield Arrow(f"link {link.id}", ends[0], ends[1], _label(link), style="link", ref=f"link:{link.id}")

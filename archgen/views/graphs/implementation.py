@@ -1,8 +1,8 @@
-"""The picture of one component at the low level: its nodes in the middle, topics as boxes between them and others.
+"""Draw one component at the implementation level: its nodes in the middle, topics as boxes between them and others.
 
-Publishers and clients stand at the left, subscribers and servers at the right. The topic's box replaces the text at an
-arrow: it never meets another, and it is a link. Where a neighbour's topics are all taken, one box with an asterisk
-stands for them.
+Publishers and clients are at the left, subscribers and servers at the right. The topic's box replaces a label at the
+arrow: it never overlaps another, and it is a link. Where a component takes all topics of a neighbour, one box with an
+asterisk stands for them.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from archgen.views.shapes import Arrow, Box, Graph
 from archgen.views.words import plural
 
 _STARS = 3
-"""From how many topics on, all taken, an asterisk stands for them."""
+"""From this many topics on, if all are taken, an asterisk stands for them."""
 _READERS = 8
-"""How many readers the asterisk's list names."""
+"""How many topics the asterisk's box lists."""
 
 
 @dataclass(frozen=True, slots=True)
 class _End:
-    """One arrow between a node (its id, with its side before it) and a topic."""
+    """One arrow between a node (its id; of a neighbour with `<` or `>`, its side, before it) and a topic."""
 
     node: str
     topic: str
@@ -34,9 +34,10 @@ class _End:
 
 
 def implementation(view: Index, name: str) -> Graph:
-    """Draw the nodes of one component, what they publish and subscribe, and with whom."""
+    """Draw the nodes of one component, what they publish and subscribe to, and with whom."""
     component = view.architecture.components[name]
     subjects = {node.id for node in view.nodes_of.get(name, ())}
+    # A node may use a topic at several endpoints: still one arrow.
     ends = list(dict.fromkeys(_ends(view, subjects)))
     stars = _stars(view, ends)
     drawn = [replace(end, topic=stars.get(end.topic, end.topic)) for end in ends]
@@ -65,10 +66,11 @@ def _ends(view: Index, subjects: set[str]) -> Iterator[_End]:
 
 
 def _at(topic: Topic, subjects: set[str]) -> Iterator[_End]:
-    """Give the arrows at a topic: from publishers and clients into it, out of it to subscribers and servers."""
+    """Yield the arrows at a topic: into it from publishers and clients, out of it to subscribers and servers."""
     into, out = (topic.writers, topic.readers) if topic.flow == "topic" else (topic.readers, topic.writers)
     mine_into = [each for each in into if each.node in subjects]
     mine_out = [each for each in out if each.node in subjects]
+    # Others that write are drawn only where the component reads, and the reverse: co-publishers are not its neighbours.
     for endpoint in into if mine_out else mine_into:
         yield _End(_place(endpoint, subjects, "<"), topic.name, _style(endpoint), to_topic=True)
     for endpoint in out if mine_into else mine_out:
@@ -86,7 +88,7 @@ def _style(endpoint: Endpoint) -> str:
 
 
 def _stars(view: Index, ends: list[_End]) -> dict[str, str]:
-    """Find the neighbours all of whose topics go to the same subjects; give each such topic its common name."""
+    """Find the neighbours all of whose topics go to the same nodes. Map each such topic to its common name."""
     found: dict[str, str] = {}
     for neighbour in dict.fromkeys(end.node for end in ends if end.node[0] == "<" and end.style == "data"):
         node = neighbour[1:]
@@ -94,6 +96,8 @@ def _stars(view: Index, ends: list[_End]) -> dict[str, str]:
         taken = {end.topic for end in ends if end.node == neighbour and end.style == "data"}
         users = {name: {end.node for end in ends if end.topic == name} for name in taken}
         alone = all(user == next(iter(users.values())) for user in users.values())
+        # All of the neighbour's topics, and each used by the same nodes: else the asterisk would show flows that are
+        # not there.
         if len(published) >= _STARS and published == taken and alone:
             found.update(dict.fromkeys(sorted(taken), f"* {node}"))
     return found

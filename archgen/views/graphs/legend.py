@@ -1,4 +1,4 @@
-"""Which forms a picture uses, so that its legend explains these and no others."""
+"""Find which forms a picture uses, so that its legend explains these and no others."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from archgen.views.shapes import Arrow, Box, Changed, Graph, Pace
 _BOXES = ("source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUSES = ("planned", "adapted")
+# The first six of the literals are the steps of the scale; `event` and the others have no period.
 _SCALE = get_args(Pace)[:6]
 _ARROWS = ("optional", "physical", "service", "action", "internal", "link")
 
 
 def with_legend(graph: Graph, *extra: str) -> Graph:
-    """Add the keys of the legend that a picture needs."""
+    """Add the legend keys that a picture needs, in the legend's order."""
     return replace(graph, legend=tuple(dict.fromkeys((*_keys(graph), *extra))))
 
 
@@ -27,12 +28,15 @@ def _keys(graph: Graph) -> list[str]:
     keys += _changes(graph)
     keys += [key for key in _ARROWS if key in strokes]
     keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
+    # Only these layouts draw the number of flows as width (`merged` in `style_graph`).
     wide = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
     return [*keys, "width", "count"] if wide else keys
 
 
 def _changes(graph: Graph) -> list[str]:
-    """Give what happened to boxes and arrows, and that the others are as before, where two versions are drawn."""
+    """Return keys for what happened to boxes and arrows, and for arrows that are as before, where two versions are
+    drawn.
+    """
     boxes = {box.change for box in graph.boxes}
     lines = {arrow.change or "same" for arrow in graph.arrows}
     if boxes == {None} and lines <= {"same"}:
@@ -43,7 +47,7 @@ def _changes(graph: Graph) -> list[str]:
 
 
 def _paces(graph: Graph) -> list[str]:
-    """Give the whole scale where boxes are filled by it, and what else they are filled with."""
+    """Return the whole scale of periods where boxes are filled by it, and what else they are filled with."""
     used = {box.fill for box in graph.boxes} - {None}
     return [f"pace:{pace}" for pace in get_args(Pace) if pace in used or pace in _SCALE] if used else []
 

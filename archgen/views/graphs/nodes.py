@@ -1,4 +1,4 @@
-"""Boxes of the low level: nodes, and the topics, services and actions between them."""
+"""Make the boxes of the implementation level: nodes, and the topics, services and actions between them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Side = Literal["left", "right"]
 
 @dataclass(frozen=True, slots=True)
 class Pass:
-    """Something that runs from one node to another over a topic; a service or action from client to server."""
+    """What runs from one node to another over a topic; a service or action from client to server."""
 
     tail: str
     head: str
@@ -27,7 +27,7 @@ class Pass:
 
 
 def node(view: Index, item: Node, *, subject: bool = False) -> Box:
-    """Draw a node, with its kind, status, rate and host where it is the subject."""
+    """Return the box of a node, with its kind, status, rate and host where it is the subject."""
     return Box(
         item.id,
         item.id,
@@ -42,7 +42,7 @@ def node(view: Index, item: Node, *, subject: bool = False) -> Box:
 
 
 def neighbour(view: Index, item: Node, side: Side) -> Box:
-    """Draw a node that is not the subject: grey, at one side."""
+    """Return the box of a node that is not the subject: grey, at one side."""
     found = node(view, item)
     return replace(found, id=f"{'<' if side == 'left' else '>'}{item.id}", emphasis="neighbour", side=side, badge=None)
 
@@ -56,7 +56,9 @@ def _lines(view: Index, item: Node) -> tuple[str, ...]:
 
 
 def topic(item: Topic, used: Iterable[Endpoint] = ()) -> Box:
-    """Draw a topic, service or action: name, message, and the quality of service where it is not the default."""
+    """Return the box of a topic, service or action: name, message, and the quality of service where it is not the
+    default.
+    """
     qos = dict.fromkeys(said for endpoint in used for said in [_qos(endpoint.qos)] if said)
     message = item.messages or (("message open",) if item.flow == "topic" else ())
     return Box(
@@ -70,7 +72,7 @@ def topic(item: Topic, used: Iterable[Endpoint] = ()) -> Box:
 
 
 def _qos(qos: Qos) -> str:
-    """Say what differs from the default in few words."""
+    """Describe in few words what differs from the default."""
     words = ["best effort"] if qos.reliability == "best_effort" else []
     words += ["latched"] if qos.durability == "transient_local" else []
     words += ["keep all"] if qos.history == "keep_all" else []
@@ -79,7 +81,7 @@ def _qos(qos: Qos) -> str:
 
 
 def passes(architecture: Architecture) -> tuple[Pass, ...]:
-    """Give all that runs between two nodes: each pair of a writer and a reader of a topic."""
+    """Return all that runs between two nodes: each pair of a writer and a reader of a topic, once."""
     found: dict[tuple[str, str, str], Pass] = {}
     for item in architecture.topics.values():
         for writer in item.writers:

@@ -1,4 +1,4 @@
-"""Pictures of the whole: the groups, and all groups with their components (the first and the widest view)."""
+"""Draw the whole: the groups, and all groups with their components (the first and the widest picture)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from archgen.views.words import plural
 
 
 def overview(view: Index) -> Graph:
-    """Draw the groups, with one arrow for all that runs from one to another."""
+    """Draw the groups, with one arrow for all that flows from one to another."""
     architecture = view.architecture
     between = _between(view)
     arrows = _coloured(view, merged(between, _groups, labels=False, by_style=False))
@@ -53,10 +53,11 @@ def components(view: Index) -> Graph:
 
 
 def _between(view: Index) -> list[Flow]:
-    """Give the flows between groups; a connection to a whole group counts once."""
+    """Return the flows between groups. A connection to a whole group counts once."""
     found: dict[tuple[int, str], Flow] = {}
     for flow in flows(view.architecture):
         if _group(flow.tail) != _group(flow.head):
+            # By identity of the connection, and by source: one connection may take from several groups.
             found.setdefault((id(flow.connection), _group(flow.tail)), flow)
     return list(found.values())
 
@@ -70,7 +71,7 @@ def _groups(flow: Flow) -> tuple[str, str]:
 
 
 def _coloured(view: Index, arrows: tuple[Arrow, ...]) -> tuple[Arrow, ...]:
-    """Give each arrow the hue of the group that it comes from."""
+    """Colour each arrow with the hue of the group that it comes from."""
     return tuple(replace(arrow, colour=boxes.hue(view, arrow.tail)) for arrow in arrows)
 
 

@@ -1,4 +1,4 @@
-"""The whole ROS graph: all nodes, framed by the group of what they implement, and what runs between them.
+"""Draw the whole ROS graph: all nodes, framed by the group of what they implement, and what runs between them.
 
 Inside a frame each pair of nodes has its arrow; between frames the arrows are merged and counted.
 """
@@ -51,7 +51,7 @@ def _box(view: Index, node: Node) -> Box:
 
 
 def home_of(view: Index, node: Node) -> str:
-    """Give the frame of a node: the group of what it implements first, else its namespace."""
+    """Return the id of a node's frame: the first group of what it implements, else its namespace."""
     groups = [component.split(".", 1)[0] for component in node.implements]
     return next((group for group in groups if group in view.architecture.groups), f"namespace {node.namespace}")
 
@@ -77,6 +77,7 @@ def _arrows(view: Index, running: Sequence[Pass], home: dict[str, str]) -> tuple
             head,
             style=style,  # type: ignore[arg-type]
             count=len(bundle),
+            # A frame may be a namespace, which has no hue, and a node may have the id of a group.
             colour=boxes.hue(view, tail) if tail in view.hues and tail not in home else None,
             flows=tuple(each.sentence for each in bundle),
         )

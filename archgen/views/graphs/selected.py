@@ -1,6 +1,6 @@
-"""Pictures of a part: what a selector names, with its neighbours in grey, at either level. The project's views are such.
+"""Draw a part: what a selector names, with its neighbours in grey, at either level. The project's views are such parts.
 
-A small part is one flow with a text at each arrow; a large one has frames, its neighbours folded by group.
+A small part is one flow with a label at each arrow. A large one has frames, and its neighbours are folded by group.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from archgen.views.shapes import Arrow, Box, Graph
 from archgen.views.words import plural
 
 _SMALL = (26, 45)
-"""So many boxes and arrows make a small picture."""
+"""The most boxes and arrows of a small picture."""
 _PER_BOX = 3
 
 
@@ -89,7 +89,7 @@ def _hued(view: Index, arrow: Arrow) -> Arrow:
 
 
 def _around(view: Index, group: str, members: Sequence[str]) -> Box:
-    """Draw the neighbours in one group as one grey box."""
+    """Return the neighbours in one group as one grey box."""
     titles = [view.architecture.components[each].title for each in members]
     shown = titles if len(titles) <= _PER_BOX + 1 else [*titles[:_PER_BOX], f"and {len(titles) - _PER_BOX} more"]
     whole = boxes.whole_group(view, group)
@@ -97,7 +97,7 @@ def _around(view: Index, group: str, members: Sequence[str]) -> Box:
 
 
 def implementation(view: Index, name: str, title: str, chosen: Collection[str]) -> Graph:
-    """Draw selected nodes with what runs to and from them; a small part has its topics as boxes."""
+    """Draw selected nodes with what runs to and from them. A small part has its topics as boxes."""
     running = [each for each in nodes.passes(view.architecture) if each.tail in chosen or each.head in chosen]
     around = dict.fromkeys(end for each in running for end in (each.tail, each.head) if end not in chosen)
     topics = dict.fromkeys(each.topic.name for each in running)
@@ -110,6 +110,7 @@ def implementation(view: Index, name: str, title: str, chosen: Collection[str]) 
     for each in running:
         style = "data" if each.topic.flow == "topic" else each.topic.flow
         box = f"topic {each.topic.name}"
+        # Several flows share a topic's box: its arrows are drawn once, with the sentence of the last flow.
         for tail, head in ((each.tail, box), (box, each.head)):
             arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))
             arrows[arrow.id] = arrow
@@ -139,13 +140,14 @@ def of_view(view: Index, asked: View, chosen: Selection) -> Graph:
 
 
 def coloured(view: Index, graph: Graph, by: str) -> Graph:
-    """Let the hues stand for something else than the group, and say in the legend what for."""
+    """Colour a graph by another criterion than the group (`owner`, `role`, ...), and say so in the legend."""
     values = {box.id: value for box in graph.boxes if (value := _value(view, box, by)) and box.emphasis != "neighbour"}
     hues = {value: at % 10 for at, value in enumerate(dict.fromkeys(values.values()))}
     painted = tuple(
         replace(box, colour=hues[values[box.id]] if box.id in values else None) if box.emphasis != "neighbour" else box
         for box in graph.boxes
     )
+    # Hues of groups would be read as values of the criterion, so frames and arrows lose theirs.
     plain = tuple(replace(cluster, colour=None) for cluster in graph.clusters)
     arrows = tuple(replace(arrow, colour=None) for arrow in graph.arrows)
     legend = tuple((hue, f"{by}: {value}") for value, hue in hues.items())
@@ -158,6 +160,7 @@ def _value(view: Index, box: Box, by: str) -> str | None:
     item = component or node
     if item is None:
         return None
+    # Functions, so that only the one that is asked for is evaluated.
     values: dict[str, Callable[[], str | None]] = {
         "owner": lambda: boxes.owners(view, item.owners) or None,
         "role": lambda: component.role if component else None,

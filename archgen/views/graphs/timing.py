@@ -1,6 +1,6 @@
-"""Timing as pictures: every activity filled by the period that results for it, the whole and group by group.
+"""Draw timing: every activity filled by the period that results for it, all of them and group by group.
 
-The period stands in every box as text; what has none (unknown, on an event, on demand, once) is told by frame and word.
+The period is in every box as text. Boxes without one (unknown, on an event, on demand, once) differ by frame and word.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from archgen.views.words import plural
 
 _MANY = 45
 _NAMED = 3
-"""So many neighbours are named in a grey box."""
+"""This many neighbours are named in a grey box."""
 _BOUNDS = "<= at most, >= at least: a bound, where no exact figure follows from what is written."
 
 
@@ -38,7 +38,7 @@ class _Run:
 
 @dataclass(frozen=True, slots=True)
 class _Whole:
-    """All that timing pictures are cut from: activities by frame, and what runs among them, found once."""
+    """The data of all timing pictures: activities by frame, and what runs among them, found once."""
 
     view: Index
     timed: Timed
@@ -46,7 +46,7 @@ class _Whole:
     running: Sequence[_Run]
 
     def inside(self, frame: str) -> dict[str, Activity]:
-        """Give the activities of a frame."""
+        """Return the activities of a frame, by id."""
         activities = self.timed.analysis.system.activities
         return {name: activities[name] for name, home in self.home.items() if home == frame}
 
@@ -54,11 +54,12 @@ class _Whole:
 def pictures(
     view: Index, timed: Timed, groups: Iterable[str], selected: Collection[str] | None = None
 ) -> Iterator[Graph]:
-    """Draw the whole, or what selected nodes do with its neighbours in grey, and some groups."""
+    """Draw all activities, or those of selected nodes with their neighbours in grey; then some groups."""
     system = timed.analysis.system
     home = {name: _home(view, activity) for name, activity in system.activities.items()}
     everything = _Whole(view, timed, home, _runs(system.arcs))
     yield _timing(everything) if selected is None else _selected(everything, selected)
+    # Flows are assigned to groups in one pass: searching all of them for each group is quadratic.
     touching: dict[str, list[_Run]] = {}
     for run in everything.running:
         for group in dict.fromkeys((home[run.tail], home[run.head])):
@@ -87,7 +88,7 @@ def _timing(whole: _Whole) -> Graph:
 
 
 def _selected(whole: _Whole, nodes: Collection[str]) -> Graph:
-    """Draw the activities of some nodes, framed by group, and what feeds and reads them, a grey box for each group."""
+    """Draw the activities of some nodes, framed by group. What feeds and reads them is a grey box for each group."""
     view, timed = whole.view, whole.timed
     activities = timed.analysis.system.activities
     mine = {name: each for name, each in activities.items() if each.node in nodes}
@@ -105,6 +106,7 @@ def _selected(whole: _Whole, nodes: Collection[str]) -> Graph:
             *(replace(_box(timed, each), cluster=home[each.id]) for each in mine.values()),
             *(_around(view, frame, names) for frame, names in around.items()),
         ),
+        # Only arrows that come from a frame of the selection have a hue; all others are drawn pale.
         tuple(replace(each, faded=each.colour is None) for each in _merged(view, running, home)),
         tuple(_frame(view, each) for each in dict.fromkeys(home[name] for name in mine)),
         direction=view.architecture.layout.direction or "left-right",
@@ -116,7 +118,7 @@ def _selected(whole: _Whole, nodes: Collection[str]) -> Graph:
 
 
 def _around(view: Index, frame: str, names: Sequence[str]) -> Box:
-    """Draw the neighbours in one frame as a grey box that names them."""
+    """Return the neighbours in one frame as a grey box that names them."""
     shown = names if len(names) <= _NAMED + 1 else [*names[:_NAMED], f"and {len(names) - _NAMED} more"]
     found = _frame(view, frame)
     return Box(
@@ -131,7 +133,7 @@ def _around(view: Index, frame: str, names: Sequence[str]) -> Box:
 
 
 def _group(whole: _Whole, name: str) -> Graph:
-    """Draw the activities of one group, with the neighbours that feed it at the left and those that read it at the right."""
+    """Draw the activities of one group; neighbours that feed it are at the left, those that read it at the right."""
     view, timed = whole.view, whole.timed
     found, mine = view.architecture.groups[name], whole.inside(name)
     count = sum(len(run.arcs) for run in whole.running)
@@ -204,7 +206,7 @@ def _sentence(arc: Arc) -> str:
 
 
 def _merged(view: Index, running: Sequence[_Run], home: Mapping[str, str]) -> tuple[Arrow, ...]:
-    """Draw each pair inside a frame, and one counted arrow from frame to frame."""
+    """Merge flows: an arrow for each pair inside a frame, and one counted arrow from frame to frame."""
     bundles: dict[tuple[str, str, str], list[Arc]] = {}
     for run in running:
         inside = home[run.tail] == home[run.head]
@@ -225,7 +227,9 @@ def _merged(view: Index, running: Sequence[_Run], home: Mapping[str, str]) -> tu
 
 
 def _ends(whole: _Whole, run: _Run, mine: Collection[str], *, folded: bool) -> tuple[str, str]:
-    """Give the boxes that a run joins: neighbours stand left where they feed, right where they read."""
+    """Return the ids of the boxes that a flow joins: neighbours are at the left where they feed, at the right where
+    they read.
+    """
 
     def outer(name: str, side: str) -> str:
         return side + (whole.home[name] if folded else name)
@@ -235,7 +239,7 @@ def _ends(whole: _Whole, run: _Run, mine: Collection[str], *, folded: bool) -> t
 
 
 def _neighbours(whole: _Whole, mine: Collection[str], *, folded: bool) -> dict[str, Box]:
-    """Draw neighbours in grey, a box each or a box for each of their groups, at the side that they stand on."""
+    """Return the neighbours in grey, a box each or one for each of their groups, at the side where they belong."""
     found: dict[str, Box] = {}
     for run in whole.running:
         for end, inner in zip(_ends(whole, run, mine, folded=folded), (run.tail, run.head), strict=True):
@@ -250,11 +254,12 @@ def _grey(whole: _Whole, name: str, end: str, *, folded: bool) -> Box:
         frame = _frame(whole.view, whole.home[name])
         return Box(end, frame.title, style="group", emphasis="neighbour", side=side, ref=frame.ref)
     box = _box(whole.timed, whole.timed.analysis.system.activities[name])
+    # Without the fill: neighbours are grey in every picture; the period is in their text.
     return replace(box, id=end, emphasis="neighbour", side=side, fill=None)
 
 
 def _placed(whole: _Whole, mine: Collection[str], *, folded: bool) -> tuple[Arrow, ...]:
-    """Draw an arrow for each pair of boxes; a pace that differs from the producer's is written beside it."""
+    """Draw an arrow for each pair of boxes. A rate that differs from the producer's is written beside it."""
     bundles: dict[tuple[str, str, str], list[Arc]] = {}
     for run in whole.running:
         ends = _ends(whole, run, mine, folded=folded)
@@ -274,7 +279,7 @@ def _placed(whole: _Whole, mine: Collection[str], *, folded: bool) -> tuple[Arro
 
 
 def _label(timed: Timed, arcs: Sequence[Arc]) -> str:
-    """Give the paces of outputs that are not published at each activation of their producer."""
+    """Return the rates of outputs that are not published at each activation of their producer, two at most."""
     words = []
     for arc in arcs:
         output = timed.analysis.outputs.get((arc.source, arc.output))
@@ -290,7 +295,7 @@ def _notes(timed: Timed, names: Iterable[str]) -> tuple[str, ...]:
 
 
 def _alt(timed: Timed, names: Sequence[str], what: str) -> str:
-    """Say how many activities stand on which step of the scale."""
+    """Describe how many activities have which period."""
     steps = [paces.step(timed.analysis.paces.get(name)) for name in names]
     counts = [(name, steps.count(step)) for step, name in paces.NAMES.items() if step in steps]
     told = ", ".join(f"{count} {name}" for name, count in counts)

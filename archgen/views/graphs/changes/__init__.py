@@ -1,7 +1,7 @@
-"""Pictures of what changed: two versions laid over each other, what is gone taken from the first one.
+"""Pictures of what changed: two versions laid over each other, removed elements taken from the first one.
 
-A sign before each title tells what was added, removed, changed or renamed; lines and colours say the same. What did not
-change stands around it in grey. Above a budget groups are folded, and the picture says so.
+A sign before each title says what was added, removed, changed or renamed; lines and colours repeat it. Unchanged
+neighbours are grey. Above a budget groups are folded, and the picture says so.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ __all__ = ["LARGE", "SMALL", "Budget", "pictures"]
 
 
 def pictures(found: Comparison, budget: Budget = LARGE) -> tuple[Graph, ...]:
-    """Draw what changed among components, then among nodes; no picture where nothing changed that it could show."""
+    """Draw the changed components, then the changed nodes; no picture if nothing changed that it could show."""
     return tuple(_pictures(found, budget))
 
 

@@ -1,4 +1,4 @@
-"""How much a picture of changes may hold before it leaves out what stands around them, and before it folds groups."""
+"""How large a picture of changes may be before it omits unchanged neighbours, and before it folds groups."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """`around` is the most boxes with unchanged neighbours among them, `boxes` the most without, `arrows` the most arrows."""
+    """`boxes_with_neighbours` is the maximal number of boxes including unchanged neighbours, `boxes` without them."""
 
     around: int
     boxes: int

@@ -1,4 +1,4 @@
-"""Fold groups, the largest first, until a picture of changes fits its budget. It says what it folded."""
+"""Fold groups, the largest first, until a picture of changes fits its budget, with a note of what was folded."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ _KINDS: tuple[Changed, ...] = get_args(Changed)
 
 
 def folded(graph: Graph, budget: Budget) -> Graph:
-    """Fold as few groups as possible; what cannot be folded any further says that it is larger."""
+    """Fold as few groups as possible. If that is not enough, a note says that the picture is larger."""
     members = Counter(box.cluster for box in graph.boxes)
+    # Folding a group of one box would save nothing.
     largest = sorted((c.id for c in graph.clusters if members[c.id] > 1), key=lambda name: -members[name])
     tried = graph
     for count in range(len(largest) + 1):
@@ -31,7 +32,7 @@ def folded(graph: Graph, budget: Budget) -> Graph:
 
 
 def fits(graph: Graph, budget: Budget) -> bool:
-    """Say whether a graph keeps to a budget."""
+    """Whether a graph keeps to a budget."""
     return len(graph.boxes) <= budget.boxes and len(graph.arrows) <= budget.arrows
 
 
@@ -67,6 +68,7 @@ def _box(graph: Graph, cluster: Cluster, inner: Sequence[Arrow]) -> Box:
         emphasis="normal" if kinds else "neighbour",
         ref=cluster.ref,
         tooltip="\n".join([cluster.title, *changed]),
+        # Different changes inside make the group as a whole "changed".
         change=(kinds[0] if len(kinds) == 1 else "changed") if kinds else None,
     )
 
@@ -77,7 +79,7 @@ def _counts(inside: Sequence[Box]) -> list[tuple[Changed, int]]:
 
 
 def _merged(arrows: Sequence[Arrow], home: dict[str, str]) -> tuple[Arrow, ...]:
-    """Draw one arrow for all that now have the same ends and went through the same."""
+    """Return one arrow for all that now have the same ends and the same change."""
     kept = [arrow for arrow in arrows if (home[arrow.tail], home[arrow.head]) == (arrow.tail, arrow.head)]
     bundles: dict[tuple[str, str, Changed | None], list[Arrow]] = {}
     for arrow in arrows:

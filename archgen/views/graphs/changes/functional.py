@@ -1,4 +1,4 @@
-"""The picture of what changed among components and their connections."""
+"""The picture of changed components and their connections."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ class _Both:
 
     @property
     def subjects(self) -> frozenset[str]:
-        """Name the components that changed themselves."""
+        """Return the components that changed themselves."""
         return frozenset(self.told.components)
 
     def group(self, name: str) -> str:
-        """Give the group of a component, by its common name."""
+        """Return the group of a component, by common ids."""
         item = self.after.architecture.components.get(name)
         return item.group if item else self.found.names.to("group", name.partition(".")[0])
 
 
 def functional(found: Comparison, budget: Budget) -> Graph | None:
-    """Draw what changed and what stands around it; nothing where no component and no connection did."""
+    """Draw what changed and its surroundings; None if no component and no connection changed."""
     before, after = found.before.architecture, found.after.architecture
     told = happened(found)
     both = _Both(found, index(before), index(after, found.new), told, tuple(_lines(found, told)))
@@ -53,6 +53,7 @@ def functional(found: Comparison, budget: Budget) -> Graph | None:
         return None
     near = {end for line in both.lines if not core.isdisjoint(line.ends) for end in line.ends} - core
     beside = {end for line in both.lines if not both.subjects.isdisjoint(line.ends) for end in line.ends} - core
+    # `neighbours` includes those behind a changed connection only; they are counted, but never drawn.
     shown = core | beside if len(core | beside) <= budget.around else core
     drawn = [
         line for line in both.lines if shown.issuperset(line.ends) and (line.change or _at(line, both, shown, core))
@@ -75,7 +76,7 @@ def functional(found: Comparison, budget: Budget) -> Graph | None:
 
 
 def _at(line: Line, both: _Both, shown: set[str], core: set[str]) -> bool:
-    """Say whether an unchanged connection is worth its line: it touches what changed, or joins two that are drawn anyway."""
+    """Whether an unchanged connection is worth its line: it touches a changed component, or joins two drawn anyway."""
     return (
         not both.subjects.isdisjoint(line.ends)
         or (shown == core and core.issuperset(line.ends))
@@ -88,13 +89,13 @@ def _exists(both: _Both, name: str) -> bool:
 
 
 def _old(both: _Both, name: str) -> str | None:
-    """Give the id that a component had."""
+    """Return the old id of a component, None if it is new."""
     was = both.found.names.back.get("component", {}).get(name, name)
     return was if was in both.before.architecture.components else None
 
 
 def _lines(found: Comparison, told: Happened) -> Iterator[Line]:
-    """Give all connections of both versions, with what happened to them; not those of which the comparison tells nothing."""
+    """Yield all connections of both versions with their change, except those that may not have been read."""
     old = edges(found.before.architecture, found.names)
     new = edges(found.after.architecture, type(found.names)())
     unknown = found.told.unknown
@@ -103,6 +104,7 @@ def _lines(found: Comparison, told: Happened) -> Iterator[Line]:
         if key in new and key in old:
             said = tuple(flows_changed(found.after.architecture, edge, told))
             yield _line(edge, "changed" if said else None, said)
+        # In a part that could not be read: not known to be removed or added.
         elif unknown(("output", edge.output)) or unknown(("input", edge.input)):
             yield from [_line(edge, None, ())] if key in new else []
         elif edge.input in told.said or not told.components.keys().isdisjoint((edge.tail, edge.head)):
@@ -116,7 +118,7 @@ def _line(edge: Edge, change: Changed | None, said: tuple[str, ...]) -> Line:
 
 
 def _boxes(both: _Both, shown: set[str]) -> Iterator[Box]:
-    """Draw the components, in the order of the second version, what is gone behind its group."""
+    """Yield the components in the order of the second version, removed ones at the end of their group."""
     places = {name: at for at, name in enumerate(both.after.architecture.components)}
     groups = {name: at for at, name in enumerate(both.after.architecture.groups)}
     last = len(places)
@@ -155,6 +157,7 @@ def _frames(both: _Both, shown: set[str]) -> Iterator[Cluster]:
 def _alt(both: _Both) -> str:
     titles = {name: _box(both, name).title for name in sorted(both.subjects) if _exists(both, name)}
     by_kind: Mapping[str, list[str]] = {
+        # Without the sign and the blank that `_draw_box` puts before the title.
         kind: [titles[name][2:] for name in titles if both.told.components[name] == kind]
         for kind in ("added", "removed", "changed", "renamed")
     }

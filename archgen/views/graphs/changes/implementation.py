@@ -1,4 +1,4 @@
-"""The picture of what changed among nodes: what they publish, subscribe, serve and call, topics as boxes between them."""
+"""The picture of changed nodes: what they publish, subscribe, serve and call, with topics as boxes in between."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from archgen.views.shapes import Box, Changed, Graph
 
 NAME = "changes/nodes"
 Key = tuple[str, str, str]
-"""A node, a topic, and how the one uses the other."""
+"""A node, a topic, and how the node uses it."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Both:
-    """The two versions of the low level, by common names."""
+    """The two versions of the nodes, by common ids."""
 
     before: Index
     after: Index
@@ -37,12 +37,12 @@ class _Both:
 
     @property
     def topics(self) -> dict[str, Topic]:
-        """Give all topics of both versions."""
+        """Return all topics of both versions, the later one where both have it."""
         return {**self.before.architecture.topics, **self.after.architecture.topics}
 
 
 def implementation(found: Comparison, budget: Budget) -> Graph | None:
-    """Draw what changed and what stands around it; nothing where no node did. Where it does not fit it is left out."""
+    """Draw what changed and its surroundings; None if no node changed, or if it does not fit the budget."""
     kinds, said, ports = _happened(found)
     if not kinds:
         return None
@@ -62,13 +62,14 @@ def implementation(found: Comparison, budget: Budget) -> Graph | None:
         notes=("Only what changed is drawn.",) if len(drawn) < len(_around(both)) else (),
         alt="; ".join(f"{SIGNS[kind]} {name}" for name, kind in sorted(kinds.items())) + ".",
     )
+    # Nodes have no groups to fold.
     if not fits(graph, budget):
         return None
     return with_legend(replace(graph, asked=sum(arrow.count for arrow in graph.arrows)))
 
 
 def _around(both: _Both) -> list[Line]:
-    """Give what the nodes that changed use, and who else uses what changed of it."""
+    """Return what the changed nodes use, and who else uses what changed of it."""
     subjects = {f"node {name}" for name in both.kinds}
     touched = {end for line in both.lines if line.change for end in line.ends if end.startswith("topic ")}
     return [line for line in both.lines if not subjects.isdisjoint(line.ends) or not touched.isdisjoint(line.ends)]
@@ -81,7 +82,7 @@ def _drawn(both: _Both, budget: Budget) -> list[Line]:
 
 
 def _happened(found: Comparison) -> tuple[dict[str, Changed], defaultdict[str, list[str]], dict[Key, list[str]]]:
-    """Sort what happened to nodes: by node, and by node, use and port."""
+    """Sort the changes of nodes: their kinds and sentences by node, and the sentences by node, use and port."""
     kinds: dict[str, Changed] = {}
     said: defaultdict[str, list[str]] = defaultdict(list)
     ports: defaultdict[Key, list[str]] = defaultdict(list)
@@ -104,6 +105,7 @@ def _happened(found: Comparison) -> tuple[dict[str, Changed], defaultdict[str, l
 def _all(changes: tuple[Change, ...]) -> Iterator[Change]:
     for change in changes:
         yield change
+        # Ports that hang on a component belong to the picture of components.
         if change.sort not in {"component", "group", "input", "output"}:
             yield from _all(change.parts)
 
@@ -113,7 +115,7 @@ def _ends(found: Architecture, names: Names) -> dict[Key, Endpoint]:
 
 
 def _lines(found: Comparison, ports: dict[Key, list[str]]) -> Iterator[Line]:
-    """Give each use of a topic in either version, and what happened to it."""
+    """Yield each use of a topic in either version with its change."""
     old, new = _ends(found.before.architecture, found.names), _ends(found.after.architecture, Names())
     for key in (*new, *(key for key in old if key not in new)):
         end = new.get(key) or old[key]
@@ -126,6 +128,7 @@ def _lines(found: Comparison, ports: dict[Key, list[str]]) -> Iterator[Line]:
 
 def _about(key: Key, end: Endpoint, ports: dict[Key, list[str]]) -> Iterator[str]:
     node, topic, use = key
+    # A use is named by its port, by component and port if the node has several components, or by its internal key.
     names = {
         (end.port or topic).rpartition(".")[2],
         ".".join((end.port or "").split(".")[-2:]),
@@ -167,7 +170,7 @@ def _node(both: _Both, name: str) -> Box:
 
 
 def _planned(both: _Both, name: str) -> Changed | None:
-    """Say whether a node that nobody wrote came or went with its component."""
+    """Return whether a node that nobody wrote was added or removed with its component, None for neither."""
     was = both.names.back.get("node", {}).get(name, name)
     old, new = was in both.before.architecture.nodes, name in both.after.architecture.nodes
     return None if old and new else "added" if new else "removed"

@@ -1,4 +1,4 @@
-"""Arrows of pictures of changes: one for all that runs between two boxes and went through the same."""
+"""Arrows of pictures of changes: one for all connections between two boxes with the same change."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Key = tuple[str, str, Style, Changed | None]
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One connection of either version, and what happened to it; `sentence` says it in words."""
+    """One connection of either version with its change; `sentence` describes it."""
 
     tail: str
     head: str
@@ -27,12 +27,12 @@ class Line:
 
     @property
     def ends(self) -> frozenset[str]:
-        """Give both ends."""
+        """Return both ends."""
         return frozenset((self.tail, self.head))
 
 
 def arrows(lines: Iterable[Line]) -> tuple[Arrow, ...]:
-    """Draw the lines; only what changed has a text."""
+    """Return one arrow for each bundle of lines; only changed ones have a label."""
     bundles: dict[Key, list[Line]] = {}
     for line in lines:
         bundles.setdefault((line.tail, line.head, line.style, line.change), []).append(line)

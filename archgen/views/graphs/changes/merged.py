@@ -1,6 +1,6 @@
-"""Two versions as one: what each component, connection and type went through, by common names.
+"""Two versions as one: the change of each component, connection and type, by common ids.
 
-The names are those of the second version; what is gone keeps the one that it had.
+Common ids are those of the second version; what was removed keeps its old one.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _WHOLE = frozenset(get_args(Changed))
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """What runs from one output to one input. `tail` and `head` are components, in the direction of drawing."""
+    """A connection from one output to one input. `tail` and `head` are components, in the direction of drawing."""
 
     output: str
     input: str
@@ -36,19 +36,19 @@ class Edge:
 
 @dataclass(slots=True)
 class Happened:
-    """What changed, by common names: the kind of change, and the sentences that tell it."""
+    """What changed, by common ids: kinds of changes, and the sentences that describe them."""
 
     components: dict[str, Changed] = field(default_factory=dict)
     said: defaultdict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
-    """By component, and by input of a connection."""
+    """Sentences by component, and by input for connections."""
     carried: dict[str, str] = field(default_factory=dict)
-    """Outputs, inputs and types of which what flows changed, with the sentence."""
+    """The sentence for each output, input and type with a change of what flows."""
     texts: set[str] = field(default_factory=set)
-    """Components of which only texts changed."""
+    """Components with changes of texts only."""
 
 
 def happened(found: Comparison) -> Happened:
-    """Sort the changes by what they happened to."""
+    """Collect the changes by the elements that they happened to."""
     told = Happened()
     for change in found.changes:
         _note(change, found.names, told)
@@ -56,7 +56,7 @@ def happened(found: Comparison) -> Happened:
 
 
 def _note(change: Change, names: Names, told: Happened, whole: str = "") -> None:
-    """Note a change and its parts; parts of what came or went are told by the whole."""
+    """Note a change and its parts; parts of an added or removed element are described by the whole."""
     sort = "input" if change.sort == "connection" else change.sort
     name = names.to(sort, change.element) if change.kind == "removed" else change.element
     said = whole or change.text
@@ -67,6 +67,7 @@ def _note(change: Change, names: Names, told: Happened, whole: str = "") -> None
     elif sort in {"type", "message"} and not textual(change):
         told.carried[name] = said
     for part in change.parts:
+        # A group is no box here: what was added with it is described part by part.
         inner = said if change.kind in {"added", "removed"} and change.sort != "group" else ""
         _note(part, names, told, inner)
 
@@ -77,6 +78,7 @@ def _component(change: Change, name: str, said: str, told: Happened) -> None:
         return
     told.said[name].append(said)
     kind: Changed = "renamed" if change.kind == "moved" else change.kind
+    # Added, removed and renamed win over changed, whichever comes first.
     if kind != "changed" or name not in told.components:
         told.components[name] = kind
 
@@ -97,7 +99,7 @@ def _port(change: Change, name: str, said: str, told: Happened) -> None:
 
 
 def edges(found: Architecture, names: Names) -> Mapping[tuple[str, str], Edge]:
-    """Give all connections of a version by the common names of their ends."""
+    """Return all connections of a version by the common ids of their ends."""
     return {(edge.output, edge.input): edge for edge in _edges(found, names)}
 
 
@@ -111,6 +113,7 @@ def _edges(found: Architecture, names: Names) -> Iterator[Edge]:
                 continue
             style = style_of(found, name)
             writer = names.to("component", output.component)
+            # Services and actions are drawn from client to server, against the direction of the output.
             ends = (reader, writer) if style in {"service", "action"} else (writer, reader)
             label = output.type or output.name
             yield Edge(
@@ -119,7 +122,7 @@ def _edges(found: Architecture, names: Names) -> Iterator[Edge]:
 
 
 def flows_changed(found: Architecture, edge: Edge, told: Happened) -> Iterable[str]:
-    """Give the sentences that tell that something else flows along a connection that stays."""
+    """Return the sentences about a change of what flows along a connection that is in both versions."""
     output = found.outputs.get(edge.output)
     names = [edge.output, edge.input]
     if output is not None:
