@@ -47,8 +47,8 @@ def main() -> None:
     except Exception as error:  # a traceback is never shown; ARCHGEN_DEBUG brings it back
         if os.environ.get("ARCHGEN_DEBUG"):
             raise
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        sys.stderr.write(f"archgen: failed: {what}\nThis is a mistake in archgen. ARCHGEN_DEBUG=1 shows where.\n")
+        error_text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        sys.stderr.write(f"archgen: failed: {error_text}\nThis is a mistake in archgen. ARCHGEN_DEBUG=1 shows where.\n")
         sys.exit(2)
 
 

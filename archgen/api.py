@@ -14,23 +14,24 @@ from __future__ import annotations
 from os import PathLike, fspath
 from pathlib import Path
 
-from archgen import agreements, outputs, ownership, pipeline, sides
-from archgen.analyses import size as size_analysis
-from archgen.diagnostic import Diagnostic
+from archgen import pipeline
+from archgen.analyses import size_counts as size_analysis
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.selector import Selection
-from archgen.outputs import Ask
-from archgen.pipeline import Checked
-from archgen.timing import chains as timing_chains
-from archgen.timing.analyse import analyse
+from archgen.model.selector_evaluation import Selection
+from archgen.pipeline import CheckedProject
+from archgen.products import agreement_documents, code_ownership, compared_versions, project_outputs
+from archgen.products.project_outputs import OutputOptions
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.views import record
-from archgen.views.owners import Ownership
-from archgen.views.report import Level
+from archgen.timing.chains import chain_bounds as timing_chains
+from archgen.timing.run_analysis import analyse_architecture
+from archgen.views import resolved_record
+from archgen.views.pages.report_outline import DetailLevel
+from archgen.views.partner_ownership import Ownership
 from archgen.views.shapes import Record
 
-Name = str | PathLike[str]
+AnyPath = str | PathLike[str]
 
 
 class SelectorError(ValueError):
@@ -41,7 +42,7 @@ class SelectorError(ValueError):
 class Project:
     """A checked project. Everything is frozen: load it again to see changed files."""
 
-    checked: Checked
+    checked: CheckedProject
 
     @property
     def root(self) -> Path:
@@ -61,29 +62,29 @@ class Project:
     @property
     def ok(self) -> bool:
         """Whether there are no errors; warnings and notes do not count."""
-        return not self.checked.broken
+        return not self.checked.has_errors
 
     @property
-    def size(self) -> size_analysis.Size:
+    def size(self) -> size_analysis.ArchitectureSize:
         """The counts of `archgen stats`, with means as exact fractions."""
-        return size_analysis.size(self.architecture)
+        return size_analysis.measure_size(self.architecture)
 
     @property
-    def progress(self) -> tuple[size_analysis.Progress, ...]:
+    def progress(self) -> tuple[size_analysis.ProgressCounts, ...]:
         """How complete the project, each group and each partner are, as counts of components."""
-        return size_analysis.progress(self.architecture)
+        return size_analysis.measure_progress(self.architecture)
 
     def timing(self) -> Analysis:
         """Analyse rates, response times, loads and traffic. Durations are in ns, rates in Hz; all values are exact."""
-        return analyse(self.architecture)
+        return analyse_architecture(self.architecture)
 
     def chains(self) -> dict[str, ChainResult]:
         """Return the latency of each chain (ns), its terms and the verdict on its deadline, by the chain's id."""
-        return timing_chains.chains(self.timing(), self.architecture)
+        return timing_chains.bound_all_chains(self.timing(), self.architecture)
 
     def select(self, words: str) -> Selection:
         """Evaluate a selector. Raises `SelectorError` if it is invalid."""
-        selection, problems = outputs.select(self.checked, words)
+        selection, problems = project_outputs.select_elements(self.checked, words)
         errors = [problem.message for problem in problems if problem.severity == "error"]
         if errors:
             raise SelectorError("; ".join(errors))
@@ -91,40 +92,51 @@ class Project:
 
     def record(self, select: str | None = None) -> Record:
         """Return the resolved model, or the selected part of it, as plain data (`schemas/resolved.schema.json`)."""
-        return record.record(outputs.view(self.checked, self._ask(select)))
+        return resolved_record.make_record(
+            project_outputs.make_scoped_lookup(self.checked, self._output_options(select))
+        )
 
     def write_report(
         self,
-        file: Name,
+        file: AnyPath,
         *,
-        template: Name | None = None,
+        template: AnyPath | None = None,
         select: str | None = None,
-        level: Level = "implementation",
+        level: DetailLevel = "implementation",
         revision: str | None = None,
     ) -> None:
         """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can fix."""
-        made = Path(fspath(template)) if template is not None else None
-        outputs.report(self.checked, self._ask(select, level, revision), Path(fspath(file)), made)
+        template_path = Path(fspath(template)) if template is not None else None
+        project_outputs.write_report(
+            self.checked, self._output_options(select, level, revision), Path(fspath(file)), template_path
+        )
 
     def write_site(
-        self, folder: Name, *, select: str | None = None, level: Level = "implementation", revision: str | None = None
+        self,
+        folder: AnyPath,
+        *,
+        select: str | None = None,
+        level: DetailLevel = "implementation",
+        revision: str | None = None,
     ) -> None:
         """Write the static site."""
-        outputs.site(self.checked, self._ask(select, level, revision), Path(fspath(folder)))
+        project_outputs.write_site(self.checked, self._output_options(select, level, revision), Path(fspath(folder)))
 
     def write_diagrams(
         self,
-        folder: Name,
+        folder: AnyPath,
         *,
         formats: tuple[str, ...] = ("svg",),
         only: tuple[str, ...] = (),
         select: str | None = None,
     ) -> int:
         """Write diagrams (svg, png, pdf, dot) and return their number."""
-        return outputs.diagrams(self.checked, self._ask(select), Path(fspath(folder)), formats, only)
+        return project_outputs.write_diagrams(
+            self.checked, self._output_options(select), Path(fspath(folder)), formats, only
+        )
 
     def write_agreement(
-        self, file: Name, first: str, second: str, *, since: str | None = None, revision: str | None = None
+        self, file: AnyPath, first: str, second: str, *, since: str | None = None, revision: str | None = None
     ) -> None:
         """Write what flows between two partners. The file's suffix (.docx, .md, .html) determines the format.
 
@@ -132,37 +144,43 @@ class Project:
         have no interfaces, ValueError for another suffix, `git.GitError` for a revision that does not exist.
         """
         target = Path(fspath(file))
-        form = agreements.ENDINGS.get(target.suffix.lower())
-        if form is None:
+        file_format = agreement_documents.FORMAT_BY_ENDING.get(target.suffix.lower())
+        if file_format is None:
             msg = f"the ending of `{target.name}` names no format: .docx, .md or .html"
             raise ValueError(msg)
-        earlier = sides.side(since, self._path()) if since else None
-        agreements.write(agreements.made(self.checked, first, second, earlier, revision), form, target)
+        earlier_version = compared_versions.read_version(since, self._source_path()) if since else None
+        agreement_documents.write_agreement(
+            agreement_documents.make_project_agreement(self.checked, first, second, earlier_version, revision),
+            file_format,
+            target,
+        )
 
     def ownership(self) -> Ownership:
         """Return the elements and files that each partner owns."""
-        return ownership.ownership(self.checked)
+        return code_ownership.find_ownership(self.checked)
 
     def codeowners(self) -> str:
         """Return the text of the file CODEOWNERS: the reviewers of each file."""
-        return ownership.codeowners(self.checked).text
+        return code_ownership.make_codeowners(self.checked).text
 
-    def write_packed(self, file: Name) -> None:
+    def write_packed(self, file: AnyPath) -> None:
         """Write the whole project as one YAML file."""
-        outputs.pack(self.checked, Path(fspath(file)))
+        project_outputs.write_packed(self.checked, Path(fspath(file)))
 
-    def _path(self) -> Path:
+    def _source_path(self) -> Path:
         """Return what the project was read from: its folder, or its only file."""
-        files = self.checked.files
+        files = self.checked.yaml_files
         return self.root / files[0] if len(files) == 1 else self.root
 
-    def _ask(self, select: str | None, level: Level = "implementation", revision: str | None = None) -> Ask:
-        return Ask(self.select(select) if select else None, select or "", level, revision)
+    def _output_options(
+        self, select: str | None, level: DetailLevel = "implementation", revision: str | None = None
+    ) -> OutputOptions:
+        return OutputOptions(self.select(select) if select else None, select or "", level, revision)
 
 
-def load(path: Name | None = None) -> Project:
+def load(path: AnyPath | None = None) -> Project:
     """Read and check the project at a path (a folder or a single file; None: the one around the current folder).
 
     Raises `archgen.project.ProjectNotFoundError` if there is none. Mistakes in its files are findings, not exceptions.
     """
-    return Project(pipeline.check(Path(fspath(path)) if path is not None else None))
+    return Project(pipeline.check_project(Path(fspath(path)) if path is not None else None))

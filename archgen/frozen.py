@@ -22,98 +22,98 @@ else:
 
     def dataclass(*, frozen: bool = False, slots: bool = False) -> Callable[[type], type]:
         """Return a class decorator; unless both frozen and slotted, the class is made by the standard library."""
-        return _frozen if frozen and slots else dataclasses.dataclass(frozen=frozen, slots=slots)
+        return _make_frozen if frozen and slots else dataclasses.dataclass(frozen=frozen, slots=slots)
 
 
-_ABSENT: Any = object()
+_NO_VALUE: Any = object()
 
 
-def _frozen(cls: type) -> type:
+def _make_frozen(cls: type) -> type:
     """Make a frozen dataclass with slots. Methods that the class defines itself are kept."""
     # With `slots=True` the standard library returns a new class: `cls` is only looked at for its own methods.
-    made: type = dataclasses.dataclass(init=False, repr=False, eq=False, slots=True)(cls)
-    fields = dataclasses.fields(made)
-    compared = [field.name for field in fields if field.compare]
+    frozen_class: type = dataclasses.dataclass(init=False, repr=False, eq=False, slots=True)(cls)
+    fields = dataclasses.fields(frozen_class)
+    compared_names = [field.name for field in fields if field.compare]
     methods = {
-        "__init__": _init(made, fields),
-        "__repr__": _repr([field.name for field in fields if field.repr]),
-        **_equality(attrgetter(*compared) if compared else lambda _: ()),
-        "__setattr__": _set,
-        "__delattr__": _delete,
+        "__init__": _compile_init(frozen_class, fields),
+        "__repr__": _make_repr([field.name for field in fields if field.repr]),
+        **_make_equality(attrgetter(*compared_names) if compared_names else lambda _: ()),
+        "__setattr__": _refuse_assignment,
+        "__delattr__": _refuse_deletion,
         # Without these, unpickling would assign the slots and fail in `__setattr__`.
-        "__getstate__": _state,
-        "__setstate__": _restore,
+        "__getstate__": _get_state,
+        "__setstate__": _set_state,
     }
     for name, method in methods.items():
         if name not in cls.__dict__:
-            setattr(made, name, method)
-    return made
+            setattr(frozen_class, name, method)
+    return frozen_class
 
 
-def _init(made: type, fields: tuple[dataclasses.Field[Any], ...]) -> Any:  # noqa: ANN401 - a method of any class
+def _compile_init(frozen_class: type, fields: tuple[dataclasses.Field[Any], ...]) -> Any:  # noqa: ANN401 - a method of any class
     """Compile `__init__`, with the signature that the standard library would give it."""
     # The slots' own setters are called directly: they bypass the frozen `__setattr__`, and unlike `object.__setattr__`,
     # which the standard library's frozen classes call, they need not look up the slot by its name.
-    names: dict[str, Any] = {"absent": _ABSENT}
+    namespace: dict[str, Any] = {"absent": _NO_VALUE}
     positional, keywords, body = ["self"], ["*"], []
     for field in fields:
-        names[f"set_{field.name}"] = made.__dict__[field.name].__set__
+        namespace[f"set_{field.name}"] = frozen_class.__dict__[field.name].__set__
         if not field.init:
             continue
         default, value = "", field.name
         if field.default is not dataclasses.MISSING:
-            names[f"default_{field.name}"], default = field.default, f"=default_{field.name}"
+            namespace[f"default_{field.name}"], default = field.default, f"=default_{field.name}"
         elif field.default_factory is not dataclasses.MISSING:
-            names[f"make_{field.name}"], default = field.default_factory, "=absent"
+            namespace[f"make_{field.name}"], default = field.default_factory, "=absent"
             value = f"make_{field.name}() if {field.name} is absent else {field.name}"
         (keywords if field.kw_only else positional).append(field.name + default)
         body.append(f" set_{field.name}(self, {value})")
-    if hasattr(made, "__post_init__"):
+    if hasattr(frozen_class, "__post_init__"):
         body.append(" self.__post_init__()")
     parameters = ", ".join(positional + (keywords if len(keywords) > 1 else []))
-    exec(f"def __init__({parameters}):\n" + "\n".join(body or [" pass"]), names)  # noqa: S102 - of field names only
-    return names["__init__"]
+    exec(f"def __init__({parameters}):\n" + "\n".join(body or [" pass"]), namespace)  # noqa: S102 - of field names only
+    return namespace["__init__"]
 
 
-def _repr(shown: list[str]) -> Callable[[Any], str]:
+def _make_repr(field_names: list[str]) -> Callable[[Any], str]:
     """Make a `__repr__` that shows these fields."""
 
-    def text(self: Any) -> str:  # noqa: ANN401
-        return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
+    def represent_object(self: Any) -> str:  # noqa: ANN401
+        return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in field_names)})"
 
-    return text
+    return represent_object
 
 
-def _equality(compared: Callable[[Any], object]) -> dict[str, Callable[..., object]]:
+def _make_equality(compared_values: Callable[[Any], object]) -> dict[str, Callable[..., object]]:
     """Make `__eq__` and `__hash__` of the compared values; objects of different classes are never equal."""
 
-    def same(self: object, other: object) -> object:
-        return compared(self) == compared(other) if other.__class__ is self.__class__ else NotImplemented
+    def is_equal(self: object, other: object) -> object:
+        return compared_values(self) == compared_values(other) if other.__class__ is self.__class__ else NotImplemented
 
-    def number(self: object) -> int:
-        return hash(compared(self))
+    def hash_values(self: object) -> int:
+        return hash(compared_values(self))
 
-    return {"__eq__": same, "__hash__": number}
+    return {"__eq__": is_equal, "__hash__": hash_values}
 
 
-def _set(self: object, name: str, value: object) -> None:  # noqa: ARG001 - Python's signature
+def _refuse_assignment(self: object, name: str, value: object) -> None:  # noqa: ARG001 - Python's signature
     message = f"cannot assign to field {name!r}"
     raise dataclasses.FrozenInstanceError(message)
 
 
-def _delete(self: object, name: str) -> None:  # noqa: ARG001 - the same
+def _refuse_deletion(self: object, name: str) -> None:  # noqa: ARG001 - the same
     message = f"cannot delete field {name!r}"
     raise dataclasses.FrozenInstanceError(message)
 
 
-def _values(self: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+def _field_values(self: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
     return ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
 
 
-def _state(self: Any) -> dict[str, Any]:  # noqa: ANN401
-    return dict(_values(self))
+def _get_state(self: Any) -> dict[str, Any]:  # noqa: ANN401
+    return dict(_field_values(self))
 
 
-def _restore(self: object, state: dict[str, Any]) -> None:
+def _set_state(self: object, state: dict[str, Any]) -> None:
     for name, value in state.items():
         object.__setattr__(self, name, value)

@@ -14,19 +14,19 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from archgen import analyses, findings, link, project, schema, transform
-from archgen.diagnostic import Diagnostic, Rule, Severity, settle
-from archgen.findings import aftermath, rules, suppress
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
+from archgen.diagnostics.source_span import SourceTexts
+from archgen.findings import error_aftermath, ignore_comments, rule_table
 from archgen.frozen import dataclass
-from archgen.link import chapters, interfaces, merge, shipped
-from archgen.link.chapters import Chapters
-from archgen.link.pack import Attachments, Packed, pack
+from archgen.link import interface_sources, report_chapters, shipped_types, slice_merging
+from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
+from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
-from archgen.model.interfaces import Interfaces
-from archgen.project import Loaded, Slices, Tracked
-from archgen.source import Sources
-from archgen.syntax import files
-from archgen.syntax import interfaces as interface_files
-from archgen.syntax.tree import Scalar, Table
+from archgen.model.known_interfaces import Interfaces
+from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.syntax import interface_definitions as interface_files
+from archgen.syntax import project_files
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 ALL_RULES: tuple[Rule, ...] = (
     *interface_files.RULES,
@@ -37,110 +37,112 @@ ALL_RULES: tuple[Rule, ...] = (
     *findings.RULES,
 )
 """All rules, in the order in which the stages run."""
-_BY_NAME = rules.by_name(ALL_RULES)
+_RULES_BY_NAME = rule_table.index_rules(ALL_RULES)
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckedProject:
     """A checked project: its architecture, without what could not be read, and its findings."""
 
-    loaded: Loaded
-    merged: Table
+    loaded_project: LoadedProject
+    merged_table: MappingNode
     architecture: Architecture
-    chapters: Chapters
+    chapters: ReportChapters
     findings: tuple[Diagnostic, ...]
     """Settled and sorted, without those that a comment or a setting silences."""
-    silenced: tuple[Diagnostic, ...] = ()
+    silenced_findings: tuple[Diagnostic, ...] = ()
     """The findings that a comment or a setting of the project silences."""
 
     @property
     def root(self) -> Path:
         """The project's folder."""
-        return self.loaded.root
+        return self.loaded_project.root
 
     @property
-    def out(self) -> Path:
+    def output_folder(self) -> Path:
         """The default folder for outputs."""
-        return self.loaded.root / "archgen-out"
+        return self.loaded_project.root / "archgen-out"
 
     @property
-    def sources(self) -> Sources:
+    def sources(self) -> SourceTexts:
         """The texts of the project's files, which diagnostics quote."""
-        return self.loaded.sources
+        return self.loaded_project.sources
 
     @property
-    def files(self) -> tuple[str, ...]:
+    def yaml_files(self) -> tuple[str, ...]:
         """The paths of the project's YAML files, relative to its folder."""
-        return tuple(document.file for document in self.loaded.documents)
+        return tuple(document.file for document in self.loaded_project.documents)
 
     @property
-    def all_files(self) -> tuple[str, ...]:
+    def input_files(self) -> tuple[str, ...]:
         """The paths of all files that outputs depend on: YAML, interface definitions, chapters."""
-        return (*self.files, *self.loaded.interfaces, *self.chapters.texts)
+        return (*self.yaml_files, *self.loaded_project.interface_files, *self.chapters.texts)
 
     @property
-    def broken(self) -> bool:
+    def has_errors(self) -> bool:
         """Whether there are errors."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
 
     @property
-    def unsound(self) -> tuple[Diagnostic, ...]:
+    def structural_errors(self) -> tuple[Diagnostic, ...]:
         """The errors of reading and linking: what they are about is missing in the architecture."""
-        return tuple(d for d in self.findings if d.severity is Severity.ERROR and _BY_NAME[d.rule].fixed)
+        return tuple(d for d in self.findings if d.severity is Severity.ERROR and _RULES_BY_NAME[d.rule].fixed)
 
-    def packed(self) -> Packed:
+    def pack_project(self) -> PackedProject:
         """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""
-        texts, _ = definitions(self.loaded)
-        attached = Attachments(
-            {name: text for file, text in texts.items() if (name := interfaces.name_of(file))},
+        texts, _ = read_interface_files(self.loaded_project)
+        attachments = PackedAttachments(
+            {name: text for file, text in texts.items() if (name := interface_sources.interface_name_of(file))},
             {path: chapter.text for path, chapter in self.chapters.texts.items()},
-            self.chapters.pictures(),
+            self.chapters.read_pictures(),
         )
-        ignores = [ignore for found in self.loaded.ignores.values() for ignore in found]
-        return pack(self.merged, self.architecture, ignores, attached)
+        ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
+        return pack_project(self.merged_table, self.architecture, ignores, attachments)
 
 
-def check(path: Path | None = None, known: Slices | None = None) -> Checked:
+def check_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
     """Read and check the project at a path (a folder, a file, or None for the one around the current folder).
 
     `parsed_slices` is a cache that is filled: pass the same one for several versions of a project, and files that are
     the same in them are parsed once. Raises `project.ProjectNotFoundError` if there is no project.
     """
-    with _without_collection():
-        return judge(project.load(path, known))
+    with _pause_garbage_collection():
+        return judge_project(project.load_project(path, parsed_slices))
 
 
-def check_at(path: Path | None, revision: str, known: Slices | None = None) -> Checked:
+def check_at_revision(path: Path | None, revision: str, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
     """Check the project at a path as it is at a revision of its repository, read from git's objects.
 
     Raises `git.GitError`, `project.NotAtRevisionError` if the project does not exist at the revision, and
     `project.ProjectNotFoundError` if there is neither a project nor a repository.
     """
-    return check_tracked(project.tracked(path), revision, known)
+    return check_tracked_project(project.find_tracked_project(path), revision, parsed_slices)
 
 
-def check_tracked(tracked: Tracked, revision: str, known: Slices | None = None) -> Checked:
+def check_tracked_project(
+    tracked_project: TrackedProject, revision: str, parsed_slices: ParsedSlices | None = None
+) -> CheckedProject:
     """Check a tracked project at a revision. For many revisions, find the project once, and share `parsed_slices`."""
-    with _without_collection():
-        return judge(project.load_at(tracked, revision, known))
+    with _pause_garbage_collection():
+        return judge_project(project.load_at_revision(tracked_project, revision, parsed_slices))
 
 
-def judged(loaded: Loaded) -> Checked:
+def check_loaded_project(loaded_project: LoadedProject) -> CheckedProject:
     """Check a project that is loaded already."""
-    with _without_collection():
-        return judge(loaded)
+    with _pause_garbage_collection():
+        return judge_project(loaded_project)
 
 
 @contextmanager
-def _without_collection() -> Iterator[None]:
+def _pause_garbage_collection() -> Iterator[None]:
     """Pause the garbage collector: trees and models contain no cycles, and it walks all of them again and again."""
     # The command line has disabled it for good; this is for users of the Python API, whose setting is restored.
-    collecting = gc.isenabled()
+    was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if collecting:
+        if was_enabled:
             gc.enable()
 
 
@@ -149,75 +151,97 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
     with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
         file = Path(folder) / "project.yaml"
         file.write_text(text, encoding="utf-8")
-        return check(file).findings
+        return check_project(file).findings
 
 
-def judge(loaded: Loaded) -> Checked:
+def judge_project(loaded_project: LoadedProject) -> CheckedProject:
     """Run all stages on a loaded project, up to its findings.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
-    merged, merge_findings = merge.merge(loaded.documents, loaded.lost)
-    known, interface_findings = _interfaces(loaded, merged)
-    linked, link_findings = link.link(
-        merged,
-        default_id=loaded.id,
-        default_title=loaded.title,
-        shipped=shipped.shipped_types(loaded.distro),
-        interfaces=known,
-        lost=loaded.lost,
-        partial=loaded.partial,
+    merged_table, merge_findings = slice_merging.merge_documents(loaded_project.documents, loaded_project.lost_keys)
+    known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table)
+    linked_architecture, link_findings = link.link_project(
+        merged_table,
+        default_id=loaded_project.id,
+        default_title=loaded_project.title,
+        shipped_types=shipped_types.load_shipped_types(loaded_project.distro),
+        interfaces=known_interfaces,
+        lost_keys=loaded_project.lost_keys,
+        is_partial=loaded_project.partial,
     )
-    architecture = transform.transform(linked)
-    read, chapter_findings = chapters.chapters(merged, loaded.files)
+    architecture = transform.transform_architecture(linked_architecture)
+    project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
     # explain, so that one mistake is reported once.
-    unread = [d for d in loaded.diagnostics if _BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
-    raw = (
-        *loaded.diagnostics,
+    structural_errors = [
+        d for d in loaded_project.diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}
+    ]
+    raw_diagnostics = (
+        *loaded_project.diagnostics,
         *merge_findings,
         *interface_findings,
         *link_findings,
         *chapter_findings,
-        *aftermath.quiet(analyses.check(architecture), unread, loaded.sources),
-        *rules.judge_settings(loaded.rule_places.items(), _BY_NAME),
+        *error_aftermath.drop_aftermath(
+            analyses.check_architecture(architecture), structural_errors, loaded_project.sources
+        ),
+        *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
     )
-    ignores = [ignore for found in loaded.ignores.values() for ignore in found]
+    ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     # Only projects that ignore something pay for this.
-    first_lines = suppress.first_lines(architecture) if ignores else {}
-    kept = settle(suppress.suppress(raw, ignores, _BY_NAME, first_lines), _BY_NAME, loaded.rules)
-    silenced = _silenced(raw, kept, loaded.rules) if ignores or Severity.OFF in loaded.rules.values() else ()
-    return Checked(loaded, merged, architecture, read, kept, silenced)
+    first_lines = ignore_comments.find_first_lines(architecture) if ignores else {}
+    settled_findings = settle_diagnostics(
+        ignore_comments.apply_ignores(raw_diagnostics, ignores, _RULES_BY_NAME, first_lines),
+        _RULES_BY_NAME,
+        loaded_project.rule_settings,
+    )
+    silenced_findings = (
+        _find_silenced(raw_diagnostics, settled_findings, loaded_project.rule_settings)
+        if ignores or Severity.OFF in loaded_project.rule_settings.values()
+        else ()
+    )
+    return CheckedProject(
+        loaded_project, merged_table, architecture, project_chapters, settled_findings, silenced_findings
+    )
 
 
-def _silenced(
-    raw: Iterable[Diagnostic], kept: Iterable[Diagnostic], settings: Mapping[str, Severity]
+def _find_silenced(
+    raw_diagnostics: Iterable[Diagnostic], settled_findings: Iterable[Diagnostic], settings: Mapping[str, Severity]
 ) -> tuple[Diagnostic, ...]:
     """Return the findings that only comments, or settings that switch a rule off, keep out of the settled ones."""
-    shown = frozenset(kept)
-    every = settle(raw, _BY_NAME, {rule: severity for rule, severity in settings.items() if severity != Severity.OFF})
-    return tuple(finding for finding in every if finding not in shown)
+    shown_findings = frozenset(settled_findings)
+    all_findings = settle_diagnostics(
+        raw_diagnostics,
+        _RULES_BY_NAME,
+        {rule: severity for rule, severity in settings.items() if severity != Severity.OFF},
+    )
+    return tuple(finding for finding in all_findings if finding not in shown_findings)
 
 
-def _interfaces(loaded: Loaded, merged: Table) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
+def _load_interfaces(
+    loaded_project: LoadedProject, merged_table: MappingNode
+) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Read the project's own interface definitions (files, and `ros.definitions`), which override the shipped ones."""
-    texts, diagnostics = definitions(loaded)
-    ros = merged.get("ros")
-    inline = ros.get("definitions") if isinstance(ros, Table) else None
-    entries = inline if isinstance(inline, Table) else ()
-    written = {e.key: (e.value.text, e.value.at) for e in entries if isinstance(e.value, Scalar)}
-    known, found = interfaces.load(loaded.distro, tuple(texts.items()), written)
-    return known, (*diagnostics, *found)
+    texts, diagnostics = read_interface_files(loaded_project)
+    ros_section = merged_table.get("ros")
+    inline_table = ros_section.get("definitions") if isinstance(ros_section, MappingNode) else None
+    entries = inline_table if isinstance(inline_table, MappingNode) else ()
+    inline_definitions = {e.key: (e.value.text, e.value.span) for e in entries if isinstance(e.value, ScalarNode)}
+    known_interfaces, load_diagnostics = interface_sources.load_interfaces(
+        loaded_project.distro, tuple(texts.items()), inline_definitions
+    )
+    return known_interfaces, (*diagnostics, *load_diagnostics)
 
 
-def definitions(loaded: Loaded) -> tuple[dict[str, str], tuple[Diagnostic, ...]]:
+def read_interface_files(loaded_project: LoadedProject) -> tuple[dict[str, str], tuple[Diagnostic, ...]]:
     """Read the interface files that the project names; return their texts by path, and what could not be read."""
     texts, diagnostics = {}, []
-    for file in loaded.interfaces:
-        read = files.read(loaded.files, file)
-        if read.problem:
-            diagnostics.append(read.problem)
+    for file in loaded_project.interface_files:
+        read_file = project_files.read_text_file(loaded_project.files, file)
+        if read_file.problem:
+            diagnostics.append(read_file.problem)
         else:
-            texts[file] = read.text
-            loaded.sources.add(file, read.text)
+            texts[file] = read_file.text
+            loaded_project.sources.add_text(file, read_file.text)
     return texts, tuple(diagnostics)

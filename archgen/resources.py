@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE_FOLDER = Path(__file__).resolve().parent
 
 
-def root() -> Path:
+def resource_root() -> Path:
     """Return the folder with `schemas/`, `backends/`, `start/`, `ros_type_mapper.yaml` and `example_ramcip/`.
 
     It is `archgen/_data` in an installed wheel, and the top of the repository in a checkout.
     """
-    packed = _PACKAGE / "_data"
-    return packed if packed.is_dir() else _PACKAGE.parent
+    data_folder = _PACKAGE_FOLDER / "_data"
+    return data_folder if data_folder.is_dir() else _PACKAGE_FOLDER.parent
 
 
-def path(*parts: str) -> Path:
+def resource_path(*path_parts: str) -> Path:
     """Return the path of a shipped file or folder."""
-    return root().joinpath(*parts)
+    return resource_root().joinpath(*path_parts)

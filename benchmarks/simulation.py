@@ -13,17 +13,17 @@ _ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(_ROOT))
 
 from archgen import pipeline  # noqa: E402 - the checkout is what is measured
-from archgen.simulation import simulate  # noqa: E402
-from archgen.timing.build import system  # noqa: E402
+from archgen.simulation import simulate_system  # noqa: E402
+from archgen.timing.system.system_builder import build_system  # noqa: E402
 from tests.timing.exceeded import exceeded  # noqa: E402
 from tests.timing.random_systems import random_text  # noqa: E402
 
 
 def speed() -> None:
     """Count the case study's events in a second of CPU time."""
-    built, _ = system(pipeline.check(_ROOT / "example_ramcip").architecture)
+    built, _ = build_system(pipeline.check_project(_ROOT / "example_ramcip").architecture)
     start = time.process_time()
-    events = simulate(built, 20, 4).events
+    events = simulate_system(built, 20, 4).events
     taken = time.process_time() - start
     print(f"simulation of example_ramcip: {events} events, {events / taken:,.0f} a second of CPU time")
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from archgen import outputs, pipeline
-from archgen.outputs import Ask
-from archgen.pipeline import Checked
-from archgen.views.index import Index
+from archgen import pipeline
+from archgen.pipeline import CheckedProject
+from archgen.products import project_outputs
+from archgen.products.project_outputs import OutputOptions
+from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Facts, Inlines, Outline, Paragraph, Section, Table
-from archgen.views.timed import timing
+from archgen.views.timing.timing_lookup import analyse_with_chains
 
 DUO = """\
 archgen: 1
@@ -69,14 +70,14 @@ def written(folder: Path, text: str = DUO) -> Path:
     return folder
 
 
-def checked(folder: Path, text: str = DUO) -> Checked:
+def checked(folder: Path, text: str = DUO) -> CheckedProject:
     """Write a project and check it."""
-    return pipeline.check(written(folder, text))
+    return pipeline.check_project(written(folder, text))
 
 
-def view(of: Checked) -> Index:
+def view(of: CheckedProject) -> Lookup:
     """Make the look-ups, with timing."""
-    return replace(outputs.view(of, Ask()), timed=timing(of.architecture))
+    return replace(project_outputs.make_scoped_lookup(of, OutputOptions()), timing=analyse_with_chains(of.architecture))
 
 
 def text(inlines: Inlines) -> str:

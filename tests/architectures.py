@@ -10,12 +10,12 @@ import random
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from archgen.model.architecture import Architecture, Edge, Partner, ProjectInfo
+from archgen.model.architecture import Architecture, Partner, PortEdge, ProjectInfo
 from archgen.model.component import Component, Connection, Group, Input, Output
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.mapping import Type, flow_of
+from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
-from archgen.model.quantity import parse
+from archgen.model.quantity import parse_quantity
 
 ROBOT: Mapping[str, tuple[str, ...]] = {
     "Sensors and User Input": [
@@ -264,8 +264,8 @@ def _architecture(groups: Sequence[tuple[str, str, Sequence[str]]], made: Mappin
         inputs=inputs,
         outputs=outputs,
         connections=connections,
-        edges=tuple(Edge(output, one.input) for one in connections for output in one.outputs),
-        types={name: Type(name, _MESSAGES[at % len(_MESSAGES)]) for at, name in enumerate(types)},
+        edges=tuple(PortEdge(output, one.input) for one in connections for output in one.outputs),
+        types={name: ConceptualType(name, _MESSAGES[at % len(_MESSAGES)]) for at, name in enumerate(types)},
     )
 
 
@@ -296,9 +296,15 @@ def _with_nodes(architecture: Architecture, chooser: random.Random) -> Architect
         },
         containers={"vision": Container("vision", "Vision pipeline", "vision_pc", 4)},
         links={
-            "lan": Link("lan", "Gigabit LAN", ("main_pc", "arm_pc", "vision_pc"), parse("1 Gbit/s", "bandwidth")),
+            "lan": Link(
+                "lan", "Gigabit LAN", ("main_pc", "arm_pc", "vision_pc"), parse_quantity("1 Gbit/s", "bandwidth")
+            ),
             "can": Link(
-                "can", "CAN bus", ("main_pc", "arm_pc"), parse("1 Mbit/s", "bandwidth"), worst=parse("2 ms", "duration")
+                "can",
+                "CAN bus",
+                ("main_pc", "arm_pc"),
+                parse_quantity("1 Mbit/s", "bandwidth"),
+                worst=parse_quantity("2 ms", "duration"),
             ),
         },
     )
@@ -310,7 +316,7 @@ def _names(architecture: Architecture, component: str) -> set[str]:
 
 def _endpoints(architecture: Architecture, component: str, node: Node) -> Iterable[Endpoint]:
     for output in architecture.components[component].outputs.values():
-        message = architecture.message(output)
+        message = architecture.message_of(output)
         flow = flow_of(message)
         use = "publishes" if flow == "topic" else "serves"
         name = "/" + output.id.replace(".", "/")
@@ -319,7 +325,7 @@ def _endpoints(architecture: Architecture, component: str, node: Node) -> Iterab
         for connection in port.connections:
             for source in connection.outputs:
                 output = architecture.outputs[source]
-                message = architecture.message(output)
+                message = architecture.message_of(output)
                 flow = flow_of(message)
                 use = "subscribes" if flow == "topic" else "calls"
                 name = "/" + source.replace(".", "/")

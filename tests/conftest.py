@@ -7,30 +7,32 @@ from pathlib import Path
 
 import pytest
 
-from archgen.diagnostic import Diagnostic
-from archgen.link.declare import link
-from archgen.link.merge import merge
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.link.project_linking import link_project
+from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
-from archgen.model.interfaces import Interfaces
-from archgen.model.mapping import Type
-from archgen.schema import normalise, validate
-from archgen.syntax import yaml
-from archgen.transform import transform
+from archgen.model.known_interfaces import Interfaces
+from archgen.model.message_types import ConceptualType
+from archgen.schema import normalise_document, validate_document
+from archgen.syntax import yaml_parser
+from archgen.transform import transform_architecture
 from tests.running import RAMCIP, REVISION, archgen, made_once
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 SHIPPED = {
-    "Laser scan": Type("Laser scan", "sensor_msgs/msg/LaserScan"),
-    "Pose": Type("Pose", "geometry_msgs/msg/Pose"),
+    "Laser scan": ConceptualType("Laser scan", "sensor_msgs/msg/LaserScan"),
+    "Pose": ConceptualType("Pose", "geometry_msgs/msg/Pose"),
 }
 
 
 def _link(text: str) -> tuple[Architecture, tuple[Diagnostic, ...]]:
-    document, found = yaml.parse("a.yaml", text)
+    document, found = yaml_parser.parse_yaml("a.yaml", text)
     assert document is not None, found
-    assert (validate(document), normalise(document)) == ((), ())
-    table, _ = merge([document])
-    return link(table, default_id="robot", default_title="Robot", shipped=SHIPPED, interfaces=Interfaces("jazzy"))
+    assert (validate_document(document), normalise_document(document)) == ((), ())
+    table, _ = merge_documents([document])
+    return link_project(
+        table, default_id="robot", default_title="Robot", shipped_types=SHIPPED, interfaces=Interfaces("jazzy")
+    )
 
 
 @pytest.fixture
@@ -63,7 +65,7 @@ def derived() -> Callable[[str], Architecture]:
     def derive(text: str) -> Architecture:
         architecture, found = _link(text)
         assert [_line(diagnostic) for diagnostic in found] == []
-        return transform(architecture)
+        return transform_architecture(architecture)
 
     return derive
 

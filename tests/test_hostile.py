@@ -21,7 +21,7 @@ from markdown_it import MarkdownIt
 from playwright.sync_api import Dialog, sync_playwright
 
 from archgen.cli import main as verbs
-from archgen.cli.list_ import SORTS
+from archgen.cli.list_command import LISTABLE_KINDS
 from tests import hostile
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
@@ -103,7 +103,7 @@ def test_a_baseline_holds_the_texts(project: Path, tmp_path: Path) -> None:
     assert json.loads(said(project, "check", "--format", "json", "--baseline", str(file)))["diagnostics"] == []
 
 
-@pytest.mark.parametrize("sort", SORTS)
+@pytest.mark.parametrize("sort", LISTABLE_KINDS)
 def test_lists(sort: str, project: Path) -> None:
     assert not re.search(r"(?m)^\s*::", said(project, "list", "--of", sort))
     assert json.loads(said(project, "list", "--of", sort, "--format", "json")) is not None

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.diagnostic import Severity
-from archgen.project import Loaded, ProjectNotFoundError, load
+from archgen.diagnostics.diagnostic import Severity
+from archgen.project import LoadedProject, ProjectNotFoundError, load_project
 
 
 def project(root: Path) -> Path:
@@ -27,12 +27,12 @@ def write(root: Path, files: dict[str, str]) -> Path:
     return root
 
 
-def names(loaded: Loaded) -> list[str]:
+def names(loaded: LoadedProject) -> list[str]:
     """Name the documents in order."""
     return [document.file for document in loaded.documents]
 
 
-def findings(loaded: Loaded) -> list[str]:
+def findings(loaded: LoadedProject) -> list[str]:
     """Give the findings as `place rule: message`."""
     return [f"{d.span} {d.rule}: {d.message}" for d in loaded.diagnostics]
 
@@ -57,7 +57,7 @@ def test_everything_below_by_default(tmp_path: Path) -> None:
             "readme.yml": "hosts: {x: }",
         },
     )
-    loaded = load(tmp_path)
+    loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "b/a.yaml", "b/c.yaml", "b.yaml", "z.yaml"]
     assert findings(loaded) == []
 
@@ -66,7 +66,7 @@ def test_files_without_a_section_are_listed_in_one_note(tmp_path: Path) -> None:
     write(
         project(tmp_path), {"params.yaml": "speed: 1", "ci/x.yaml": "on: push\njobs: !x {}", "s.yaml": "hosts: {h: }"}
     )
-    loaded = load(tmp_path)
+    loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "s.yaml"]
     assert findings(loaded) == [
         "archgen.yaml:1:1 ignored-file: `ci/x.yaml`, `params.yaml` hold no section of the language and are not read"
@@ -75,23 +75,23 @@ def test_files_without_a_section_are_listed_in_one_note(tmp_path: Path) -> None:
 
 def test_a_slip_in_the_only_section_is_guessed(tmp_path: Path) -> None:
     write(project(tmp_path), {"a.yaml": "grops: {}"})
-    assert load(tmp_path).diagnostics[0].help == "did you mean `groups:` in `a.yaml`?"
+    assert load_project(tmp_path).diagnostics[0].help == "did you mean `groups:` in `a.yaml`?"
 
 
 def test_a_broken_slice_is_reported_and_the_others_are_read(tmp_path: Path) -> None:
     write(project(tmp_path), {"a.yaml": "groups:\n  g: {title: x\n", "b.yaml": "hosts: {h: }"})
-    loaded = load(tmp_path)
+    loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "b.yaml"]
     assert findings(loaded) == ["a.yaml:2:6 syntax-error: this `{` is not closed"]
-    assert (loaded.broken, loaded.lost) == (("a.yaml",), frozenset({"groups", "g", "title"}))
-    assert loaded.sources.line("a.yaml", 2) == "  g: {title: x"
+    assert (loaded.broken_files, loaded.lost_keys) == (("a.yaml",), frozenset({"groups", "g", "title"}))
+    assert loaded.sources.line_of("a.yaml", 2) == "  g: {title: x"
 
 
 def test_sources_in_their_order(tmp_path: Path) -> None:
     text = 'archgen: 1\nsources: [z.yaml, "g/*.yaml", "**/t.yaml", "g/b?[0-9].yaml", nothing.yaml, ../x.yaml, /etc/x.yaml]\n'
     write(tmp_path, {"archgen.yaml": text, "a.yaml": "hosts: {no: }", "z.yaml": "hosts: {z: }"})
     write(tmp_path, {"g/b.yaml": "hosts: {b: }", "g/a.yaml": "", "g/h/t.yaml": "", "t.yaml": "", "g/bx1.yaml": ""})
-    loaded = load(tmp_path)
+    loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "z.yaml", "g/a.yaml", "g/b.yaml", "g/bx1.yaml", "g/h/t.yaml", "t.yaml"]
     assert findings(loaded) == [
         "archgen.yaml:2:62 missing-source: `nothing.yaml` matches no file",
@@ -102,32 +102,32 @@ def test_sources_in_their_order(tmp_path: Path) -> None:
 
 def test_a_packed_file_is_left_out_unless_it_is_named(tmp_path: Path) -> None:
     write(tmp_path, {"archgen.yaml": 'archgen: 1\nsources: ["*.yaml"]', "packed.yaml": "archgen: 1", "a.yaml": ""})
-    assert names(load(tmp_path)) == ["archgen.yaml", "a.yaml"]
+    assert names(load_project(tmp_path)) == ["archgen.yaml", "a.yaml"]
     write(tmp_path, {"archgen.yaml": "archgen: 1\nsources: [packed.yaml]"})
-    assert names(load(tmp_path)) == ["archgen.yaml", "packed.yaml"]
+    assert names(load_project(tmp_path)) == ["archgen.yaml", "packed.yaml"]
 
 
 def test_a_single_file_is_the_whole_project(tmp_path: Path) -> None:
     write(project(tmp_path), {"My robot-2.yaml": "groups: {g: G}", "b.yaml": "hosts: {h: }"})
-    loaded = load(tmp_path / "My robot-2.yaml")
+    loaded = load_project(tmp_path / "My robot-2.yaml")
     assert (names(loaded), loaded.id, loaded.title) == (["My robot-2.yaml"], "my_robot_2", "My robot 2")
-    assert names(load(tmp_path / "archgen.yaml")) == ["archgen.yaml", "My robot-2.yaml", "b.yaml"]
+    assert names(load_project(tmp_path / "archgen.yaml")) == ["archgen.yaml", "My robot-2.yaml", "b.yaml"]
 
 
 def test_the_project_around_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (project(tmp_path) / "a" / "b").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "a" / "b")
-    assert load().root == tmp_path.resolve()
+    assert load_project().root == tmp_path.resolve()
 
 
 def test_no_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ProjectNotFoundError, match=r"holds no archgen.yaml: `archgen init` makes one"):
-        load(tmp_path)
+        load_project(tmp_path)
     with pytest.raises(ProjectNotFoundError, match=r"x.yaml does not exist"):
-        load(tmp_path / "x.yaml")
+        load_project(tmp_path / "x.yaml")
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ProjectNotFoundError, match=r"no archgen.yaml here or in a folder above"):
-        load()
+        load_project()
 
 
 def test_what_the_project_says_of_itself(tmp_path: Path) -> None:
@@ -139,13 +139,13 @@ def test_what_the_project_says_of_itself(tmp_path: Path) -> None:
         tmp_path,
         {"archgen.yaml": text, "msgs/p/A.msg": "", "msgs/B.msg": "", "a.yaml": "hosts: {h: } # archgen: ignore[x] y"},
     )
-    loaded = load(tmp_path)
-    assert loaded.rules == {"unread-output": Severity.OFF, "no-such": Severity.ERROR}
-    assert str(loaded.rule_places["no-such"]) == "archgen.yaml:4:29"
+    loaded = load_project(tmp_path)
+    assert loaded.rule_settings == {"unread-output": Severity.OFF, "no-such": Severity.ERROR}
+    assert str(loaded.rule_spans["no-such"]) == "archgen.yaml:4:29"
     assert loaded.distro == "jazzy"
-    assert loaded.interfaces == ("msgs/B.msg", "msgs/p/A.msg")
-    assert loaded.chapters is not None
-    assert [chapter.text for chapter in loaded.chapters] == ["docs/a.md", "groups"]
+    assert loaded.interface_files == ("msgs/B.msg", "msgs/p/A.msg")
+    assert loaded.chapter_entries is not None
+    assert [chapter.text for chapter in loaded.chapter_entries] == ["docs/a.md", "groups"]
     assert loaded.layout is not None
     assert [ignore.rules for ignore in loaded.ignores["a.yaml"]] == [("x",)]
     assert [d.rule for d in loaded.diagnostics] == ["wrong-value", "missing-source"]
@@ -153,7 +153,7 @@ def test_what_the_project_says_of_itself(tmp_path: Path) -> None:
 
 def test_another_version_of_the_language(tmp_path: Path) -> None:
     write(tmp_path, {"archgen.yaml": "archgen: 2\n"})
-    assert findings(load(tmp_path)) == [
+    assert findings(load_project(tmp_path)) == [
         "archgen.yaml:1:10 wrong-value: this archgen reads version 1 of the language, not `2`"
     ]
 
@@ -172,7 +172,7 @@ def test_hostile_things_in_the_folder(tmp_path: Path) -> None:
     (root / os.fsdecode(b"g\xff.yaml")).write_text("hosts: {g: }")
     (root / "h.yaml").write_text("hosts: {h: }")
     start = time.monotonic()
-    loaded = load(root)
+    loaded = load_project(root)
     assert time.monotonic() - start < 30
     assert names(loaded) == ["archgen.yaml", "h.yaml"]
     assert sorted(findings(loaded)) == [
@@ -188,13 +188,13 @@ def test_hostile_things_in_the_folder(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["archgen.yaml", "robot.yaml"])
 def test_a_marker_that_is_no_file(tmp_path: Path, name: str) -> None:
     (tmp_path / name).symlink_to("nothing")
-    assert findings(load(tmp_path / name)) == [
+    assert findings(load_project(tmp_path / name)) == [
         f"{name}:1:1 syntax-error: this is a broken link: what it points to does not exist"
     ]
 
 
 def test_an_unreadable_marker_hides_nothing_else(tmp_path: Path) -> None:
     write(tmp_path, {"archgen.yaml": "archgen: [", "a.yaml": "hosts: {h: }", "params.yaml": "a: 1"})
-    loaded = load(tmp_path)
+    loaded = load_project(tmp_path)
     assert names(loaded) == ["a.yaml"]
     assert [d.rule for d in loaded.diagnostics] == ["syntax-error"]

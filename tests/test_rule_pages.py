@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from archgen import resources
-from archgen.diagnostic import Diagnostic, Rule, Severity
-from archgen.findings import explain
-from archgen.findings.rules import by_name
-from archgen.pipeline import ALL_RULES, check, check_text
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.findings import rule_pages
+from archgen.findings.rule_table import index_rules
+from archgen.pipeline import ALL_RULES, check_project, check_text
 
 _LOUD = {Severity.ERROR, Severity.WARNING}
 
@@ -24,7 +24,7 @@ def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
     for name, text in zip(parts[1::2], parts[2::2], strict=True):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    return check(folder).findings
+    return check_project(folder).findings
 
 
 def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
@@ -33,7 +33,7 @@ def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
 
 @pytest.mark.parametrize("rule", ALL_RULES, ids=lambda rule: rule.name)
 def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule, tmp_path: Path) -> None:
-    parts = explain.page(rule)
+    parts = rule_pages.parse_rule_page(rule)
     assert parts.summary
     assert parts.why
     assert parts.bad
@@ -46,11 +46,11 @@ def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule,
 
 
 def test_the_pages_are_fresh() -> None:
-    rules = by_name(ALL_RULES)
-    folder = resources.path("docs", "rules")
+    rules = index_rules(ALL_RULES)
+    folder = resources.resource_path("docs", "rules")
     wanted = {
-        "README.md": explain.index(rules),
-        **{f"{name}.md": explain.markdown(rule) for name, rule in rules.items()},
+        "README.md": rule_pages.format_rule_index(rules),
+        **{f"{name}.md": rule_pages.rule_page_to_markdown(rule) for name, rule in rules.items()},
     }
     written = {page.name: page.read_text(encoding="utf-8") for page in folder.glob("*.md")}
     assert sorted(written) == sorted(wanted), "run tools/make_rule_pages.py"

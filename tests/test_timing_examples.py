@@ -13,9 +13,9 @@ from click.testing import CliRunner
 
 from archgen import pipeline
 from archgen.cli import main
-from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains import chains
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
 from tests.running import RAMCIP, ROOT
 
 PAGE = ROOT / "docs" / "timing_examples.md"
@@ -44,9 +44,9 @@ def test_the_output_on_the_page_is_real(request: pytest.FixtureRequest, monkeypa
 
 @pytest.fixture(scope="module")
 def analysed() -> tuple[Analysis, dict[str, ChainResult]]:
-    architecture = pipeline.check(RAMCIP).architecture
-    found = analyse(architecture)
-    return found, chains(found, architecture)
+    architecture = pipeline.check_project(RAMCIP).architecture
+    found = analyse_architecture(architecture)
+    return found, bound_all_chains(found, architecture)
 
 
 def test_seven_chains_of_the_case_study_meet_their_deadlines_and_one_is_open(

@@ -17,9 +17,9 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
-from archgen.link.interfaces import load
-from archgen.link.shipped import shipped_types
-from archgen.model.mapping import full_message
+from archgen.link.interface_sources import load_interfaces
+from archgen.link.shipped_types import load_shipped_types
+from archgen.model.message_types import full_message_name
 
 ROOT = Path(__file__).resolve().parents[1]
 DISTROS = ("noetic", "humble", "jazzy", "kilted")
@@ -66,15 +66,15 @@ def test_there_are_many_and_their_names_are_in_normal_form() -> None:
     for name in ENTRIES:
         assert name == " ".join(unicodedata.normalize("NFC", name).split())
         assert name[0].isupper()
-        assert full_message(name) is None
+        assert full_message_name(name) is None
 
 
 @pytest.mark.parametrize("distro", DISTROS)
 def test_every_entry_is_known(distro: str) -> None:
-    interfaces, _ = load(distro)
-    types = shipped_types(distro)
+    interfaces, _ = load_interfaces(distro)
+    types = load_shipped_types(distro)
     unknown = {
-        name: type_.message for name, type_ in types.items() if interfaces.answer(type_.message or "") != "known"
+        name: type_.message for name, type_ in types.items() if interfaces.status_of(type_.message or "") != "known"
     }
     assert unknown == {}
     assert list(types) == [name for name, entry in ENTRIES.items() if distro not in entry.get("without", ())]
@@ -83,17 +83,17 @@ def test_every_entry_is_known(distro: str) -> None:
 @pytest.mark.parametrize("distro", DISTROS)
 def test_exceptions_are_needed(distro: str) -> None:
     """An exception for a distribution that has the plain message after all would hide it."""
-    interfaces, _ = load(distro)
+    interfaces, _ = load_interfaces(distro)
     for name, entry in ENTRIES.items():
         if distro in entry.get("without", ()):
-            assert interfaces.answer(entry["message"]) != "known", name
+            assert interfaces.status_of(entry["message"]) != "known", name
     named = {d for entry in ENTRIES.values() for d in (*entry.get("without", ()), *entry.get("distros", {}))}
     assert named <= set(DISTROS)
 
 
 def test_a_distribution_may_have_another_message() -> None:
     messages = {
-        distro: shipped_types(distro)["Navigation goal"].message for distro in ("noetic", "jazzy", "foxy", None)
+        distro: load_shipped_types(distro)["Navigation goal"].message for distro in ("noetic", "jazzy", "foxy", None)
     }
     assert messages == {
         "noetic": "move_base_msgs/action/MoveBase",
@@ -101,7 +101,7 @@ def test_a_distribution_may_have_another_message() -> None:
         "foxy": "nav2_msgs/action/NavigateToPose",
         None: "nav2_msgs/action/NavigateToPose",
     }
-    assert "Docking" not in shipped_types("humble")
+    assert "Docking" not in load_shipped_types("humble")
 
 
 def serialised(store: Typestore, message: str) -> int | None:
@@ -132,7 +132,7 @@ def value(store: Typestore, node: tuple[Any, Any]) -> Any:  # noqa: ANN401  # wh
 def test_sizes_are_those_of_the_serialised_messages() -> None:
     store = get_typestore(Stores.ROS2_JAZZY)
     compared = dict[str, tuple[Fraction, int]]()
-    for name, type_ in shipped_types("jazzy").items():
+    for name, type_ in load_shipped_types("jazzy").items():
         size = serialised(store, type_.message or "")
         if type_.size and size:
             compared[name] = (type_.size.value, size)
@@ -141,6 +141,6 @@ def test_sizes_are_those_of_the_serialised_messages() -> None:
 
 
 def test_an_entry_is_a_type() -> None:
-    scan = shipped_types("jazzy")["Laser scan"]
+    scan = load_shipped_types("jazzy")["Laser scan"]
     assert (scan.name, scan.message, scan.origin) == ("Laser scan", "sensor_msgs/msg/LaserScan", "shipped")
     assert (scan.comment, scan.size and scan.size.value) == ("720 beams with intensities", Fraction(5800))

@@ -10,27 +10,27 @@ from archgen.model.node import Node
 from archgen.timing.analysis import (
     Analysis,
     ChainResult,
-    EdgePace,
+    ChainTerm,
+    EdgeFit,
+    EventPace,
     HostLoad,
     LinkLoad,
-    Pace,
     Reason,
-    Response,
-    Term,
+    ResponseTime,
     TopicLoad,
 )
-from archgen.timing.system import Activity, Arc, System
-from archgen.timing.value import UNKNOWN, Value
-from archgen.views import timed as timed_module
-from archgen.views.graphs.nodes import passes
-from archgen.views.timed import Timed
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.views.graphs.node_boxes import list_node_flows
+from archgen.views.timing import timing_lookup as timed_module
+from archgen.views.timing.timing_lookup import TimingLookup
 
 MS = 10**6
 
 
-def exact(value: Fraction | int) -> Value:
+def exact(value: Fraction | int) -> TimingValue:
     """Make a figure that is known."""
-    return Value(Fraction(value))
+    return TimingValue(Fraction(value))
 
 
 def analysis_of(figures: Mapping[str, tuple[int | None, int | None]], fed: Sequence[tuple[str, str]] = ()) -> Analysis:
@@ -53,20 +53,20 @@ def analysis_of(figures: Mapping[str, tuple[int | None, int | None]], fed: Seque
     return Analysis(system, _paces(system), {}, responses, {}, {}, {}, ())
 
 
-def _system(activities: Mapping[str, Activity], arcs: tuple[Arc, ...]) -> System:
+def _system(activities: Mapping[str, Activity], arcs: tuple[Arc, ...]) -> TimingSystem:
     into = {name: tuple(arc for arc in arcs if arc.target == name) for name in activities}
     out_of = {name: tuple(arc for arc in arcs if arc.source == name) for name in activities}
-    return System(Fraction(1), activities, arcs, into, out_of)
+    return TimingSystem(Fraction(1), activities, arcs, into, out_of)
 
 
-def timed(architecture: Architecture) -> Timed:
+def timed(architecture: Architecture) -> TimingLookup:
     """Give every node an activity: what was written, and down the topics what follows by a first guess."""
     activities = {node.id: _activity(node) for node in architecture.nodes.values()}
     arcs = tuple(
         Arc(run.tail, f"{run.topic.name}", run.head, f"{run.topic.name}", run.topic.name, run.topic.flow)
-        for run in passes(architecture)
+        for run in list_node_flows(architecture)
     )
-    fed = _system(activities, arcs).into
+    fed = _system(activities, arcs).arcs_into
     system = _system({name: _triggered(each, fed[name]) for name, each in activities.items()}, arcs)
     paces = _paces(system)
     responses = {name: _response(each) for name, each in system.activities.items()}
@@ -81,12 +81,14 @@ def timed(architecture: Architecture) -> Timed:
             for link in architecture.links
         },
         {
-            name: TopicLoad(exact(1200), exact(12000), exact(24000)) if at % 2 else TopicLoad(UNKNOWN, UNKNOWN, UNKNOWN)
+            name: TopicLoad(exact(1200), exact(12000), exact(24000))
+            if at % 2
+            else TopicLoad(UNKNOWN_VALUE, UNKNOWN_VALUE, UNKNOWN_VALUE)
             for at, name in enumerate(architecture.topics)
         },
-        tuple(EdgePace(arc, exact(0), exact(1), UNKNOWN, exact(1)) for arc in arcs[:3]),
+        tuple(EdgeFit(arc, exact(0), exact(1), UNKNOWN_VALUE, exact(1)) for arc in arcs[:3]),
     )
-    return timed_module.timed(analysis, (chain(each, analysis) for each in _ways(architecture)))
+    return timed_module.make_timing_lookup(analysis, (chain(each, analysis) for each in _ways(architecture)))
 
 
 def _activity(node: Node) -> Activity:
@@ -126,33 +128,33 @@ def _triggered(activity: Activity, into: tuple[Arc, ...]) -> Activity:
     )
 
 
-def _paces(system: System) -> dict[str, Pace]:
+def _paces(system: TimingSystem) -> dict[str, EventPace]:
     found = {
-        name: Pace(each.behaviour, exact(Fraction(10**9, each.period)), exact(each.period), inferred=False)
+        name: EventPace(each.behaviour, exact(Fraction(10**9, each.period)), exact(each.period), inferred=False)
         if each.period
-        else Pace(each.behaviour, reasons=(Reason("nothing is written"),))
+        else EventPace(each.behaviour, reasons=(Reason("nothing is written"),))
         for name, each in system.activities.items()
     }
     for _ in range(6):
         for name, each in system.activities.items():
-            rates = [found[arc.source].rate.value for arc in system.into[name]] if each.triggers else []
+            rates = [found[arc.source].rate.value for arc in system.arcs_into[name]] if each.triggers else []
             known = [rate for rate in rates if rate]
             if known and each.behaviour == "event":
                 side = "exact" if len(known) == len(rates) else "at least"
-                rate = Value(sum(known, Fraction(0)), side == "exact", side=side)  # type: ignore[arg-type]
-                found[name] = Pace("event", rate, exact(10**9 / max(known)))
+                rate = TimingValue(sum(known, Fraction(0)), side == "exact", side=side)  # type: ignore[arg-type]
+                found[name] = EventPace("event", rate, exact(10**9 / max(known)))
     return found
 
 
-def _response(activity: Activity) -> Response:
+def _response(activity: Activity) -> ResponseTime:
     if activity.wcet is None:
-        return Response(UNKNOWN, Value(None, complete=False, missing=(activity.id,)), "unknown")
-    return Response(
+        return ResponseTime(UNKNOWN_VALUE, TimingValue(None, complete=False, missing=(activity.id,)), "unknown")
+    return ResponseTime(
         exact(activity.bcet or 0), exact(activity.wcet), "dedicated", (Reason("assuming a core of its own"),)
     )
 
 
-def _hosts(architecture: Architecture, system: System, paces: dict[str, Pace]) -> dict[str, HostLoad]:
+def _hosts(architecture: Architecture, system: TimingSystem, paces: dict[str, EventPace]) -> dict[str, HostLoad]:
     found = {}
     for host in architecture.hosts.values():
         parts = []
@@ -162,10 +164,10 @@ def _hosts(architecture: Architecture, system: System, paces: dict[str, Pace]) -
             if each.host == host.id and each.wcet is not None and rate:
                 parts.append((name, exact(rate * each.wcet / 10**9)))
             elif each.host == host.id:
-                parts.append((name, UNKNOWN))
+                parts.append((name, UNKNOWN_VALUE))
                 missing.append(name)
         total = sum((value.value for _, value in parts if value.value), Fraction(0))
-        load = Value(total, not missing, tuple(missing), side="at least" if missing else "exact")
+        load = TimingValue(total, not missing, tuple(missing), side="at least" if missing else "exact")
         over = total >= (host.cores or 1)
         found[host.id] = HostLoad(
             load,
@@ -196,7 +198,7 @@ def chain(way: tuple[str, tuple[str, ...], int | None], analysis: Analysis) -> C
     """Sum up a chain, as if every step waited for a whole gap."""
     name, through, deadline = way
     terms = tuple(
-        Term(
+        ChainTerm(
             each,
             analysis.paces[each].gap if analysis.paces[each].behaviour == "periodic" else exact(0),
             analysis.responses[each].worst,
@@ -211,7 +213,7 @@ def chain(way: tuple[str, tuple[str, ...], int | None], analysis: Analysis) -> C
     values = [value for term in terms for value in (term.sampling, term.response, term.link)]
     missing = tuple(dict.fromkeys(t.activity for t in terms if t.sampling.value is None or t.response.value is None))
     total = sum((value.value for value in values if value.value is not None), Fraction(0))
-    bound = Value(total, not missing, missing, side="at least" if missing else "exact")
+    bound = TimingValue(total, not missing, missing, side="at least" if missing else "exact")
     late = deadline is not None and total > deadline
     verdict = "missed" if late and not missing else "met" if deadline and not missing else "open"
     best = exact(sum((analysis.responses[each].best.value or 0 for each in through), Fraction(0)))

@@ -6,8 +6,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from archgen.findings import explain
-from archgen.findings.rules import by_name
+from archgen.findings import rule_pages
+from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
@@ -15,8 +15,11 @@ FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
 
 def pages() -> Mapping[str, str]:
     """Give the text of every page by its file name."""
-    rules = by_name(ALL_RULES)
-    return {"README.md": explain.index(rules), **{f"{name}.md": explain.markdown(rule) for name, rule in rules.items()}}
+    rules = index_rules(ALL_RULES)
+    return {
+        "README.md": rule_pages.format_rule_index(rules),
+        **{f"{name}.md": rule_pages.rule_page_to_markdown(rule) for name, rule in rules.items()},
+    }
 
 
 def main() -> int:

@@ -5,80 +5,82 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.analyses import (
-    chains,
+    broken_chains,
+    chain_latency,
+    completeness,
+    component_roles,
     connectivity,
-    distribution,
-    figures,
-    idle,
-    latency,
-    load,
-    mapping,
-    messages,
-    names,
-    policies,
+    ineffective_timing,
+    name_validity,
+    node_mapping,
+    policy_violations,
+    port_sections,
     port_types,
-    progress,
-    qos,
-    requirements,
-    roles,
-    sections,
-    selectors,
-    timing,
-    topics,
-    triggers,
+    qos_compatibility,
+    rate_conflicts,
+    requirement_tracing,
+    resource_load,
+    ros_distribution,
+    ros_messages,
+    selector_checks,
+    timing_plausibility,
+    topic_sources,
+    trigger_cycles,
     type_mapping,
 )
-from archgen.diagnostic import Rule
-from archgen.timing.analyse import analyse
+from archgen.diagnostics.diagnostic import Rule
+from archgen.timing.run_analysis import analyse_architecture
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from archgen.diagnostic import Diagnostic
+    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.model.architecture import Architecture
 
 # A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
 # that in which rules run; findings are sorted later.
-_JUDGES = (
+_RULE_FUNCTIONS = (
     *connectivity.RULES,
     *port_types.RULES,
-    *roles.RULES,
-    *mapping.RULES,
-    *topics.RULES,
-    *sections.RULES,
-    *names.RULES,
-    *qos.RULES,
-    *requirements.RULES,
-    *distribution.RULES,
-    *messages.RULES,
+    *component_roles.RULES,
+    *node_mapping.RULES,
+    *topic_sources.RULES,
+    *port_sections.RULES,
+    *name_validity.RULES,
+    *qos_compatibility.RULES,
+    *requirement_tracing.RULES,
+    *ros_distribution.RULES,
+    *ros_messages.RULES,
     *type_mapping.RULES,
-    *chains.RULES,
-    *figures.RULES,
-    *idle.RULES,
-    *policies.RULES,
-    *selectors.RULES,
-    *progress.RULES,
+    *broken_chains.RULES,
+    *timing_plausibility.RULES,
+    *ineffective_timing.RULES,
+    *policy_violations.RULES,
+    *selector_checks.RULES,
+    *completeness.RULES,
 )
 
-_TIMED_JUDGES = (*timing.RULES, *triggers.RULES, *load.RULES, *latency.RULES)
+_TIMING_RULE_FUNCTIONS = (*rate_conflicts.RULES, *trigger_cycles.RULES, *resource_load.RULES, *chain_latency.RULES)
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 
-RULES: tuple[Rule, ...] = tuple(Rule.of(judge, severity) for judge, severity in (*_JUDGES, *_TIMED_JUDGES))
+RULES: tuple[Rule, ...] = tuple(
+    Rule.from_function(judge, severity) for judge, severity in (*_RULE_FUNCTIONS, *_TIMING_RULE_FUNCTIONS)
+)
 """All rules that judge an architecture, in the order in which they run."""
 
 
-def check(architecture: Architecture) -> Iterator[Diagnostic]:
+def check_architecture(architecture: Architecture) -> Iterator[Diagnostic]:
     """Run all rules and yield their raw diagnostics, neither sorted nor settled."""
-    for judge, _ in _JUDGES:
-        yield from judge(architecture)
+    for rule_function, _ in _RULE_FUNCTIONS:
+        yield from rule_function(architecture)
     # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
-    if _is_timed(architecture):
-        found = analyse(architecture, judging=True)
-        for judge_timing, _ in _TIMED_JUDGES:
-            yield from judge_timing(architecture, found)
+    if _has_timing(architecture):
+        analysis = analyse_architecture(architecture, judging=True)
+        for timing_rule_function, _ in _TIMING_RULE_FUNCTIONS:
+            yield from timing_rule_function(architecture, analysis)
 
 
-def _is_timed(architecture: Architecture) -> bool:
+def _has_timing(architecture: Architecture) -> bool:
     """Whether any node or component has a `timing`."""
     return any(node.timing for node in architecture.nodes.values()) or any(
         component.timing for component in architecture.components.values()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostic import Diagnostic, Label, Severity
-from archgen.model.mapping import flow_of
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.message_types import flow_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from archgen.model.component import Component, Connection, Output
 
 
-def linked_components(architecture: Architecture) -> frozenset[str]:
+def find_linked_components(architecture: Architecture) -> frozenset[str]:
     """Return the ids of all components that a connection joins to another component.
 
     A component whose outputs are not known yet counts as connected if a reference names it or its group.
@@ -23,7 +23,9 @@ def linked_components(architecture: Architecture) -> frozenset[str]:
     for connection in architecture.connections:
         reader = architecture.inputs[connection.input].component
         feeders = {architecture.outputs[output].component for output in connection.outputs}
-        feeders.update(c.id for c in _targets(architecture, connection) if not c.outputs_known)
+        feeders.update(
+            component.id for component in _target_components(architecture, connection) if not component.outputs_known
+        )
         feeders.discard(reader)  # a component that reads its own output is still connected to nobody
         if feeders:
             linked.add(reader)
@@ -64,22 +66,22 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     # With an unread file, what looks isolated may be connected there.
     if len(architecture.components) == 1 or architecture.partial:
         return
-    linked = linked_components(architecture)
+    linked = find_linked_components(architecture)
     for component in architecture.components.values():
-        if component.id in linked or _touches_the_world(component) or _has_open_reference(component):
+        if component.id in linked or _has_external_port(component) or _has_open_reference(component):
             continue
-        if not architecture.suspects.isdisjoint(
+        if not architecture.suspected_ids.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
         ):
             continue  # an unresolved reference, reported already, probably meant this component
-        stub = not (component.inputs or component.outputs or (component.inputs_known and component.outputs_known))
-        if stub and not architecture.connections:
+        is_stub = not (component.inputs or component.outputs or (component.inputs_known and component.outputs_known))
+        if is_stub and not architecture.connections:
             continue
         yield Diagnostic(
             "disconnected-component",
             f"`{component.id}` is connected to no other component",
             component.at,
-            severity=Severity.NOTE if stub else None,
+            severity=Severity.NOTE if is_stub else None,
             help="say in its `inputs` what it takes from others, or let another component take one of its outputs",
             element=component.id,
         )
@@ -163,7 +165,7 @@ def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
             continue
         reader = architecture.inputs[connection.input].component
         # A reference to one's own group never brings one's own outputs.
-        targets = [c for c in _targets(architecture, connection) if c.id != reader]
+        targets = [c for c in _target_components(architecture, connection) if c.id != reader]
         # Stubs may still get outputs: the reference may turn out to bring something.
         if not all(c.outputs_known for c in targets):
             continue
@@ -172,7 +174,7 @@ def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
             "empty-reference",
             f"`{connection.written}` brings nothing: no output in it carries messages",
             connection.at,
-            labels=tuple(Label(o.at, f"{_sort(architecture, o)}, named by itself only") for o in outputs[:3]),
+            labels=tuple(Label(o.at, f"{_kind_of_output(architecture, o)}, named by itself only") for o in outputs[:3]),
             help=f"write `{outputs[0].id}`" if len(outputs) == 1 else None,
             element=reader,
         )
@@ -212,43 +214,43 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     if architecture.partial:
         return
-    read = {edge.output for edge in architecture.edges}
-    shared = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
+    read_outputs = {edge.output for edge in architecture.edges}
+    shared_outputs = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
-    whole = {c.target for c in architecture.connections if c.kind != "output"}
+    whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
         group = architecture.components[output.component].group
-        meant = not architecture.suspects.isdisjoint((group, output.component, output.id))
-        if output.id in read or output.external or output.id in shared or meant:
+        is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
+        if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
             continue
         yield Diagnostic(
             "unread-output",
-            f"nobody {_verb(architecture, output)} `{output.name}` of `{output.component}`",
+            f"nobody {_reading_verb(architecture, output)} `{output.name}` of `{output.component}`",
             output.at,
-            help=_unread_help(architecture, output, taken=bool({output.component, group} & whole)),
+            help=_suggest_reader(architecture, output, is_taken_whole=bool({output.component, group} & whole_targets)),
             element=output.component,
         )
 
 
-def _unread_help(architecture: Architecture, output: Output, *, taken: bool) -> str:
-    sort = _sort(architecture, output)
-    if taken and sort != "topic":
-        return f"a reference to the whole component does not take it, being {_ARTICLES[sort]}: name `{output.id}`"
+def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:
+    kind = _kind_of_output(architecture, output)
+    if is_taken_whole and kind != "topic":
+        return f"a reference to the whole component does not take it, being {_KIND_PHRASES[kind]}: name `{output.id}`"
     return "let an input name it in `from`, or say who reads it outside in `external`"
 
 
-_ARTICLES = {"service": "a service", "action": "an action", "physical": "physical"}
+_KIND_PHRASES = {"service": "a service", "action": "an action", "physical": "physical"}
 
 
-def _sort(architecture: Architecture, output: Output) -> str:
-    return "physical" if output.physical else flow_of(architecture.message(output))
+def _kind_of_output(architecture: Architecture, output: Output) -> str:
+    return "physical" if output.physical else flow_of(architecture.message_of(output))
 
 
-def _verb(architecture: Architecture, output: Output) -> str:
-    return "calls" if _sort(architecture, output) in {"service", "action"} else "reads"
+def _reading_verb(architecture: Architecture, output: Output) -> str:
+    return "calls" if _kind_of_output(architecture, output) in {"service", "action"} else "reads"
 
 
-def _targets(architecture: Architecture, connection: Connection) -> Iterable[Component]:
+def _target_components(architecture: Architecture, connection: Connection) -> Iterable[Component]:
     """Return the components whose outputs a reference stands for; none for a reference to a single output."""
     if connection.kind == "group":
         return architecture.groups[connection.target].components.values()
@@ -257,7 +259,7 @@ def _targets(architecture: Architecture, connection: Connection) -> Iterable[Com
     return ()
 
 
-def _touches_the_world(component: Component) -> bool:
+def _has_external_port(component: Component) -> bool:
     return any(i.external for i in component.inputs.values()) or any(o.external for o in component.outputs.values())
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostic import Diagnostic, Label, Severity
-from archgen.model.mapping import flow_of, full_message
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.message_types import flow_of, full_message_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -14,23 +14,23 @@ if TYPE_CHECKING:
     from archgen.model.component import Output
 
 
-def fits(architecture: Architecture, expected: str, output: Output) -> bool:
+def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:
     """Whether an output sends the type that an input expects. An output without a type does.
 
     Conceptual types are compared by name: two types with the same message still mean different things. If one of them
     is written as a message, the messages are compared. A caller may expect a service's type, or a type inside it.
     """
-    sent = output.type
-    if sent is None or sent == expected:
+    sent_type = output.type
+    if sent_type is None or sent_type == expected_type:
         return True
-    mapped = architecture.types.get(sent)
-    if full_message(expected) or full_message(sent):
-        messages = {_message(architecture, expected), _message(architecture, sent)}
+    mapped = architecture.types.get(sent_type)
+    if full_message_name(expected_type) or full_message_name(sent_type):
+        messages = {_message_of_type(architecture, expected_type), _message_of_type(architecture, sent_type)}
         # A type that is not mapped yet may still be mapped to this message.
         return None in messages or len(messages) == 1
     if mapped is None or flow_of(mapped.message) == "topic":
         return False
-    return expected in {mapped.request, mapped.response, mapped.feedback}
+    return expected_type in {mapped.request, mapped.response, mapped.feedback}
 
 
 def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -71,21 +71,26 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for connection in architecture.connections:
         entry = architecture.inputs[connection.input]
-        expected = entry.type
-        if expected is None:
+        expected_type = entry.type
+        if expected_type is None:
             continue
-        wrong = [
-            o for o in map(architecture.outputs.__getitem__, connection.outputs) if not fits(architecture, expected, o)
+        wrong_outputs = [
+            o
+            for o in map(architecture.outputs.__getitem__, connection.outputs)
+            if not is_expected_type(architecture, expected_type, o)
         ]
-        if wrong:
-            names = " and ".join(f"`{o.id}` sends `{o.type}`" for o in wrong[:2])
-            more = f" (and {len(wrong) - 2} more)" if len(wrong) > 2 else ""  # noqa: PLR2004 - two are named
+        if wrong_outputs:
+            names = " and ".join(f"`{o.id}` sends `{o.type}`" for o in wrong_outputs[:2])
+            suffix = f" (and {len(wrong_outputs) - 2} more)" if len(wrong_outputs) > 2 else ""  # noqa: PLR2004 - two are named
             yield Diagnostic(
                 "type-mismatch",
-                f"the input `{entry.name}` of `{entry.component}` expects `{expected}`, but {names}{more}",
+                f"the input `{entry.name}` of `{entry.component}` expects `{expected_type}`, but {names}{suffix}",
                 connection.at,
-                labels=(Label(entry.type_at, "expected here"), *(Label(o.type_at, "sent here") for o in wrong[:2])),
-                help=_help(architecture, expected, wrong[0]),
+                labels=(
+                    Label(entry.type_at, "expected here"),
+                    *(Label(o.type_at, "sent here") for o in wrong_outputs[:2]),
+                ),
+                help=_suggest_common_type(architecture, expected_type, wrong_outputs[0]),
                 element=entry.component,
             )
 
@@ -121,30 +126,30 @@ def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for connection in architecture.connections:
         entry = architecture.inputs[connection.input]
-        digital = next((o for o in connection.outputs if not architecture.outputs[o].physical), None)
-        if entry.physical and digital:
+        digital_output = next((o for o in connection.outputs if not architecture.outputs[o].physical), None)
+        if entry.physical and digital_output:
             yield Diagnostic(
                 "medium-mismatch",
-                f"the input `{entry.name}` of `{entry.component}` is physical, but `{digital}` sends messages",
+                f"the input `{entry.name}` of `{entry.component}` is physical, but `{digital_output}` sends messages",
                 connection.at,
-                labels=(Label(architecture.outputs[digital].at, "not physical"),),
+                labels=(Label(architecture.outputs[digital_output].at, "not physical"),),
                 help="leave `medium: physical` out at the input, or write it at the output too",
                 element=entry.component,
             )
 
 
-def _help(architecture: Architecture, expected: str, output: Output) -> str | None:
+def _suggest_common_type(architecture: Architecture, expected_type: str, output: Output) -> str | None:
     """Suggest to use one name where both types have the same message."""
-    messages = {_message(architecture, expected), architecture.message(output)}
+    messages = {_message_of_type(architecture, expected_type), architecture.message_of(output)}
     if len(messages) == 1 and None not in messages:
         return f"both travel as `{messages.pop()}`, but are two types: use one name if they mean the same"
     return None
 
 
-def _message(architecture: Architecture, name: str) -> str | None:
+def _message_of_type(architecture: Architecture, type_name: str) -> str | None:
     """Return the message of a conceptual type, or of a type that is itself the name of a message; None if unmapped."""
-    mapped = architecture.types.get(name)
-    return (mapped.message if mapped else None) or full_message(name)
+    mapped = architecture.types.get(type_name)
+    return (mapped.message if mapped else None) or full_message_name(type_name)
 
 
 RULES = (

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
-from archgen.model.mapping import Type
-from archgen.source import NOWHERE, Span
-from archgen.suggest import did_you_mean
+from archgen.model.message_types import ConceptualType
 
 
-def _ports(architecture: Architecture) -> tuple[Output | Input, ...]:
+def _all_ports(architecture: Architecture) -> tuple[Output | Input, ...]:
     """Return all ports, outputs first: a finding is placed at an output that has the type if there is one."""
     return (*architecture.outputs.values(), *architecture.inputs.values())
 
 
-def _uses(architecture: Architecture) -> dict[str, list[Span]]:
+def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
     """Return the spans where digital ports name each type, by type name."""
-    found = dict[str, list[Span]]()
-    for port in _ports(architecture):
+    spans_by_type = dict[str, list[Span]]()
+    for port in _all_ports(architecture):
         if port.type is not None and not port.physical:
-            found.setdefault(port.type, []).append(port.type_at if port.type_at != NOWHERE else port.at)
-    return found
+            spans_by_type.setdefault(port.type, []).append(port.type_at if port.type_at != NO_SPAN else port.at)
+    return spans_by_type
 
 
 def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -56,29 +56,29 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
         types:
           Tracked people: {message: vision_msgs/msg/Detection3DArray}
     """
-    for name, places in _uses(architecture).items():
+    for name, spans in _spans_by_type(architecture).items():
         type_ = architecture.types.get(name)
         if type_ is None or type_.message is None:
             yield Diagnostic(
                 "unmapped-type",
                 f"no message is named for the type `{name}`",
-                places[0],
-                labels=tuple(_elsewhere(type_, places[1:])),
-                help=_mapped(name, architecture),
+                spans[0],
+                labels=tuple(_label_elsewhere(type_, spans[1:])),
+                help=_suggest_mapping(name, architecture),
                 element=name,
             )
 
 
-def _elsewhere(type_: Type | None, places: list[Span]) -> Iterator[Label]:
-    if type_ is not None and type_.at != NOWHERE and type_.origin == "project":
+def _label_elsewhere(type_: ConceptualType | None, spans: list[Span]) -> Iterator[Label]:
+    if type_ is not None and type_.at != NO_SPAN and type_.origin == "project":
         yield Label(type_.at, "declared here, without a message")
-    yield from (Label(place, "also used here") for place in places)
+    yield from (Label(span, "also used here") for span in spans)
 
 
-def _mapped(name: str, architecture: Architecture) -> str:
-    known = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
-    guess = did_you_mean(name, known | set(architecture.interfaces.mapper))
-    return guess or f"name it below `types:`, as in `{name}: {{message: package/msg/Name}}`"
+def _suggest_mapping(type_name: str, architecture: Architecture) -> str:
+    mapped_names = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
+    guess = did_you_mean(type_name, mapped_names | set(architecture.interfaces.mapper_names))
+    return guess or f"name it below `types:`, as in `{type_name}: {{message: package/msg/Name}}`"
 
 
 def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -117,23 +117,23 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     if architecture.partial:
         return
     # Physical ports count here: their types need no message, but they use the type.
-    used = {port.type for port in _ports(architecture)}
+    used_types = {port.type for port in _all_ports(architecture)}
     for type_ in architecture.types.values():
-        used |= {type_.request, type_.response, type_.feedback}
+        used_types |= {type_.request, type_.response, type_.feedback}
     # An unused mapping beside a used type without one is most likely a misspelt name.
-    unmapped = [name for name in used if name and not _has_message(architecture, name)]
+    unmapped_names = [name for name in used_types if name and not _is_mapped(architecture, name)]
     for type_ in architecture.types.values():
-        if type_.origin == "project" and type_.at != NOWHERE and type_.name not in used:
+        if type_.origin == "project" and type_.at != NO_SPAN and type_.name not in used_types:
             yield Diagnostic(
                 "unused-type",
                 f"nothing has the type `{type_.name}`",
                 type_.at,
-                help=did_you_mean(type_.name, unmapped),
+                help=did_you_mean(type_.name, unmapped_names),
                 element=type_.name,
             )
 
 
-def _has_message(architecture: Architecture, name: str) -> bool:
+def _is_mapped(architecture: Architecture, name: str) -> bool:
     type_ = architecture.types.get(name)
     return type_ is not None and type_.message is not None
 

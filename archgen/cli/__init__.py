@@ -31,7 +31,7 @@ VERBS = {
 """Every verb with its line in the help. Each is a module of this package, `VERB_.py`, with a function `command`."""
 
 
-class Verbs(click.Group):
+class VerbGroup(click.Group):
     """A group that imports a verb only when it is called, so that `--help` is immediate."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
@@ -43,7 +43,7 @@ class Verbs(click.Group):
         if cmd_name not in VERBS:
             return None
         # By name, so nothing else refers to these modules: renaming one or its `command` is noticed here only.
-        module = importlib.import_module(f"archgen.cli.{cmd_name}_")
+        module = importlib.import_module(f"archgen.cli.{cmd_name}_command")
         command: click.Command = module.command
         return command
 
@@ -52,7 +52,7 @@ class Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Guess what a mistyped verb meant."""
         if args and args[0] not in VERBS and not args[0].startswith("-"):
-            from archgen.suggest import did_you_mean
+            from archgen.diagnostics.suggestions import did_you_mean
 
             guess = did_you_mean(args[0], VERBS)
             ctx.fail(f"there is no verb '{args[0]}'" + (f"; {guess}" if guess else ""))
@@ -64,17 +64,22 @@ class Verbs(click.Group):
             formatter.write_dl(list(VERBS.items()))
 
 
-def _version(ctx: click.Context, _parameter: click.Parameter, asked: bool) -> None:  # noqa: FBT001 - click's signature
-    if asked and not ctx.resilient_parsing:
-        from archgen.cli.version import version
+def _print_version(ctx: click.Context, _parameter: click.Parameter, is_requested: bool) -> None:  # noqa: FBT001 - click's signature
+    if is_requested and not ctx.resilient_parsing:
+        from archgen.cli.version_text import format_versions
 
-        click.echo(version())
+        click.echo(format_versions())
         ctx.exit()
 
 
-@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(cls=VerbGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.option(
-    "--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the versions in use."
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_print_version,
+    help="Show the versions in use.",
 )
 def main() -> None:
     """Design a robot's software architecture together, in git.

@@ -5,8 +5,8 @@ common ids, and every difference then is a change (`difference_finder`), describ
 effects on connections (`connection_maps`).
 """
 
-from archgen.compare.change import Break, ChainChange, Change, Comparison
-from archgen.compare.compare import compare
-from archgen.compare.version import Version
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.compare_versions import compare_versions
+from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 
-__all__ = ["Break", "ChainChange", "Change", "Comparison", "Version", "compare"]
+__all__ = ["ArchitectureVersion", "ChainChange", "Change", "Comparison", "PartnerBreak", "compare_versions"]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.findings.rules import UNKNOWN_RULE
-from archgen.findings.suppress import UNUSED_IGNORE
+from archgen.findings.ignore_comments import UNUSED_IGNORE
+from archgen.findings.rule_table import UNKNOWN_RULE
 
 RULES = (UNUSED_IGNORE, UNKNOWN_RULE)
 """The rules about settings and comments."""

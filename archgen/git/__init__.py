@@ -4,26 +4,26 @@ Only objects are read: never the index, and never through a filter, hook, textco
 repository whose configuration or attributes name a program is therefore read without running it.
 """
 
-from archgen.git.base import Base, base, fork
-from archgen.git.errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
-from archgen.git.log import first_parents, ids
-from archgen.git.objects import Blob, Objects
-from archgen.git.repository import Repository, repository, resolve
+from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit
+from archgen.git.commit_log import find_object_ids, list_first_parents
+from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.object_reader import GitObjects, TreeEntry
+from archgen.git.repository_lookup import GitRepository, find_repository, resolve_revision
 
 __all__ = [
-    "Base",
-    "Blob",
+    "BaseCommit",
     "GitError",
+    "GitObjects",
+    "GitRepository",
     "NoCommitsError",
     "NoRepositoryError",
-    "Objects",
-    "Repository",
     "ShallowError",
+    "TreeEntry",
     "UnknownRevisionError",
-    "base",
-    "first_parents",
-    "fork",
-    "ids",
-    "repository",
-    "resolve",
+    "find_branch_base",
+    "find_common_commit",
+    "find_object_ids",
+    "find_repository",
+    "list_first_parents",
+    "resolve_revision",
 ]

@@ -1,6 +1,6 @@
 """How size, progress and findings grew: a project at the commits of its repository, read from git's objects alone."""
 
-from archgen.history.commits import By
-from archgen.history.counting import history
+from archgen.history.history_counting import count_history
+from archgen.history.project_commits import HistoryInterval
 
-__all__ = ["By", "history"]
+__all__ = ["HistoryInterval", "count_history"]

@@ -15,91 +15,107 @@ from dataclasses import replace
 from pathlib import Path
 
 from archgen import pipeline, project
-from archgen.history.commits import Commit
-from archgen.history.content import Contents
-from archgen.history.points import plain, point, read
-from archgen.model.history import Point
-from archgen.project.slices import Slices
+from archgen.history.commit_content import CommitContents
+from archgen.history.history_points import count_point, point_from_data, point_to_data
+from archgen.history.project_commits import ProjectCommit
+from archgen.model.project_history import HistoryPoint
+from archgen.project.slice_parsing import ParsedSlices
 
-Progress = Callable[[int, int], None]
-_FEW = 8
+WorkerProgress = Callable[[int, int], None]
+_COMMITS_PER_PROCESS = 8
 """So many commits are counted sooner than another process starts."""
 # The names in this string are this module's own path and function: a rename must change them as well.
 _START = "import sys; sys.path.append({root!r}); from archgen.history.workers import main; main()"
 
 
-def count(path: Path | None, commits: Sequence[Commit], progress: Progress | None = None) -> tuple[Point, ...]:
+def count_commits(
+    path: Path | None, commits: Sequence[ProjectCommit], progress: WorkerProgress | None = None
+) -> tuple[HistoryPoint, ...]:
     """Count a project at commits, in their order."""
-    processes = min(os.cpu_count() or 1, 1 + len(commits) // _FEW)
-    done = [0]
+    processes = min(os.cpu_count() or 1, 1 + len(commits) // _COMMITS_PER_PROCESS)
+    done_count = [0]
 
-    def told(_: Point) -> None:
-        done[0] += 1
+    def report_point(_: HistoryPoint) -> None:
+        done_count[0] += 1
         if progress:
-            progress(done[0], len(commits))
+            progress(done_count[0], len(commits))
 
     if processes < 2:  # noqa: PLR2004 - this one
-        return tuple(_counted(path, commits, told))
-    size = -(-len(commits) // processes)
-    parts = [commits[start : start + size] for start in range(0, len(commits), size)]
-    results: list[list[Point]] = [[] for _ in parts]
+        return tuple(_count_here(path, commits, report_point))
+    batch_size = -(-len(commits) // processes)
+    batches = [commits[start : start + batch_size] for start in range(0, len(commits), batch_size)]
+    results: list[list[HistoryPoint]] = [[] for _ in batches]
     # Threads only wait for the processes' output; this thread counts the first batch itself.
     threads = [
-        threading.Thread(target=_elsewhere, args=(path, part, into, told))
-        for part, into in zip(parts[1:], results[1:], strict=True)
+        threading.Thread(target=_count_elsewhere, args=(path, batch, batch_points, report_point))
+        for batch, batch_points in zip(batches[1:], results[1:], strict=True)
     ]
     for thread in threads:
         thread.start()
-    results[0] = _counted(path, parts[0], told)
+    results[0] = _count_here(path, batches[0], report_point)
     for thread in threads:
         thread.join()
-    for part, into in zip(parts, results, strict=True):  # a process that was killed: what it left is counted here
-        into.extend(_counted(path, part[len(into) :], told))
-    return tuple(one for into in results for one in into)
+    for batch, batch_points in zip(
+        batches, results, strict=True
+    ):  # a process that was killed: what it left is counted here
+        batch_points.extend(_count_here(path, batch[len(batch_points) :], report_point))
+    return tuple(counted_point for batch_points in results for counted_point in batch_points)
 
 
-def _counted(path: Path | None, commits: Sequence[Commit], told: Callable[[Point], None]) -> list[Point]:
-    found = []
-    for one in _points(path, commits):
-        found.append(one)
-        told(one)
-    return found
+def _count_here(
+    path: Path | None, commits: Sequence[ProjectCommit], report_point: Callable[[HistoryPoint], None]
+) -> list[HistoryPoint]:
+    batch_points = []
+    for counted_point in _yield_points(path, commits):
+        batch_points.append(counted_point)
+        report_point(counted_point)
+    return batch_points
 
 
-def _points(path: Path | None, commits: Sequence[Commit]) -> Iterator[Point]:
-    tracked, known, contents = project.tracked(path), Slices(), Contents()
-    counted: dict[Hashable, Point] = {}
-    for one in commits:
-        loaded = project.load_commit(tracked, one.id, known)
-        content = contents.of(loaded)
-        found = counted.get(content)
-        if found is None:
-            found = counted[content] = point(pipeline.judged(loaded), one.id, one.day)
-        yield replace(found, commit=one.id, day=one.day)
+def _yield_points(path: Path | None, commits: Sequence[ProjectCommit]) -> Iterator[HistoryPoint]:
+    tracked_project, parsed_slices, contents = project.find_tracked_project(path), ParsedSlices(), CommitContents()
+    counted: dict[Hashable, HistoryPoint] = {}
+    for commit in commits:
+        loaded_project = project.load_at_commit(tracked_project, commit.id, parsed_slices)
+        content = contents.content_key(loaded_project)
+        content_point = counted.get(content)
+        if content_point is None:
+            content_point = counted[content] = count_point(
+                pipeline.check_loaded_project(loaded_project), commit.id, commit.day
+            )
+        yield replace(content_point, commit=commit.id, day=commit.day)
 
 
-def _elsewhere(path: Path | None, commits: Sequence[Commit], into: list[Point], told: Callable[[Point], None]) -> None:
+def _count_elsewhere(
+    path: Path | None,
+    commits: Sequence[ProjectCommit],
+    batch_points: list[HistoryPoint],
+    report_point: Callable[[HistoryPoint], None],
+) -> None:
     # The folder that holds the package `archgen`: two levels above this file's own.
     """Count commits in another process; `batch_points` holds whatever it delivered, even if it was killed."""
     root = str(Path(__file__).resolve().parents[2])
     command = (sys.executable, "-P", "-c", _START.format(root=root))
-    asked = {"path": None if path is None else str(path), "commits": [[one.id, one.day, one.tree] for one in commits]}
+    request = {
+        "path": None if path is None else str(path),
+        "commits": [[item.id, item.day, item.tree_id] for item in commits],
+    }
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ourselves
         if process.stdin and process.stdout:
-            process.stdin.write(json.dumps(asked).encode())
+            process.stdin.write(json.dumps(request).encode())
             process.stdin.close()
             for line in process.stdout:
-                one = read(json.loads(line))
-                into.append(one)
-                told(one)
+                item = point_from_data(json.loads(line))
+                batch_points.append(item)
+                report_point(item)
 
 
 def main() -> None:
     """Run as a worker: read what to count from standard input, write a line of JSON for each commit."""
     # The process lives for one batch only.
     gc.disable()
-    asked = json.loads(sys.stdin.buffer.read())
-    path = None if asked["path"] is None else Path(asked["path"])
-    for one in _points(path, [Commit(*words) for words in asked["commits"]]):
-        sys.stdout.write(json.dumps(plain(one)) + "\n")
+    request = json.loads(sys.stdin.buffer.read())
+    path = None if request["path"] is None else Path(request["path"])
+    for counted_point in _yield_points(path, [ProjectCommit(*fields) for fields in request["commits"]]):
+        sys.stdout.write(json.dumps(point_to_data(counted_point)) + "\n")
         sys.stdout.flush()

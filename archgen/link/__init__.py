@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from archgen.link import merge, rules
-from archgen.link.chapters import MISSING_CHAPTER
-from archgen.link.declare import link
+from archgen.link import reference_rules, slice_merging
+from archgen.link.project_linking import link_project
+from archgen.link.report_chapters import MISSING_CHAPTER
 
-RULES = (*merge.RULES, *rules.RULES, MISSING_CHAPTER)
+RULES = (*slice_merging.RULES, *reference_rules.RULES, MISSING_CHAPTER)
 
-__all__ = ["RULES", "link"]
+__all__ = ["RULES", "link_project"]

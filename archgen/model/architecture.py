@@ -6,26 +6,26 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Literal
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.component import Component, Connection, Group, Input, Layout, Output
+from archgen.model.component import Component, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.interfaces import Interfaces
-from archgen.model.mapping import Type
+from archgen.model.known_interfaces import Interfaces
+from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.quantity import Quantity
-from archgen.model.review import Review
-from archgen.source import NOWHERE, Span
+from archgen.model.review_settings import ReviewSettings
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
 # files equals what it was. Where the place counts, too, it has to be compared explicitly (timing/analyse does).
 @dataclass(frozen=True, slots=True)
-class Edge:
+class PortEdge:
     """A pair of output and input that a connection joins, by their complete ids."""
 
     output: str
     input: str
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Partner:
     contact: str | None = None
     reviewers: tuple[str, ...] = ()
     """The reviewers of its files as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class UseCase:
     id: str
     title: str
     description: str | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Requirement:
     use_cases: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Waypoint:
 
     kind: Literal["node", "component", "output"]
     id: str
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Chain:
     through: tuple[Waypoint, ...] = ()
     deadline: Quantity | None = None
     requirements: tuple[str, ...] = ()
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
     """The entries of `through` that name no element: such a chain is not judged."""
 
@@ -96,9 +96,9 @@ class View:
     show: str
     colour: str | None = None
     level: Literal["functional", "implementation"] = "functional"
-    layout: Layout = field(default_factory=Layout)
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    show_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    layout: DiagramLayout = field(default_factory=DiagramLayout)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    show_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +109,9 @@ class Policy:
     title: str
     forbid_from: str
     forbid_to: str
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    from_at: Span = field(default=NOWHERE, compare=False, repr=False)
-    to_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    to_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ class ProjectInfo:
     title: str
     version: str | None = None
     description: str | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,9 +137,9 @@ class Architecture:
 
     project: ProjectInfo
     distro: str | None = None
-    distro_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()
-    layout: Layout = field(default_factory=Layout)
+    layout: DiagramLayout = field(default_factory=DiagramLayout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
     use_cases: Mapping[str, UseCase] = field(default_factory=dict)
     requirements: Mapping[str, Requirement] = field(default_factory=dict)
@@ -148,8 +148,8 @@ class Architecture:
     inputs: Mapping[str, Input] = field(default_factory=dict)
     outputs: Mapping[str, Output] = field(default_factory=dict)
     connections: tuple[Connection, ...] = ()
-    edges: tuple[Edge, ...] = ()
-    types: Mapping[str, Type] = field(default_factory=dict)
+    edges: tuple[PortEdge, ...] = ()
+    types: Mapping[str, ConceptualType] = field(default_factory=dict)
     """Every type that is declared or used, by name; its message is None if it is not mapped."""
     nodes: Mapping[str, Node] = field(default_factory=dict)
     hosts: Mapping[str, Host] = field(default_factory=dict)
@@ -158,25 +158,25 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
-    review: Review = field(default_factory=Review)
+    review: ReviewSettings = field(default_factory=ReviewSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     interfaces: Interfaces = field(default_factory=Interfaces)
     partial: bool = False
     """Whether a file could not be read at all. Then no rule reports something as unused: that file may use it."""
-    lost: frozenset[str] = frozenset()
+    unread_keys: frozenset[str] = frozenset()
     """The keys of entries that could not be read. No rule reports a name as unknown that they may declare."""
-    suspects: frozenset[str] = frozenset()
+    suspected_ids: frozenset[str] = frozenset()
     """The complete ids of the elements that unresolved references most likely mean (the guess, or the candidates). No
     rule reports these as unused: the reference is reported already."""
 
-    def message(self, output: Output) -> str | None:
+    def message_of(self, output: Output) -> str | None:
         """Return the message that an output's type is mapped to; None if unknown, or if the output is physical."""
         if output.type is None or output.physical:
             return None
         mapped = self.types.get(output.type)
         return mapped.message if mapped else None
 
-    def implementers(self, component: str) -> Iterator[Node]:
+    def nodes_implementing(self, component_id: str) -> Iterator[Node]:
         """Yield the nodes that implement the component with this complete id, planned ones included."""
-        return (node for node in self.nodes.values() if component in node.implements)
+        return (node for node in self.nodes.values() if component_id in node.implements)

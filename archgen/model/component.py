@@ -6,20 +6,20 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Literal
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
-from archgen.model.timing import Timing
-from archgen.source import NOWHERE, Span
 
-Role = Literal["source", "filter", "sink", "reactive"]
-Direction = Literal["left-right", "top-bottom"]
+ComponentRole = Literal["source", "filter", "sink", "reactive"]
+DiagramDirection = Literal["left-right", "top-bottom"]
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class DiagramLayout:
     """How the diagram of an element is drawn."""
 
-    direction: Direction | None = None
+    direction: DiagramDirection | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Connection:
     kind: Literal["group", "component", "output"]
     target: str
     outputs: tuple[str, ...]
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,8 @@ class Input:
     description: str | None = None
     from_written: bool = False
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    type_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,19 +68,19 @@ class Output:
     external: str | None = None
     physical: bool = False
     description: str | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    type_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Indicator:
+class PerformanceIndicator:
     """A performance indicator of a component; `execution_time` in ns."""
 
     id: str
     title: str
     accuracy: str | None = None
     execution_time: Quantity | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class RequirementUse:
 
     text: str
     is_id: bool
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +108,10 @@ class Component:
     description: str | None = None
     owner: str | None = None
     co_owners: tuple[str, ...] = ()
-    role: Role | None = None
+    role: ComponentRole | None = None
     requirements: tuple[RequirementUse, ...] = ()
     requirements_known: bool = False
-    performance: tuple[Indicator, ...] = ()
+    performance: tuple[PerformanceIndicator, ...] = ()
     inputs: Mapping[str, Input] = field(default_factory=dict)
     inputs_known: bool = False
     outputs: Mapping[str, Output] = field(default_factory=dict)
@@ -119,10 +119,10 @@ class Component:
     timing: Timing | None = None
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
-    layout: Layout = field(default_factory=Layout)
+    layout: DiagramLayout = field(default_factory=DiagramLayout)
     title_written: bool = False
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    role_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    role_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
     def owners(self) -> tuple[str, ...]:
@@ -141,9 +141,9 @@ class Group:
     co_owners: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
-    layout: Layout = field(default_factory=Layout)
+    layout: DiagramLayout = field(default_factory=DiagramLayout)
     components: Mapping[str, Component] = field(default_factory=dict)
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
     def owners(self) -> tuple[str, ...]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import field
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
-from archgen.source import NOWHERE, Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Host:
     cores: int | None = None
     description: str | None = None
     tags: tuple[str, ...] = ()
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Container:
     title: str
     host: str | None = None
     threads: int | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,4 +42,4 @@ class Link:
     bandwidth: Quantity | None = None
     best: Quantity | None = None
     worst: Quantity | None = None
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Literal
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
-from archgen.model.timing import Timing
-from archgen.source import NOWHERE, Span
 
 NodeKind = Literal["node", "lifecycle", "composable", "driver", "nodelet"]
 NodeStatus = Literal["existing", "adapted", "planned"]
-Use = Literal["publishes", "subscribes", "serves", "calls"]
-Flow = Literal["topic", "service", "action"]
+UseKind = Literal["publishes", "subscribes", "serves", "calls"]
+FlowKind = Literal["topic", "service", "action"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Qos:
     liveliness: Literal["automatic", "manual_by_topic"] = "automatic"
     lease_duration: Quantity | None = None
     written: bool = False
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,15 +46,15 @@ class PortUse:
     `topics` are the names as written (several only for topics), empty if left out; `topic_places` are their spans.
     """
 
-    use: Use
+    use: UseKind
     key: str
     port: str | None
     topics: tuple[str, ...] = ()
     message: str | None = None
     qos: Qos | None = None
     internal: bool = False
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    message_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     topic_places: tuple[Span, ...] = field(default=(), compare=False, repr=False)
 
 
@@ -83,7 +83,7 @@ class Node:
     """The node's own host, else its container's."""
     status: NodeStatus | None = None
     uses: tuple[PortUse, ...] = ()
-    uses_known: tuple[Use, ...] = ()
+    uses_known: tuple[UseKind, ...] = ()
     """Which of `publishes`, `subscribes`, `serves`, `calls` are written (`{}` counts)."""
     timing: Mapping[str, Timing] = field(default_factory=dict)
     """By component id (one entry for each activity), or by "" for a node that implements no component."""
@@ -93,8 +93,8 @@ class Node:
     urls: Mapping[str, str] = field(default_factory=dict)
     written: bool = True
     implements_written: bool = False
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    name_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
     def full_name(self) -> str:
@@ -117,9 +117,9 @@ class Endpoint:
     """
 
     node: str
-    use: Use
+    use: UseKind
     name: str
-    flow: Flow
+    flow: FlowKind
     port: str | None
     component: str | None
     message: str | None = None
@@ -129,8 +129,8 @@ class Endpoint:
     written: bool = False
     name_written: bool = False
     sources: tuple[str, ...] = ()
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    message_at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +138,7 @@ class Topic:
     """A topic, service or action with its absolute name, and the endpoints that use it; `size` in B."""
 
     name: str
-    flow: Flow
+    flow: FlowKind
     messages: tuple[str, ...]
     """Distinct full names in order of appearance; more than one is a conflict."""
     types: tuple[str, ...]

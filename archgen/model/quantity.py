@@ -9,11 +9,11 @@ from functools import lru_cache
 
 from archgen.frozen import dataclass
 
-DIGITS = 18
+MAX_DIGITS = 18
 """The maximal number of digits before the decimal point, and behind it."""
-_NUMBER = re.compile(rf"([0-9]{{1,{DIGITS}}}(?:\.[0-9]{{1,{DIGITS}}})?) ?([A-Za-z/]+)\Z", re.ASCII)
-_BYTES = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
-UNITS: dict[str, dict[str, int]] = {
+_QUANTITY_PATTERN = re.compile(rf"([0-9]{{1,{MAX_DIGITS}}}(?:\.[0-9]{{1,{MAX_DIGITS}}})?) ?([A-Za-z/]+)\Z", re.ASCII)
+_BYTE_UNITS = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
+UNIT_FACTORS: dict[str, dict[str, int]] = {
     "duration": {
         "ns": 1,
         "us": 10**3,
@@ -23,10 +23,10 @@ UNITS: dict[str, dict[str, int]] = {
         "h": 3600 * 10**9,
     },
     "frequency": {"Hz": 1, "kHz": 1000},
-    "size": _BYTES,
+    "size": _BYTE_UNITS,
     "bandwidth": {
         **{f"{prefix}bit/s": factor for prefix, factor in (("", 1), ("k", 10**3), ("M", 10**6), ("G", 10**9))},
-        **{f"{unit}/s": 8 * factor for unit, factor in _BYTES.items()},
+        **{f"{unit}/s": 8 * factor for unit, factor in _BYTE_UNITS.items()},
     },
 }
 """The units of each dimension as multiples of its base unit: ns, Hz, B, bit/s. Case-sensitive."""
@@ -48,11 +48,11 @@ class Quantity:
 
 # The same quantities come up again and again, and in each version of a project that is compared.
 @lru_cache(4096)
-def parse(text: str, dimension: str) -> Quantity | None:
+def parse_quantity(text: str, dimension: str) -> Quantity | None:
     """Parse `200 ms`, `0.5 kHz`, `12 kB`, `1 Gbit/s`; return None if it is not a quantity of this dimension."""
-    match = _NUMBER.match(text)
+    match = _QUANTITY_PATTERN.match(text)
     if match is None:
         return None
     number, unit = match.groups()
-    factor = UNITS[dimension].get(unit)
+    factor = UNIT_FACTORS[dimension].get(unit)
     return None if factor is None else Quantity(Fraction(number) * factor, f"{number} {unit}")

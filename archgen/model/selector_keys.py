@@ -7,79 +7,90 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.names import Named
 from archgen.model.node import Node
+from archgen.model.path_resolver import ElementRef
 
 
 @dataclass(frozen=True, slots=True)
-class Hit:
+class SelectorHit:
     """The elements that a path or key selects. `only_nodes`: it names nodes only, so that steps are between nodes."""
 
     components: frozenset[str]
     nodes: frozenset[str]
-    named: tuple[Named, ...] = ()
+    elements: tuple[ElementRef, ...] = ()
     outputs: tuple[str, ...] = ()
     """The ids of outputs if nothing else is named: they feed less than their components do."""
-    of_nodes: bool = False
-    crosses: bool = True
+    only_nodes: bool = False
+    includes_components: bool = True
     """Whether the components of the nodes are selected, too."""
 
 
-def wild(pattern: str, text: str) -> bool:
+def matches_wildcard(pattern: str, text: str) -> bool:
     """Whether a text matches a pattern in which `*` stands for any characters, none included.
 
     Each piece is searched from the end of the one before it, so that the time is in proportion to the text. A regular
     expression made from the pattern would backtrack.
     """
-    first, *rest = pattern.split("*")
-    if not rest:
+    first, *remaining_pieces = pattern.split("*")
+    if not remaining_pieces:
         return pattern == text
-    *middle, last = rest
+    *middle, last = remaining_pieces
     if len(text) < len(first) + len(last) or not text.startswith(first) or not text.endswith(last):
         return False
-    here, end = len(first), len(text) - len(last)
+    position, end = len(first), len(text) - len(last)
     for piece in middle:
-        found = text.find(piece, here, end)
-        if found < 0:
+        match_position = text.find(piece, position, end)
+        if match_position < 0:
             return False
-        here = found + len(piece)
+        position = match_position + len(piece)
     return True
 
 
-def by_key(architecture: Architecture, key: str, value: str, findings: Mapping[str, frozenset[str]]) -> Hit:
+def find_by_key(
+    architecture: Architecture, key: str, value: str, findings: Mapping[str, frozenset[str]]
+) -> SelectorHit:
     """Return the components and nodes that a key's value selects; `*` in it stands for any characters."""
     if key == "type":
-        return Hit(frozenset(_with_type(architecture, " ".join(value.split()))), frozenset())
+        return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
     if key == "tag":
-        return _tagged(architecture, value)
+        return _find_tagged(architecture, value)
     if key == "finding":
-        return _found(architecture, [element for rule in findings if wild(value, rule) for element in findings[rule]])
-    of_component, of_node = _COMPONENTS.get(key), _NODES.get(key)
+        return _hit_of_findings(
+            architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
+        )
+    component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
     components = (
-        (c.id for c in architecture.components.values() if _any(value, of_component(c))) if of_component else ()
+        (c.id for c in architecture.components.values() if _matches_any(value, component_values(c)))
+        if component_values
+        else ()
     )
-    nodes = (n.id for n in architecture.nodes.values() if _any(value, of_node(n))) if of_node else ()
+    nodes = (n.id for n in architecture.nodes.values() if _matches_any(value, node_values(n))) if node_values else ()
     # A node of one partner may implement components of others: `owner:` selects the node without those components.
-    return Hit(frozenset(components), frozenset(nodes), of_nodes=of_component is None, crosses=key != "owner")
+    return SelectorHit(
+        frozenset(components), frozenset(nodes), only_nodes=component_values is None, includes_components=key != "owner"
+    )
 
 
-def _any(value: str, texts: Iterable[str | None]) -> bool:
-    return any(text is not None and wild(value, text) for text in texts)
+def _matches_any(pattern: str, texts: Iterable[str | None]) -> bool:
+    return any(text is not None and matches_wildcard(pattern, text) for text in texts)
 
 
-def _media(component: Component) -> Iterable[str]:
-    physical = (*(i.physical for i in component.inputs.values()), *(o.physical for o in component.outputs.values()))
-    return ("physical" if yes else "digital" for yes in physical)
+def _port_media(component: Component) -> Iterable[str]:
+    physical_flags = (
+        *(i.physical for i in component.inputs.values()),
+        *(o.physical for o in component.outputs.values()),
+    )
+    return ("physical" if is_physical else "digital" for is_physical in physical_flags)
 
 
-_COMPONENTS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
+_COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
     "owner": lambda component: component.owners,
-    "medium": _media,
+    "medium": _port_media,
     "role": lambda component: (component.role,),
     "requirement": lambda component: (use.text for use in component.requirements if use.is_id),
     "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
 }
-_NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
+_NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
     "owner": lambda node: node.owners,
     "status": lambda node: (node.status,),
     "host": lambda node: (node.host,),
@@ -89,40 +100,46 @@ _NODES: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
 }
 
 
-def _tagged(architecture: Architecture, value: str) -> Hit:
+def _find_tagged(architecture: Architecture, pattern: str) -> SelectorHit:
     """Find what has a tag itself, through its group, through a requirement that it serves, or through its host."""
-    groups = {g.id for g in architecture.groups.values() if _any(value, g.tags)}
-    requirements = {r.id for r in architecture.requirements.values() if _any(value, r.tags)}
-    hosts = {h.id for h in architecture.hosts.values() if _any(value, h.tags)}
+    groups = {g.id for g in architecture.groups.values() if _matches_any(pattern, g.tags)}
+    requirements = {r.id for r in architecture.requirements.values() if _matches_any(pattern, r.tags)}
+    hosts = {h.id for h in architecture.hosts.values() if _matches_any(pattern, h.tags)}
     components = (
         c.id
         for c in architecture.components.values()
-        if c.group in groups or _any(value, c.tags) or any(r.is_id and r.text in requirements for r in c.requirements)
+        if c.group in groups
+        or _matches_any(pattern, c.tags)
+        or any(r.is_id and r.text in requirements for r in c.requirements)
     )
-    nodes = (n.id for n in architecture.nodes.values() if n.host in hosts or _any(value, n.tags))
-    return Hit(frozenset(components), frozenset(nodes))
+    nodes = (n.id for n in architecture.nodes.values() if n.host in hosts or _matches_any(pattern, n.tags))
+    return SelectorHit(frozenset(components), frozenset(nodes))
 
 
-def _with_type(architecture: Architecture, value: str) -> Iterable[str]:
+def _find_by_type(architecture: Architecture, pattern: str) -> Iterable[str]:
     """Yield the components that send a type (or message), expect it, or read an output with it."""
-    names = {t.name for t in architecture.types.values() if wild(value, t.name) or _any(value, (t.message,))}
-    sending = {output.id for output in architecture.outputs.values() if output.type in names}
-    yield from (architecture.outputs[output].component for output in sending)
+    names = {
+        t.name
+        for t in architecture.types.values()
+        if matches_wildcard(pattern, t.name) or _matches_any(pattern, (t.message,))
+    }
+    sent_outputs = {output.id for output in architecture.outputs.values() if output.type in names}
+    yield from (architecture.outputs[output].component for output in sent_outputs)
     yield from (port.component for port in architecture.inputs.values() if port.type in names)
-    yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sending)
+    yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sent_outputs)
 
 
-def _found(architecture: Architecture, elements: Iterable[str]) -> Hit:
+def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
-    for element in elements:
-        port = architecture.inputs.get(element) or architecture.outputs.get(element)
+    for element_id in element_ids:
+        port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
         if port:
             components.add(port.component)
-        elif element in architecture.components:
-            components.add(element)
-        elif element in architecture.groups:
-            components.update(c.id for c in architecture.groups[element].components.values())
-        elif element in architecture.nodes:
-            nodes.add(element)
-    return Hit(frozenset(components), frozenset(nodes))
+        elif element_id in architecture.components:
+            components.add(element_id)
+        elif element_id in architecture.groups:
+            components.update(c.id for c in architecture.groups[element_id].components.values())
+        elif element_id in architecture.nodes:
+            nodes.add(element_id)
+    return SelectorHit(frozenset(components), frozenset(nodes))

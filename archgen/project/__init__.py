@@ -3,22 +3,28 @@
 The files come from the disk, or from a commit of the repository that the project is in.
 """
 
-from archgen.project.find import MARKER, ProjectNotFoundError
-from archgen.project.loaded import Loaded, load
-from archgen.project.rules import RULES
-from archgen.project.slices import Slices
-from archgen.project.tracked import NotAtRevisionError, Tracked, load_at, load_commit, tracked
+from archgen.project.project_loading import LoadedProject, load_project
+from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError
+from archgen.project.project_tracking import (
+    NotAtRevisionError,
+    TrackedProject,
+    find_tracked_project,
+    load_at_commit,
+    load_at_revision,
+)
+from archgen.project.slice_parsing import ParsedSlices
+from archgen.project.source_rules import RULES
 
 __all__ = [
-    "MARKER",
+    "PROJECT_FILE",
     "RULES",
-    "Loaded",
+    "LoadedProject",
     "NotAtRevisionError",
+    "ParsedSlices",
     "ProjectNotFoundError",
-    "Slices",
-    "Tracked",
-    "load",
-    "load_at",
-    "load_commit",
-    "tracked",
+    "TrackedProject",
+    "find_tracked_project",
+    "load_at_commit",
+    "load_at_revision",
+    "load_project",
 ]

@@ -1,8 +1,16 @@
 """Schema: check a document against the JSON Schema, phrase what is wrong, and expand the short forms."""
 
-from archgen.schema.rules import RULES
-from archgen.schema.shorthand import fold, normalise
-from archgen.schema.validate import sections, validate
-from archgen.schema.wording import better_keys, element
+from archgen.schema.reading_rules import RULES
+from archgen.schema.schema_validation import list_sections, validate_document
+from archgen.schema.schema_wording import element_of_path, suggest_ids
+from archgen.schema.short_forms import fold_type_name, normalise_document
 
-__all__ = ["RULES", "better_keys", "element", "fold", "normalise", "sections", "validate"]
+__all__ = [
+    "RULES",
+    "element_of_path",
+    "fold_type_name",
+    "list_sections",
+    "normalise_document",
+    "suggest_ids",
+    "validate_document",
+]

@@ -5,16 +5,24 @@ times and data ages off the traces, and `simulate_system` puts the seeds togethe
 on the worst case, never the worst case itself.
 """
 
-from archgen.simulation.result import ActivitySeen, ChainSeen, Distribution, Figures, HostSeen, LinkSeen, Result
-from archgen.simulation.simulate import simulate
+from archgen.simulation.repeated_runs import simulate_system
+from archgen.simulation.simulation_result import (
+    ChainFigures,
+    DurationDistribution,
+    ObservedActivity,
+    ObservedChain,
+    ObservedHost,
+    ObservedLink,
+    SimulationResult,
+)
 
 __all__ = [
-    "ActivitySeen",
-    "ChainSeen",
-    "Distribution",
-    "Figures",
-    "HostSeen",
-    "LinkSeen",
-    "Result",
-    "simulate",
+    "ChainFigures",
+    "DurationDistribution",
+    "ObservedActivity",
+    "ObservedChain",
+    "ObservedHost",
+    "ObservedLink",
+    "SimulationResult",
+    "simulate_system",
 ]

@@ -7,14 +7,14 @@ from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.timing import Behaviour
-from archgen.source import NOWHERE, Span
-from archgen.timing.system import Arc, System
-from archgen.timing.value import UNKNOWN, Value
-from archgen.timing.wording import duration, told
+from archgen.model.declared_timing import ActivityBehaviour
+from archgen.timing.figures.figure_wording import describe_value, format_duration
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.system.timing_system import Arc, TimingSystem
 
-Tier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
+ResponseTier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
 """How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
 of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
 single-threaded; `cores`, several.
@@ -29,27 +29,27 @@ class Reason:
     `arguments`.
     """
 
-    words: str
+    template: str
     # Places take no part in equality: a figure is the same wherever it is written (run_analysis compares them on its
     # own).
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
-    parts: tuple[str | int | Fraction | Value, ...] = ()
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    arguments: tuple[str | int | Fraction | TimingValue, ...] = ()
 
     @property
     def text(self) -> str:
         """Return the sentence."""
-        return self.words.format(*map(_said, self.parts)) if self.parts else self.words
+        return self.template.format(*map(_format_argument, self.arguments)) if self.arguments else self.template
 
 
-def _said(part: str | int | Fraction | Value) -> str:
+def _format_argument(argument: str | int | Fraction | TimingValue) -> str:
     """Format an argument of a sentence: a value is a rate, a Fraction a duration in ns."""
-    if isinstance(part, Value):
-        return told(part, "Hz")
-    return duration(part) if isinstance(part, Fraction) else str(part)
+    if isinstance(argument, TimingValue):
+        return describe_value(argument, "Hz")
+    return format_duration(argument) if isinstance(argument, Fraction) else str(argument)
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class EventPace:
     """How often an activity is activated, or an output published.
 
     `rate` in Hz; `gap` is the largest gap between two events, in ns (not the inverse of the rate: see docs/timing.md).
@@ -57,22 +57,22 @@ class Pace:
     model.
     """
 
-    behaviour: Behaviour | None
-    rate: Value = UNKNOWN
-    gap: Value = UNKNOWN
-    jitter: Value = UNKNOWN
-    distance: Value = UNKNOWN
+    behaviour: ActivityBehaviour | None
+    rate: TimingValue = UNKNOWN_VALUE
+    gap: TimingValue = UNKNOWN_VALUE
+    jitter: TimingValue = UNKNOWN_VALUE
+    distance: TimingValue = UNKNOWN_VALUE
     inferred: bool = True
     reasons: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Response:
+class ResponseTime:
     """From activation to completion, in ns: best and worst case, and how the worst was found."""
 
-    best: Value
-    worst: Value
-    tier: Tier
+    best: TimingValue
+    worst: TimingValue
+    tier: ResponseTier
     reasons: tuple[Reason, ...] = ()
 
 
@@ -80,39 +80,39 @@ class Response:
 class HostLoad:
     """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
-    utilisation: Value
+    utilisation: TimingValue
     cores: int
-    rate_monotonic_bound: Value
+    rate_monotonic_bound: TimingValue
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
-    parts: tuple[tuple[str, Value], ...]
+    activity_shares: tuple[tuple[str, TimingValue], ...]
     """What each activity adds."""
-    places: tuple[tuple[str, int, Value], ...] = ()
+    core_loads: tuple[tuple[str, int, TimingValue], ...] = ()
     """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation."""
-    earliest_deadline_bound: Value = UNKNOWN
+    earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
 
 
 @dataclass(frozen=True, slots=True)
 class LinkLoad:
     """Traffic on a link in B/s, its share of the bandwidth, the burst in B and the longest queueing in ns."""
 
-    traffic: Value
-    share: Value
-    burst: Value
-    queueing: Value
-    parts: tuple[tuple[str, Value], ...]
+    traffic: TimingValue
+    share: TimingValue
+    burst: TimingValue
+    queueing: TimingValue
+    topic_traffic: tuple[tuple[str, TimingValue], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class TopicLoad:
     """What is published on a topic, and delivered to all of its readers, in B/s; message size in B."""
 
-    size: Value
-    published: Value
-    delivered: Value
+    size: TimingValue
+    published: TimingValue
+    delivered: TimingValue
 
 
 @dataclass(frozen=True, slots=True)
-class EdgePace:
+class EdgeFit:
     """How producer and consumer of an arc fit together.
 
     `loss` is the share of samples never read, `rereads` how often each is read, `beat` the time between two slips (ns),
@@ -120,10 +120,10 @@ class EdgePace:
     """
 
     arc: Arc
-    loss: Value
-    rereads: Value
-    beat: Value
-    queue: Value
+    loss: TimingValue
+    rereads: TimingValue
+    beat: TimingValue
+    queue: TimingValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +135,9 @@ class ServiceLoad:
     """
 
     callers: tuple[str, ...]
-    worst: Value
-    waits: Mapping[str, Value]
-    synchronous: Mapping[str, Value]
+    worst: TimingValue
+    waits: Mapping[str, TimingValue]
+    synchronous_responses: Mapping[str, TimingValue]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,35 +147,35 @@ class Analysis:
     Keys are ids of activities, hosts and links, names of topics, or (activity, output key).
     """
 
-    system: System
-    paces: Mapping[str, Pace]
-    outputs: Mapping[tuple[str, str], Pace]
-    responses: Mapping[str, Response]
+    system: TimingSystem
+    paces: Mapping[str, EventPace]
+    outputs: Mapping[tuple[str, str], EventPace]
+    responses: Mapping[str, ResponseTime]
     hosts: Mapping[str, HostLoad]
     links: Mapping[str, LinkLoad]
     topics: Mapping[str, TopicLoad]
-    edges: tuple[EdgePace, ...]
+    edges: tuple[EdgeFit, ...]
     endless: tuple[tuple[str, ...], ...] = ()
     """Rings of any-of triggers: an event that enters one circulates for ever."""
     deadlocked: tuple[tuple[str, ...], ...] = ()
     """Rings of all-of triggers without a first token: they never fire."""
     diverged: tuple[str, ...] = ()
-    derived: Mapping[str, Pace] = field(default_factory=dict)
+    derived: Mapping[str, EventPace] = field(default_factory=dict)
     """What the inputs would give for those event-driven or on-demand activities that state a period themselves."""
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     notes: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Term:
+class ChainTerm:
     """One step of a chain's bound, in ns: waiting for the sample to be read, response, link."""
 
     activity: str
-    sampling: Value
-    response: Value
-    link: Value
+    sampling: TimingValue
+    response: TimingValue
+    link: TimingValue
     why: str
-    at: Span = field(default=NOWHERE, compare=False, repr=False)
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,10 +184,10 @@ class ChainResult:
 
     id: str
     through: tuple[str, ...]
-    terms: tuple[Term, ...]
-    bound: Value
-    best: Value
-    reduced_reaction: Value
-    reduced_age: Value
-    deadline: Value | None
+    terms: tuple[ChainTerm, ...]
+    bound: TimingValue
+    best: TimingValue
+    reduced_reaction: TimingValue
+    reduced_age: TimingValue
+    deadline: TimingValue | None
     verdict: Literal["met", "missed", "open"]

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.model.architecture import Architecture
-from archgen.transform.derive import derive
+from archgen.transform.low_level import derive_low_level
 
-Pass = Callable[[Architecture], Architecture]
+TransformPass = Callable[[Architecture], Architecture]
 
-PASSES: tuple[Pass, ...] = (derive,)
+TRANSFORM_PASSES: tuple[TransformPass, ...] = (derive_low_level,)
 """All passes, in the order in which they run."""
 
 
-def transform(architecture: Architecture) -> Architecture:
+def transform_architecture(architecture: Architecture) -> Architecture:
     """Run all passes."""
-    for one in PASSES:
-        architecture = one(architecture)
+    for run_pass in TRANSFORM_PASSES:
+        architecture = run_pass(architecture)
     return architecture
 
 
-__all__ = ["PASSES", "derive", "transform"]
+__all__ = ["TRANSFORM_PASSES", "derive_low_level", "transform_architecture"]

@@ -11,12 +11,12 @@ SHARED_TOPICS = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/roso
 """Topics that every node may use."""
 
 
-def absolute(written: str, node: Node) -> str:
+def resolve_ros_name(written_name: str, node: Node) -> str:
     """Resolve a name as a node writes it: relative to its namespace, or with `~` to the node itself."""
     namespace = "/" + node.namespace.strip("/")
-    name = written.replace("{node}", node.name)
-    for word in ("{ns}", "{namespace}"):
-        name = name.replace(word, namespace.strip("/") or "/")
+    name = written_name.replace("{node}", node.name)
+    for placeholder in ("{ns}", "{namespace}"):
+        name = name.replace(placeholder, namespace.strip("/") or "/")
     if name.startswith("/"):
         return "/" + name.lstrip("/")
     if name.startswith("~"):
@@ -24,11 +24,11 @@ def absolute(written: str, node: Node) -> str:
     return f"{namespace.rstrip('/')}/{name}"
 
 
-def of_port(port: str) -> str:
+def default_port_name(port_id: str) -> str:
     """Return the name of a port for which no topic is written: `/group/component/port`."""
-    return "/" + port.replace(".", "/")
+    return "/" + port_id.replace(".", "/")
 
 
-def shared_names(extra: tuple[str, ...]) -> frozenset[str]:
+def shared_topic_names(project_topics: tuple[str, ...]) -> frozenset[str]:
     """Return the topics that all nodes share: ROS's own, and those of `ros.shared_topics`."""
-    return SHARED_TOPICS | {"/" + name.lstrip("/") for name in extra}
+    return SHARED_TOPICS | {"/" + name.lstrip("/") for name in project_topics}

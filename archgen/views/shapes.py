@@ -38,7 +38,7 @@ class Text:
 
 
 Inlines = tuple[Text, ...]
-Changed = Literal["added", "removed", "changed", "renamed"]
+ElementChange = Literal["added", "removed", "changed", "renamed"]
 """What happened to an element of a picture that shows two versions; its text and its line style show it."""
 
 
@@ -69,17 +69,17 @@ class Table:
     """The caption has a number, and the table is in the list of tables."""
 
 
-def without_empty_columns(table: Table) -> Table:
+def drop_empty_columns(table: Table) -> Table:
     """Drop the columns that are empty in every row; the first column always stays."""
-    kept = [place for place in range(len(table.columns)) if place == 0 or any(row[place] for row in table.rows)]
+    kept_columns = [index for index in range(len(table.columns)) if index == 0 or any(row[index] for row in table.rows)]
     return dataclasses.replace(
         table,
-        columns=tuple(table.columns[place] for place in kept),
-        rows=tuple(tuple(row[place] for place in kept) for row in table.rows),
+        columns=tuple(table.columns[index] for index in kept_columns),
+        rows=tuple(tuple(row[index] for index in kept_columns) for row in table.rows),
     )
 
 
-Pace = Literal[
+PeriodStep = Literal[
     "to_10_ms", "to_30_ms", "to_100_ms", "to_300_ms", "to_1_s", "slower", "unknown", "event", "on_demand", "once"
 ]
 """Steps of the period scale, or why something has no period."""
@@ -125,9 +125,9 @@ class Box:
     ref: str | None = None
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None
-    fill: Pace | None = None
+    fill: PeriodStep | None = None
     """Fills the box by the period scale; frame and text distinguish what has no period."""
-    change: Changed | None = None
+    change: ElementChange | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class Arrow:
     faded: bool = False
     flows: tuple[str, ...] = ()
     ref: str | None = None
-    change: Changed | None = None
+    change: ElementChange | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,14 +296,14 @@ class Page:
     """One line below the title: what kind of thing this is, its status, its owner."""
 
 
-def plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type
+def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type
     """Turn a shape into dicts, lists and scalars, for templates and JSON; dataclasses add their name as `shape`."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        fields = {f.name: shape_to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
         # Templates branch on this tag (`block.shape`), so renaming a shape class breaks users' backends.
         return {"shape": type(value).__name__.lower(), **fields}
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): shape_to_plain(item) for key, item in value.items()}
     if isinstance(value, (tuple, list)):
-        return [plain(item) for item in value]
+        return [shape_to_plain(item) for item in value]
     return value

@@ -24,13 +24,13 @@ from typing import Any
 
 import pytest
 
-from archgen.diagnostic import Diagnostic
-from archgen.model.architecture import Architecture, Chain, Edge, Partner, ProjectInfo, Requirement, Waypoint
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture, Chain, Partner, PortEdge, ProjectInfo, Requirement, Waypoint
 from archgen.model.component import Component, Connection, Group, Input, Output, RequirementUse
-from archgen.model.mapping import Type, flow_of
+from archgen.model.declared_timing import Timing
+from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, PortUse, Topic
-from archgen.model.timing import Timing
-from archgen.source import Span
 
 Words = dict[str, str]
 
@@ -40,7 +40,7 @@ class _Sketch:
     components: dict[str, dict[str, Any]] = field(default_factory=dict)
     inputs: dict[str, tuple[Words, Span]] = field(default_factory=dict)
     outputs: dict[str, Output] = field(default_factory=dict)
-    types: dict[str, Type] = field(default_factory=dict)
+    types: dict[str, ConceptualType] = field(default_factory=dict)
     nodes: dict[str, Node] = field(default_factory=dict)
     ends: list[tuple[Endpoint, bool]] = field(default_factory=list)
     requirements: dict[str, Requirement] = field(default_factory=dict)
@@ -82,7 +82,7 @@ class _Sketch:
 
     def add_type(self, words: list[str], options: Words, at: Span) -> None:
         request, response = options.get("request"), options.get("response")
-        self.types[words[0]] = Type(words[0], words[1], request=request, response=response, at=at)
+        self.types[words[0]] = ConceptualType(words[0], words[1], request=request, response=response, at=at)
 
     def add_node(self, words: list[str], options: Words, at: Span) -> None:
         implements = tuple(filter(None, options.get("implements", "").split(",")))
@@ -207,7 +207,7 @@ class _Sketch:
             inputs=inputs,
             outputs=self.outputs,
             connections=connections,
-            edges=tuple(Edge(output, c.input, c.at) for c in connections for output in c.outputs),
+            edges=tuple(PortEdge(output, c.input, c.at) for c in connections for output in c.outputs),
             types=self.types,
             nodes=self.nodes,
             chains={
@@ -215,7 +215,7 @@ class _Sketch:
                 for name, (through, at) in self.chains.items()
             },
             endpoints=tuple(end for end, _ in self.ends),
-            suspects=frozenset(self.suspects),
+            suspected_ids=frozenset(self.suspects),
             topics={topic.name: topic for topic in self.topics()},
         )
 
@@ -244,7 +244,7 @@ def found() -> Callable[[Judge, str], list[str]]:
     def run(judge: Judge, text: str) -> list[str]:
         return [
             f"{d.span.line}: {d.message}{f' ({d.severity})' if d.severity else ''}"
-            for d in sorted(judge(_sketch(text)), key=lambda d: d.key)
+            for d in sorted(judge(_sketch(text)), key=lambda d: d.sort_key)
         ]
 
     return run

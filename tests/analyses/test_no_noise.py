@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.diagnostic import Severity
-from archgen.pipeline import check, check_text
+from archgen.diagnostics.diagnostic import Severity
+from archgen.pipeline import check_project, check_text
 
 
 def _rules(text: str) -> list[str]:
@@ -72,7 +72,9 @@ def test_a_file_that_cannot_be_read_hides_no_finding_and_makes_none(tmp_path: Pa
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     found = [
-        f"{d.span.file}:{d.span.line} {d.rule}" for d in check(tmp_path).findings if d.severity is not Severity.NOTE
+        f"{d.span.file}:{d.span.line} {d.rule}"
+        for d in check_project(tmp_path).findings
+        if d.severity is not Severity.NOTE
     ]
     assert found == ["a.yaml:2 unjustified-component", "a.yaml:2 unfed-input", "b.yaml:2 syntax-error"]
 

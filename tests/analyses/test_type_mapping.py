@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from archgen.analyses.type_mapping import RULES, unmapped_type, unused_type
-from archgen.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.component import Input, Output
-from archgen.model.interfaces import Interfaces
-from archgen.model.mapping import Type
-from archgen.source import Span
+from archgen.model.known_interfaces import Interfaces
+from archgen.model.message_types import ConceptualType
 
 
 def line(number: int, column: int = 1) -> Span:
@@ -18,19 +18,22 @@ def line(number: int, column: int = 1) -> Span:
 
 
 def architecture(
-    *types: Type, outputs: tuple[Output, ...] = (), inputs: tuple[Input, ...] = (), mapper: tuple[str, ...] = ()
+    *types: ConceptualType,
+    outputs: tuple[Output, ...] = (),
+    inputs: tuple[Input, ...] = (),
+    mapper: tuple[str, ...] = (),
 ) -> Architecture:
     return Architecture(
         ProjectInfo("demo", "Demo"),
         types={type_.name: type_ for type_ in types},
         outputs={port.id: port for port in outputs},
         inputs={port.id: port for port in inputs},
-        interfaces=Interfaces("jazzy", mapper=mapper),
+        interfaces=Interfaces("jazzy", mapper_names=mapper),
     )
 
 
-def mapped(name: str, message: str | None, number: int, **changes: str) -> Type:
-    return replace(Type(name, message, at=line(number), message_at=line(number, 20)), **changes)  # type: ignore[arg-type]
+def mapped(name: str, message: str | None, number: int, **changes: str) -> ConceptualType:
+    return replace(ConceptualType(name, message, at=line(number), message_at=line(number, 20)), **changes)  # type: ignore[arg-type]
 
 
 def output(name: str, type_: str, number: int, *, physical: bool = False) -> Output:
@@ -90,7 +93,7 @@ def test_unused_types() -> None:
         mapped("Wish", "demo_msgs/msg/Wish", 4),
         mapped("Progress", "demo_msgs/msg/Progress", 5),
         mapped("Recogised objects", "demo_msgs/msg/Objects", 6),
-        Type("Laser scan", "sensor_msgs/msg/LaserScan", origin="shipped"),
+        ConceptualType("Laser scan", "sensor_msgs/msg/LaserScan", origin="shipped"),
         outputs=(
             output("a", "Used", 11),
             output("b", "Light", 12, physical=True),
@@ -104,7 +107,7 @@ def test_unused_types() -> None:
 
 
 def test_rules_have_pages() -> None:
-    rules = [Rule.of(*rule) for rule in RULES]
+    rules = [Rule.from_function(*rule) for rule in RULES]
     assert {rule.name: rule.severity for rule in rules} == {
         "unmapped-type": Severity.WARNING,
         "unused-type": Severity.NOTE,

@@ -152,7 +152,7 @@ def test_json(run: Run, both: Path) -> None:
     write(both, ROBOT, RETYPED + accepting(f"{ENTRY}: {{reason: why not, key: qos}}"))
     status, out = diff(run, "--breaking", "--format", "json")
     data = json.loads(out)
-    schema = json.loads(resources.path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
     assert [error.message for error in jsonschema_rs.validator_for(schema).iter_errors(data)] == []
     (change,) = data["changes"]
     assert (status, change["breaks"], change["accepted"]) == (1, ["sssa"], None)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from archgen import outputs
+from archgen.products import project_outputs
 from tests.running import contents
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
     (project / "plan.png").write_bytes(_png(200))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     builds = Builds(run, project, tmp_path / "out")
-    make = outputs.make
+    make = project_outputs.make_views
 
     def counted(*asked: object) -> object:
         builds.count += 1
         return make(*asked)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(outputs, "make", counted)
+    monkeypatch.setattr(project_outputs, "make_views", counted)
     return builds
 
 
@@ -164,7 +164,7 @@ def test_what_was_warned_of_is_warned_of_again(run: Run, build: Builds, monkeypa
         msg = "no Graphviz here"
         raise graphviz.MissingGraphviz(msg)
 
-    monkeypatch.setattr(graphviz, "draw", missing)
+    monkeypatch.setattr(graphviz, "draw_pictures", missing)
     for _ in range(2):
         ran = run("build", build.project, "-o", build.target)
         assert (ran.status, ran.err) == (0, "warning: no Graphviz here\n")

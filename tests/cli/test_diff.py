@@ -142,7 +142,7 @@ def test_json_of_the_case_study(run: Run, tmp_path: Path) -> None:
 
 
 def _valid(data: object) -> None:
-    schema = json.loads(resources.path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
     jsonschema_rs.meta.validate(schema)
     assert [error.message for error in jsonschema_rs.validator_for(schema).iter_errors(data)] == []
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from archgen.emit import fresh, tree
-from archgen.pipeline import check
+from archgen.emit import file_tree, new_files
+from archgen.pipeline import check_project
 from tests.cli.conftest import Run
 from tests.running import ROOT, contents
 
@@ -28,7 +28,7 @@ FILES = [
 
 
 def findings(folder: Path) -> list[str]:
-    return [f"{d.rule} {d.span}" for d in check(folder).findings]
+    return [f"{d.rule} {d.span}" for d in check_project(folder).findings]
 
 
 def test_without_a_terminal_it_asks_nothing_and_checks_clean(run: Run, tmp_path: Path) -> None:
@@ -46,7 +46,7 @@ def test_any_name_and_title_checks_clean(name: str, title: str | None, run: Run,
     folder = tmp_path / name
     assert run("init", folder, *(("--title", title) if title else ())).status == 0
     assert findings(folder) == []
-    assert title is None or check(folder).architecture.project.title == title
+    assert title is None or check_project(folder).architecture.project.title == title
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5])
@@ -54,7 +54,7 @@ def test_groups_and_owners_of_ones_own(count: int, run: Run, tmp_path: Path) -> 
     groups = [word for n in range(count) for word in ("--group", f"Part {n}=b")]
     assert run("init", tmp_path / "r", "--partner", "a=Lab A", "--partner", "B", *groups, "--ci", "none").status == 0
     assert findings(tmp_path / "r") == []
-    found = check(tmp_path / "r").architecture
+    found = check_project(tmp_path / "r").architecture
     assert [(g.id, g.title, g.owner) for g in found.groups.values()] == [
         (f"part_{n}", f"Part {n}", "b") for n in range(count)
     ]
@@ -198,7 +198,7 @@ def test_a_failure_half_way_leaves_nothing(
 ) -> None:
     (tmp_path / "kept").mkdir()
     placed: list[Path] = []
-    place = fresh._place  # noqa: SLF001 - the failing disk stands in its place
+    place = new_files._place_file  # noqa: SLF001 - the failing disk stands in its place
 
     def failing(staged: Path, path: Path) -> None:
         if len(placed) == 2:
@@ -206,16 +206,16 @@ def test_a_failure_half_way_leaves_nothing(
         placed.append(path)
         place(staged, path)
 
-    monkeypatch.setattr(fresh, "_place", failing)
+    monkeypatch.setattr(new_files, "_place_file", failing)
     files = {tmp_path / "r" / name: b"x" for name in ("a", "b/c", "d/e")}
-    with pytest.raises(tree.OutputError if isinstance(error, OSError) else KeyboardInterrupt):
-        fresh.write_new(files, tmp_path / "r")
+    with pytest.raises(file_tree.OutputError if isinstance(error, OSError) else KeyboardInterrupt):
+        new_files.write_new_files(files, tmp_path / "r")
     assert len(placed) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
 
 
 def test_what_appears_meanwhile_is_not_replaced(tmp_path: Path) -> None:
     (tmp_path / "b").write_text("mine", encoding="utf-8")
-    with pytest.raises(tree.OutputError, match="File exists"):
-        fresh.write_new({tmp_path / "a": b"1", tmp_path / "b": b"2"}, tmp_path)
+    with pytest.raises(file_tree.OutputError, match="File exists"):
+        new_files.write_new_files({tmp_path / "a": b"1", tmp_path / "b": b"2"}, tmp_path)
     assert contents(tmp_path) == {"b": b"mine"}

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from archgen.pipeline import check
+from archgen.pipeline import check_project
 from tests.running import ROOT
 
 
 def findings(folder: Path) -> list[str]:
-    return [f"{d.rule} {d.span}" for d in check(folder).findings]
+    return [f"{d.rule} {d.span}" for d in check_project(folder).findings]
 
 
 class Terminal:
@@ -102,7 +102,7 @@ def test_on_a_terminal_it_asks(terminal: Start, tmp_path: Path) -> None:
     asked.answer("[github]:", "none")
     assert asked.end() == 0
     assert "two partners have the id 'certh'" in asked.said
-    found = check(tmp_path / "robot")
+    found = check_project(tmp_path / "robot")
     assert findings(tmp_path / "robot") == []
     assert (found.architecture.project.title, found.architecture.distro) == ("Kitchen helper", "humble")
     assert [(g.title, g.owner) for g in found.architecture.groups.values()] == [

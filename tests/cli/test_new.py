@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.pipeline import check
+from archgen.pipeline import check_project
 from tests.cli.conftest import Run
 from tests.running import RAMCIP, contents
 
@@ -47,7 +47,7 @@ def test_a_component_goes_where_its_group_is_told(run: Run, ramcip: Path) -> Non
     )
     line = (ramcip / "groups/human_state.yaml").read_text(encoding="utf-8").splitlines().index("      gaze:") + 1
     assert f"human_state.yaml (`human_state.gaze` at line {line})" in ran.out
-    assert check(ramcip).architecture.components["human_state.gaze"].owner == "tum"
+    assert check_project(ramcip).architecture.components["human_state.gaze"].owner == "tum"
 
 
 def test_a_group_gets_a_file_beside_the_others(run: Run, ramcip: Path) -> None:
@@ -58,7 +58,7 @@ def test_a_group_gets_a_file_beside_the_others(run: Run, ramcip: Path) -> None:
         "    description:  # what the group is for\n    components:  # `archgen new component` adds one"
     }
     assert run("new", "component", "gate", "--group", "garden", "-C", ramcip).status == 0
-    assert [d.rule for d in check(ramcip).findings if d.severity == "error"] == []
+    assert [d.rule for d in check_project(ramcip).findings if d.severity == "error"] == []
 
 
 def test_a_node_goes_to_those_of_its_component(run: Run, ramcip: Path) -> None:
@@ -74,9 +74,9 @@ def test_a_project_in_one_file_stays_one(run: Run, first: Path) -> None:
     for words in (("group", "arm"), ("component", "arm.hand"), ("node", "hand_driver", "--implements", "hand")):
         assert run("new", *words, "-C", first).status == 0
     assert list(contents(first)) == ["archgen.yaml"]
-    found = check(first)
+    found = check_project(first)
     assert found.architecture.nodes["hand_driver"].implements == ("arm.hand",)
-    assert not found.broken
+    assert not found.has_errors
 
 
 def test_where_nodes_stand_beside_their_groups_a_new_one_does(run: Run, tmp_path: Path) -> None:

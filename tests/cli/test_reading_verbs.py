@@ -47,7 +47,7 @@ def test_strict_counts_warnings(run: Run, first: Path) -> None:
 def test_json_follows_its_schema(run: Run, broken: Path) -> None:
     ran = run("check", "--format", "json", broken)
     data = json.loads(ran.out)
-    schema = json.loads(resources.path("schemas", "diagnostics.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "diagnostics.schema.json").read_text(encoding="utf-8"))
     assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
     assert data["summary"]["error"] == 1
     (error,) = (d for d in data["diagnostics"] if d["severity"] == "error")

@@ -51,7 +51,7 @@ def project(tmp_path: Path) -> Path:
 def _json(run: Run, *words: object) -> Any:  # noqa: ANN401 - plain data
     ran = run("timing", "--format", "json", *words)
     data = json.loads(ran.out)
-    schema = json.loads(resources.path("schemas", "timing.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "timing.schema.json").read_text(encoding="utf-8"))
     assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
     return data
 

@@ -25,7 +25,7 @@ def test_pack(run: Run, first: Path, tmp_path: Path) -> None:
 def test_pack_resolved(run: Run, first: Path) -> None:
     assert run("pack", "--resolved", first).status == 0
     data = yaml.safe_load((first / "archgen-out" / "resolved.yaml").read_text(encoding="utf-8"))
-    schema = json.loads(resources.path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
     assert list(jsonschema_rs.Draft202012Validator(schema).iter_errors(data)) == []
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare import Change, Comparison, compare
-from archgen.sides import version
+from archgen.compare import Change, Comparison, compare_versions
+from archgen.products.compared_versions import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
 Told = Callable[[str, str], list[str]]
@@ -25,8 +25,8 @@ def compared(tmp_path: Path) -> Compared:
             folder = tmp_path / name
             folder.mkdir(exist_ok=True)
             (folder / "robot.yaml").write_text(text, encoding="utf-8")
-            sides.append(version(pipeline.check(folder / "robot.yaml")))
-        return compare(*sides)
+            sides.append(make_comparison_input(pipeline.check_project(folder / "robot.yaml")))
+        return compare_versions(*sides)
 
     return run
 
@@ -42,5 +42,5 @@ def told(compared: Compared) -> Told:
 
 
 def _lines(change: Change, indent: str) -> list[str]:
-    line = f"{indent}{change.kind} {change.sort} {change.element}: {change.text}"
+    line = f"{indent}{change.kind} {change.element_kind} {change.element_id}: {change.text}"
     return [line, *(below for part in change.parts for below in _lines(part, f"{indent}  "))]

@@ -187,14 +187,14 @@ def test_a_change_tells_all_and_nothing_else(compared: Compared, case: Case) -> 
         after = after.replace(old, new, 1)
     found = compared(ROBOT, after)
     assert sorted(change.text for change in found.changes) == sorted(case.told)
-    assert found.owners == case.owners
+    assert found.concerned_owners == case.owners
 
 
 def test_a_mended_file_brings_no_new_warnings(compared: Compared) -> None:
     broken = ROBOT.replace("      gripper: {functionality", "      gripper: [functionality")
     mended = ROBOT.replace("implements: camera, host: front", "implements: camera, host: nowhere")
-    assert {each.rule for each in compared(broken, mended).new} == {"unknown-reference"}
-    assert compared(broken, ROBOT).new == ()
+    assert {each.rule for each in compared(broken, mended).new_findings} == {"unknown-reference"}
+    assert compared(broken, ROBOT).new_findings == ()
 
 
 def test_the_way_of_one_chain_does_not_break_another(compared: Compared) -> None:
@@ -202,5 +202,5 @@ def test_the_way_of_one_chain_does_not_break_another(compared: Compared) -> None
     after = two.replace("[camera, detector], deadline: 2 s", "[detector], deadline: 2 s").replace(
         "  net:\n    implements: detector", "  net:\n    implements: [detector, weather]"
     )
-    way = next(change for change in compared(two, after).changes if change.sort == "chain")
-    assert not any("`pick`" in each.why for each in way.breaks)
+    way = next(change for change in compared(two, after).changes if change.element_kind == "chain")
+    assert not any("`pick`" in each.reason for each in way.breaks)

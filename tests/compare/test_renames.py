@@ -28,7 +28,7 @@ views: {v: {show: "camera+ thinking.detector"}}
 
 
 def summary(compared: Compared, before: str, after: str) -> list[tuple[str, str, str, str | None]]:
-    return [(c.kind, c.sort, c.element, c.was) for c in compared(before, after).changes]
+    return [(c.kind, c.element_kind, c.element_id, c.old_id) for c in compared(before, after).changes]
 
 
 RENAMES: tuple[tuple[dict[str, str], tuple[str, str], str, str], ...] = (
@@ -70,7 +70,7 @@ def test_a_move_to_another_group(compared: Compared) -> None:
     lidar = "      lidar: {title: Lidar, functionality: Measures distances all around., outputs: {scan: Laser scan}}\n"
     after = ROBOT.replace(lidar, "").replace("types:", f"{lidar}types:")
     (change,) = compared(ROBOT, after).changes
-    assert (change.kind, change.element, change.was) == ("moved", "thinking.lidar", "sensing.lidar")
+    assert (change.kind, change.element_id, change.old_id) == ("moved", "thinking.lidar", "sensing.lidar")
     assert change.text.startswith("component `sensing.lidar` moved to the group `thinking`")
 
 
@@ -114,5 +114,7 @@ def test_many_renames_at_once_are_told_apart(compared: Compared) -> None:
         return "groups:\n  g:\n    components:\n" + "\n".join(lines) + "\n"
 
     found = compared(robot("part"), robot("piece")).changes
-    assert {(change.was, change.element) for change in found} == {(f"g.part{n}", f"g.piece{n}") for n in range(60)}
+    assert {(change.old_id, change.element_id) for change in found} == {
+        (f"g.part{n}", f"g.piece{n}") for n in range(60)
+    }
     assert {change.kind for change in found} == {"renamed"}

@@ -12,45 +12,47 @@ import pytest
 import yaml
 
 from archgen import pipeline
-from archgen.compare import Change, Comparison, Version, compare
-from archgen.emit import yaml as writer
-from archgen.sides import version
+from archgen.compare import ArchitectureVersion, Change, Comparison, compare_versions
+from archgen.products.compared_versions import make_comparison_input
+from archgen.syntax import yaml_writer as writer
 from tests.running import RAMCIP
 
 
-def read(path: Path) -> Version:
-    return version(pipeline.check(path))
+def read(path: Path) -> ArchitectureVersion:
+    return make_comparison_input(pipeline.check_project(path))
 
 
 @pytest.fixture(scope="module")
-def ramcip() -> Version:
+def ramcip() -> ArchitectureVersion:
     return read(RAMCIP)
 
 
 @pytest.fixture(scope="module")
 def packed() -> dict[str, object]:
-    data: dict[str, object] = pipeline.check(RAMCIP).packed().data
+    data: dict[str, object] = pipeline.check_project(RAMCIP).pack_project().data
     return data
 
 
-def assert_same(one: Version, other: Version) -> None:
-    for found in (compare(one, other), compare(other, one)):
+def assert_same(one: ArchitectureVersion, other: ArchitectureVersion) -> None:
+    for found in (compare_versions(one, other), compare_versions(other, one)):
         assert [change.text for change in found.changes] == []
-        assert [f"{d.rule} {d.message}" for d in (*found.new, *found.cured)] == []
-        assert found.empty
-        assert (found.owners, found.chains) == ((), ())
+        assert [f"{d.rule} {d.message}" for d in (*found.new_findings, *found.cured_findings)] == []
+        assert found.is_empty
+        assert (found.concerned_owners, found.chains) == ((), ())
 
 
-def test_a_version_is_itself(ramcip: Version) -> None:
+def test_a_version_is_itself(ramcip: ArchitectureVersion) -> None:
     assert_same(ramcip, ramcip)
 
 
-def test_the_packed_project_is_the_same(ramcip: Version, packed: dict[str, object], tmp_path: Path) -> None:
-    (tmp_path / "packed.yaml").write_text(writer.write(packed), encoding="utf-8")
+def test_the_packed_project_is_the_same(ramcip: ArchitectureVersion, packed: dict[str, object], tmp_path: Path) -> None:
+    (tmp_path / "packed.yaml").write_text(writer.write_yaml(packed), encoding="utf-8")
     assert_same(ramcip, read(tmp_path / "packed.yaml"))
 
 
-def test_order_and_indentation_are_no_change(packed: dict[str, object], ramcip: Version, tmp_path: Path) -> None:
+def test_order_and_indentation_are_no_change(
+    packed: dict[str, object], ramcip: ArchitectureVersion, tmp_path: Path
+) -> None:
     shuffled = _shuffled(packed, random.Random(7))  # noqa: S311 - any order
     text = yaml.safe_dump(shuffled, sort_keys=False, indent=5, width=60, allow_unicode=True)
     (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
@@ -77,22 +79,24 @@ def _shuffled(value: object, chance: random.Random) -> object:
     return value
 
 
-def test_moving_elements_between_files_is_no_change(packed: dict[str, object], ramcip: Version, tmp_path: Path) -> None:
+def test_moving_elements_between_files_is_no_change(
+    packed: dict[str, object], ramcip: ArchitectureVersion, tmp_path: Path
+) -> None:
     """Each section, and of the groups each component, in a file of its own."""
     groups = packed["groups"]
     assert isinstance(groups, dict)
     rest = {key: value for key, value in packed.items() if key != "groups"}
-    (tmp_path / "archgen.yaml").write_text(writer.write(rest), encoding="utf-8")
+    (tmp_path / "archgen.yaml").write_text(writer.write_yaml(rest), encoding="utf-8")
     for group, below in groups.items():
         for name, component in below["components"].items():
             piece = {"groups": {group: {"components": {name: component}}}}
-            (tmp_path / f"{group}-{name}.yaml").write_text(writer.write(piece), encoding="utf-8")
+            (tmp_path / f"{group}-{name}.yaml").write_text(writer.write_yaml(piece), encoding="utf-8")
         own = {"groups": {group: {key: value for key, value in below.items() if key != "components"}}}
-        (tmp_path / f"{group}.yaml").write_text(writer.write(own), encoding="utf-8")
+        (tmp_path / f"{group}.yaml").write_text(writer.write_yaml(own), encoding="utf-8")
     assert_same(ramcip, read(tmp_path))
 
 
-def test_comments_and_line_ends_are_no_change(ramcip: Version, tmp_path: Path) -> None:
+def test_comments_and_line_ends_are_no_change(ramcip: ArchitectureVersion, tmp_path: Path) -> None:
     target = tmp_path / "robot"
     shutil.copytree(RAMCIP, target, ignore=shutil.ignore_patterns("archgen-out"))
     for file in (*target.rglob("*.yaml"), *target.rglob("*.md"), *target.rglob("*.msg")):
@@ -173,7 +177,7 @@ EDITS: tuple[Edit, ...] = (
 
 
 @pytest.mark.parametrize("number", range(len(EDITS) + 2))
-def test_the_way_back_is_the_mirror_image(number: int, ramcip: Version, tmp_path: Path) -> None:
+def test_the_way_back_is_the_mirror_image(number: int, ramcip: ArchitectureVersion, tmp_path: Path) -> None:
     """Each edit alone, and some of them together."""
     chosen = EDITS[number : number + 1] or random.Random(number).sample(EDITS, 4)  # noqa: S311 - any four
     target = tmp_path / "robot"
@@ -184,10 +188,14 @@ def test_the_way_back_is_the_mirror_image(number: int, ramcip: Version, tmp_path
             text = edit(text)
         file.write_text(text, encoding="utf-8")
     other = read(target)
-    there, back = compare(ramcip, other), compare(other, ramcip)
+    there, back = compare_versions(ramcip, other), compare_versions(other, ramcip)
     assert there.changes
     assert _facts(there) == {_turned(fact) for fact in _facts(back)}
-    assert (there.new, there.cured, there.owners) == (back.cured, back.new, back.owners)
+    assert (there.new_findings, there.cured_findings, there.concerned_owners) == (
+        back.cured_findings,
+        back.new_findings,
+        back.concerned_owners,
+    )
     assert {(c.before, c.after) for c in there.chains} == {(c.after, c.before) for c in back.chains}
     assert_once(there)
 
@@ -199,11 +207,11 @@ def _facts(found: Comparison) -> set[Fact]:
     """Give what was told, with the names before and after, in no order; keys by the element's name before."""
     facts = set[Fact]()
     for change in _all(found.changes):
-        if change.kind in {"renamed", "moved", "added", "removed"} and change.sort != "connection":
-            was = change.was if change.kind in {"renamed", "moved"} else None
-            facts.add((change.kind, change.sort, change.element, was, "", "", change.confidence))
-        elif change.sort not in {"connection", "port"} and change.key != "qos":
-            facts.add((change.kind, change.sort, "", change.key, str(change.before), str(change.after), 1.0))
+        if change.kind in {"renamed", "moved", "added", "removed"} and change.element_kind != "connection":
+            was = change.old_id if change.kind in {"renamed", "moved"} else None
+            facts.add((change.kind, change.element_kind, change.element_id, was, "", "", change.confidence))
+        elif change.element_kind not in {"connection", "port"} and change.key != "qos":
+            facts.add((change.kind, change.element_kind, "", change.key, str(change.before), str(change.after), 1.0))
     return facts
 
 
@@ -221,10 +229,12 @@ def _all(changes: tuple[Change, ...]) -> list[Change]:
 
 def assert_once(found: Comparison) -> None:
     """Nothing is both renamed and removed or added, and nothing is told twice."""
-    listed = [(c.kind, c.sort, c.element, c.key) for c in _all(found.changes)]
+    listed = [(c.kind, c.element_kind, c.element_id, c.key) for c in _all(found.changes)]
     assert len(listed) == len(set(listed))
-    renamed = {(c.sort, name) for c in _all(found.changes) if c.was for name in (c.element, c.was)}
+    renamed = {(c.element_kind, name) for c in _all(found.changes) if c.old_id for name in (c.element_id, c.old_id)}
     whole = {
-        (c.sort, c.element) for c in _all(found.changes) if c.kind in {"added", "removed"} and c.sort != "connection"
+        (c.element_kind, c.element_id)
+        for c in _all(found.changes)
+        if c.kind in {"added", "removed"} and c.element_kind != "connection"
     }
     assert renamed.isdisjoint(whole)

@@ -10,10 +10,10 @@ import pytest
 
 from archgen import pipeline
 from archgen.model.architecture import Architecture
-from archgen.timing import sizes
-from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains import chains
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
+from archgen.timing.system import message_sizes
 
 FOLDER = Path(__file__).parents[2] / "examples" / "reference_system"
 READERS = {
@@ -45,16 +45,16 @@ READERS = {
 
 
 @pytest.fixture(scope="module")
-def checked() -> pipeline.Checked:
-    return pipeline.check(FOLDER)
+def checked() -> pipeline.CheckedProject:
+    return pipeline.check_project(FOLDER)
 
 
 @pytest.fixture(scope="module")
-def architecture(checked: pipeline.Checked) -> Architecture:
+def architecture(checked: pipeline.CheckedProject) -> Architecture:
     return checked.architecture
 
 
-def test_it_checks_clean(checked: pipeline.Checked) -> None:
+def test_it_checks_clean(checked: pipeline.CheckedProject) -> None:
     assert [f"{f.rule} {f.span}" for f in checked.findings] == []
 
 
@@ -83,13 +83,16 @@ def test_queues_hold_one_sample_but_for_the_ends(architecture: Architecture) -> 
 
 
 def test_the_message_has_4096_bytes_and_4_in_front(architecture: Architecture) -> None:
-    assert sizes.size("reference_interfaces/msg/Message4kb", architecture.interfaces).bytes == 4096 + 4
-    assert sizes.of(architecture)("reference_interfaces/msg/Message4kb", "Sample") == 4096
+    assert (
+        message_sizes.compute_message_size("reference_interfaces/msg/Message4kb", architecture.interfaces).bytes
+        == 4096 + 4
+    )
+    assert message_sizes.make_byte_query(architecture)("reference_interfaces/msg/Message4kb", "Sample") == 4096
 
 
 @pytest.fixture(scope="module")
 def analysis(architecture: Architecture) -> Analysis:
-    return analyse(architecture)
+    return analyse_architecture(architecture)
 
 
 def test_rates(analysis: Analysis) -> None:
@@ -136,7 +139,7 @@ def test_processor_cores_in_use(analysis: Analysis) -> None:
 @pytest.mark.parametrize("name", ["hot_path_front", "hot_path_rear"])
 def test_the_hot_path(architecture: Architecture, analysis: Analysis, name: str) -> None:
     ms = Fraction(10**6)
-    found = chains(analysis, architecture)[name]
+    found = bound_all_chains(analysis, architecture)[name]
     assert (found.best.value, found.bound.value) == (50 * ms, 250 * ms)
     assert found.bound.complete
     assert [(term.sampling.value, term.response.value) for term in found.terms] == [

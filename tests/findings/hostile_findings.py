@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.diagnostic import Diagnostic, Label, Severity
-from archgen.source import NOWHERE, Span
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from tests.hostile import TEXTS
 
 HOSTILE = TEXTS | {
@@ -22,10 +22,10 @@ HOSTILE = TEXTS | {
 def hostile_findings(text: str) -> list[Diagnostic]:
     """Put a text wherever a finding has one: message, help, element, labels, file names."""
     at, there = Span("archgen.yaml", 1, 2, 1, 3), Span(text[:200], 2, 1, 4, 1)
-    labels = (Label(at, text), Label(there, text), Label(NOWHERE, text))
+    labels = (Label(at, text), Label(there, text), Label(NO_SPAN, text))
     findings = (
         Diagnostic("unread-output", text, at, Severity.ERROR, labels, text, text),
         Diagnostic("unread-output", text, there, Severity.WARNING, labels, text, None),
-        Diagnostic("unfed-input", text, NOWHERE, Severity.NOTE, (), None, text),
+        Diagnostic("unfed-input", text, NO_SPAN, Severity.NOTE, (), None, text),
     )
     return [*findings, *findings]

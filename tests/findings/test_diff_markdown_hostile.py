@@ -9,16 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from archgen.compare import Change, Comparison
-from archgen.compare.change import Break
-from archgen.diagnostic import Diagnostic, Severity
-from archgen.emit.text.inert import plain
-from archgen.findings import diff_markdown
-from archgen.findings.comment import MOST
-from archgen.findings.diff_markdown import Names
-from archgen.source import Span
+from archgen.compare.comparison import PartnerBreak
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.emit.markdown import comparison_markdown
+from archgen.emit.markdown.comparison_markdown import SideNames
+from archgen.emit.markdown.inert_text import escape_inert
+from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from tests.emit.markdown.test_comparison_markdown import ROBOT, comparison
 from tests.findings.hostile_findings import HOSTILE
 from tests.findings.rendered import CALLS, inner, shape, tokens, words
-from tests.findings.test_diff_markdown import ROBOT, comparison
 
 MARKS = "@#!$%~&^*_`<>[]()|\\\"':;/.-+={}\n\t \u200b\u202e\x00a1fW"
 PIECES = [
@@ -83,9 +83,9 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
 def comment(found: Comparison, text: str) -> str:
     """Write a comment with one text wherever it can hold one."""
     said = f"{text} `{text}` {text}"
-    breaks = (Break("p", said),)
+    breaks = (PartnerBreak("p", said),)
     changes = (
-        Change("changed", "component", "sensing.camera", key="x", breaks=breaks, accepted=said, text=said),
+        Change("changed", "component", "sensing.camera", key="x", breaks=breaks, acceptance_reason=said, text=said),
         Change("added", "component", "display.finder", text=said),
         Change("changed", "view", "v", key="title", text=said),
     )
@@ -96,13 +96,15 @@ def comment(found: Comparison, text: str) -> str:
     here = replace(
         here,
         changes=changes,
-        new=(finding, note),
-        cured=(finding,),
-        silenced=(finding,),
+        new_findings=(finding, note),
+        cured_findings=(finding,),
+        silenced_findings=(finding,),
         chains=chains,
-        owners=(text, "q"),
+        concerned_owners=(text, "q"),
     )
-    return diff_markdown.render(here, Names(text, text, text), ((finding,), (finding, finding)))
+    return comparison_markdown.write_comparison_markdown(
+        here, SideNames(text, text, text), ((finding,), (finding, finding))
+    )
 
 
 def _titled(found: Comparison, text: str) -> Comparison:
@@ -123,7 +125,7 @@ def check(found: Comparison, text: str) -> None:
     assert {token.type for token in inner(parsed)} <= LINES
     assert {token.content for token in inner(parsed) if token.type == "html_inline"} <= {"<sub>", "</sub>"}
     assert not CALLS.search(words(parsed)), CALLS.search(words(parsed))
-    assert len(made) <= MOST
+    assert len(made) <= MAX_COMMENT_SIZE
 
 
 @given(TEXTS)
@@ -154,7 +156,7 @@ def test_each_trick(sound: Comparison, text: str) -> None:
     ],
 )
 def test_plain_text_reads_as_it_was_and_calls_nobody(text: str, kept: str) -> None:
-    (inline,) = [token for token in tokens(plain(text)) if token.type == "inline"]
+    (inline,) = [token for token in tokens(escape_inert(text)) if token.type == "inline"]
     assert "".join(token.content for token in inline.children or ()) == kept
     assert {token.type for token in inline.children or ()} == {"text"}
 

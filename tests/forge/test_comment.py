@@ -15,8 +15,8 @@ import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
-from archgen.forge import ForgeError, comment
-from archgen.forge.http import Api
+from archgen.forge import ForgeError, post_comment
+from archgen.forge.forge_api import ForgeApi
 
 
 @dataclass
@@ -103,9 +103,9 @@ def gitlab(forge: Forge) -> dict[str, str]:
 
 def test_a_comment_of_github_is_made_once_and_then_kept_current(forge: Forge, tmp_path: Path) -> None:
     job = github(forge, tmp_path)
-    assert comment("first", "diff", job) == "created"
-    assert comment("second\n\n", "diff", job) == "updated"
-    assert comment("second", "diff", job) == "unchanged"
+    assert post_comment("first", "diff", job) == "created"
+    assert post_comment("second\n\n", "diff", job) == "updated"
+    assert post_comment("second", "diff", job) == "unchanged"
     assert [one["body"] for one in forge.comments] == ["<!-- archgen: diff -->\nsecond\n"]
     assert ("POST", "/repos/robots/rover/issues/7/comments") in forge.asked
     assert ("PATCH", "/repos/robots/rover/issues/comments/1") in forge.asked
@@ -115,24 +115,24 @@ def test_a_comment_of_github_is_made_once_and_then_kept_current(forge: Forge, tm
 def test_a_note_of_gitlab_is_made_once_and_then_kept_current(forge: Forge) -> None:
     forge.user = {"id": 5}
     job = gitlab(forge)
-    assert comment("first", "diff", job) == "created"
-    assert comment("second", "diff", job) == "updated"
+    assert post_comment("first", "diff", job) == "created"
+    assert post_comment("second", "diff", job) == "updated"
     assert [one["body"] for one in forge.comments] == ["<!-- archgen: diff -->\nsecond\n"]
     assert ("PUT", "/projects/12/merge_requests/3/notes/1") in forge.asked
 
 
 def test_two_keys_are_two_comments(forge: Forge, tmp_path: Path) -> None:
     job = github(forge, tmp_path)
-    comment("arm", "robots/arm", job)
-    comment("leg", "robots/leg", job)
-    assert comment("leg now", "robots/leg", job) == "updated"
+    post_comment("arm", "robots/arm", job)
+    post_comment("leg", "robots/leg", job)
+    assert post_comment("leg now", "robots/leg", job) == "updated"
     assert [one["body"].split("\n")[1] for one in forge.comments] == ["arm", "leg now"]
 
 
 def test_a_copied_mark_in_a_strangers_comment_is_left_alone(forge: Forge, tmp_path: Path) -> None:
     strange = "<!-- archgen: diff -->\nmine"
     forge.comments.append({"id": 1, "user": {"login": "mallory"}, "body": strange})
-    assert comment("text", "diff", github(forge, tmp_path)) == "created"
+    assert post_comment("text", "diff", github(forge, tmp_path)) == "created"
     assert forge.comments[0]["body"] == strange
 
 
@@ -141,7 +141,7 @@ def test_ours_is_found_on_a_later_page_also_with_windows_line_ends(forge: Forge,
     forge.user = ours
     forge.comments = [{"id": number, "user": None, "body": "hello"} for number in range(250)]
     forge.comments.append({"id": 999, "user": ours, "body": "<!-- archgen: diff -->\r\ntext\r\n"})
-    assert comment("text", "diff", github(forge, tmp_path)) == "unchanged"
+    assert post_comment("text", "diff", github(forge, tmp_path)) == "unchanged"
 
 
 @pytest.mark.parametrize(
@@ -157,34 +157,34 @@ def test_ours_is_found_on_a_later_page_also_with_windows_line_ends(forge: Forge,
 )
 def test_a_job_that_cannot_comment_says_why(forge: Forge, tmp_path: Path, change: dict[str, str], said: str) -> None:
     with pytest.raises(ForgeError, match=said):
-        comment("text", "diff", github(forge, tmp_path) | change)
+        post_comment("text", "diff", github(forge, tmp_path) | change)
     assert not forge.comments
 
 
 def test_a_push_has_no_pull_request(forge: Forge, tmp_path: Path) -> None:
     with pytest.raises(ForgeError, match="no pull request"):
-        comment("text", "diff", github(forge, tmp_path, {"ref": "refs/heads/main"}))
+        post_comment("text", "diff", github(forge, tmp_path, {"ref": "refs/heads/main"}))
 
 
 @pytest.mark.parametrize("change", [{"ARCHGEN_TOKEN": ""}, {"CI_MERGE_REQUEST_IID": ""}, {"CI_PROJECT_ID": "../1"}])
 def test_a_gitlab_job_that_cannot_comment_says_why(forge: Forge, change: dict[str, str]) -> None:
     with pytest.raises(ForgeError, match=r"ARCHGEN_TOKEN is not set|no merge request"):
-        comment("text", "diff", gitlab(forge) | change)
+        post_comment("text", "diff", gitlab(forge) | change)
     assert not forge.asked
 
 
 def test_too_long_a_text_and_a_key_that_would_break_out_of_the_mark_are_refused(forge: Forge, tmp_path: Path) -> None:
     job = github(forge, tmp_path)
     with pytest.raises(ForgeError, match="the text has 65,561 characters, a comment takes 65,536"):
-        comment("x" * 65_537, "diff", job)
+        post_comment("x" * 65_537, "diff", job)
     with pytest.raises(ForgeError, match="the key"):
-        comment("text", "a --> b", job)
+        post_comment("text", "a --> b", job)
 
 
 def test_a_token_is_not_carried_to_another_address(forge: Forge) -> None:
     forge.refuse = 302
     with pytest.raises(ForgeError, match="302"):
-        Api(forge.url, {}).ask("POST", "/x", {})
+        ForgeApi(forge.url, {}).send_request("POST", "/x", {})
 
 
 def test_where_a_fork_may_not_comment_the_text_goes_to_the_summary(forge: Forge, tmp_path: Path) -> None:

@@ -9,11 +9,11 @@ import jsonschema_rs
 import pytest
 
 from archgen import git, pipeline
-from archgen.findings import history_text
-from archgen.history import history, workers
-from archgen.history.commits import commits
-from archgen.pipeline import Checked
-from archgen.project import Loaded, tracked
+from archgen.emit.terminal import history_text
+from archgen.history import count_history, workers
+from archgen.history.project_commits import list_commits
+from archgen.pipeline import CheckedProject
+from archgen.project import LoadedProject, find_tracked_project
 from tests import repositories
 from tests.running import ROOT, archgen
 
@@ -53,9 +53,11 @@ def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_point_for_each_commit_that_changed_the_project(robot: Path) -> None:
-    found = history(robot)
+    found = count_history(robot)
     assert [point.day for point in found.points] == ["2026-01-05", "2026-02-03", "2026-03-01"]
-    assert [(p.groups, p.nodes, p.connections, p.whole.components, p.whole.mapped) for p in found.points] == [
+    assert [
+        (p.groups, p.nodes, p.connections, p.project_row.components, p.project_row.mapped) for p in found.points
+    ] == [
         (1, 0, 0, 1, 0),
         (2, 2, 1, 2, 2),
         (2, 2, 1, 2, 2),
@@ -64,7 +66,7 @@ def test_a_point_for_each_commit_that_changed_the_project(robot: Path) -> None:
 
 
 def test_findings_count_for_the_whole_the_group_and_the_partner(robot: Path) -> None:
-    rows = {(row.scope, row.id): row.findings.warning for row in history(robot).points[0].rows}
+    rows = {(row.scope, row.id): row.findings.warning for row in count_history(robot).points[0].rows}
     said = json.loads(archgen("check", "--format", "json", cwd=robot).stdout)["summary"]
     assert rows["project", "archgen" if ("project", "archgen") in rows else "robot"] > said["warning"]
     assert rows["group", "sensing"] == rows["partner", "p"] > 0
@@ -72,18 +74,18 @@ def test_findings_count_for_the_whole_the_group_and_the_partner(robot: Path) -> 
 
 
 def test_months_are_their_last_commits(robot: Path) -> None:
-    assert [point.day for point in history(robot, "month").points] == ["2026-01-05", "2026-02-03", "2026-03-01"]
+    assert [point.day for point in count_history(robot, "month").points] == ["2026-01-05", "2026-02-03", "2026-03-01"]
 
 
 def test_what_is_kept_is_taken_and_what_is_broken_is_counted_again(
     robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cache = tmp_path / "cache"
-    first = history(robot, cache=cache)
+    first = count_history(robot, cache=cache)
     (file,) = cache.iterdir()
     with monkeypatch.context() as patched:
-        patched.setattr(workers, "count", lambda *_: pytest.fail("nothing is left to count"))
-        assert history(robot, cache=cache) == first
+        patched.setattr(workers, "count_commits", lambda *_: pytest.fail("nothing is left to count"))
+        assert count_history(robot, cache=cache) == first
     for wrong in (
         b"",
         b"{",
@@ -92,47 +94,47 @@ def test_what_is_kept_is_taken_and_what_is_broken_is_counted_again(
         json.dumps({key: {} for key in json.loads(file.read_bytes())}).encode(),
     ):
         file.write_bytes(wrong)
-        assert history(robot, cache=cache) == first
+        assert count_history(robot, cache=cache) == first
 
 
 def test_several_processes_count_what_one_counts(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    line = commits(tracked(robot), "revision")
-    alone = workers.count(robot, line)
-    monkeypatch.setattr(workers, "_FEW", 1)
+    line = list_commits(find_tracked_project(robot), "revision")
+    alone = workers.count_commits(robot, line)
+    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr("os.cpu_count", lambda: 3)
     told: list[tuple[int, int]] = []
-    assert workers.count(robot, line, lambda done, of: told.append((done, of))) == alone
+    assert workers.count_commits(robot, line, lambda done, of: told.append((done, of))) == alone
     assert sorted(told) == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_a_killed_process_costs_time_only(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    line = commits(tracked(robot), "revision")
-    alone = workers.count(robot, line)
-    monkeypatch.setattr(workers, "_FEW", 1)
+    line = list_commits(find_tracked_project(robot), "revision")
+    alone = workers.count_commits(robot, line)
+    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     monkeypatch.setattr(workers, "_START", "raise SystemExit({root!r} and 1)")
-    assert workers.count(robot, line) == alone
+    assert workers.count_commits(robot, line) == alone
 
 
 def test_a_revision_that_does_not_load_has_its_errors(tmp_path: Path) -> None:
     folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": START})
     repositories.commit(folder, {"archgen.yaml": "groups: [\n"})
-    last = history(folder).points[-1]
-    assert (last.whole.components, last.whole.findings.error > 0) == (0, True)
+    last = count_history(folder).points[-1]
+    assert (last.project_row.components, last.project_row.findings.error > 0) == (0, True)
 
 
 def test_a_shallow_clone_says_so(robot: Path, tmp_path: Path) -> None:
     repositories.git(tmp_path, "clone", "-q", "--depth", "1", f"file://{robot.parent}", "shallow")
-    found = history(tmp_path / "shallow/robot")
+    found = count_history(tmp_path / "shallow/robot")
     assert (len(found.points), found.whole) == (1, False)
-    assert history_text.text(found).startswith("this clone is shallow")
+    assert history_text.format_history(found).startswith("this clone is shallow")
 
 
 def test_where_nothing_was_committed_there_is_an_error(tmp_path: Path) -> None:
     folder = repositories.repository(tmp_path / "robot")
     (folder / "archgen.yaml").write_text(START)
     with pytest.raises(git.NoCommitsError):
-        history(folder)
+        count_history(folder)
     done = archgen("stats", "--history", cwd=folder, status=2)
     assert b"nothing was committed in this repository yet" in done.stderr
 
@@ -168,13 +170,13 @@ def test_options_that_need_the_history(robot: Path) -> None:
 def test_a_folder_older_than_the_project_in_it(tmp_path: Path) -> None:
     folder = repositories.repository(tmp_path / "work", {"notes.txt": "before there was a project"})
     repositories.commit(folder, {"archgen.yaml": START})
-    assert [point.whole.components for point in history(folder).points] == [1]
+    assert [point.project_row.components for point in count_history(folder).points] == [1]
 
 
 def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> None:
     title = r'"P\n::error::x \e[31m"'
     folder = repositories.repository(tmp_path / "work", {"archgen.yaml": START.replace("Partner P", title)})
-    out = history_text.csv(history(folder))
+    out = history_text.history_to_csv(count_history(folder))
     assert "P\n\\::error::x ␛[31m" in out
     assert "\x1b" not in out
 
@@ -182,16 +184,16 @@ def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> N
 def test_what_says_the_same_is_judged_once(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     judged = []
 
-    def judge(loaded: Loaded) -> Checked:
+    def judge(loaded: LoadedProject) -> CheckedProject:
         judged.append(loaded.files.commit)
-        return pipeline.judge(loaded)
+        return pipeline.judge_project(loaded)
 
-    monkeypatch.setattr(pipeline, "judged", judge)
-    points = history(robot).points
+    monkeypatch.setattr(pipeline, "check_loaded_project", judge)
+    points = count_history(robot).points
     assert len(judged) == 2  # the third only adds a comment
-    assert points[1].whole == points[2].whole
+    assert points[1].project_row == points[2].project_row
     repositories.commit(robot.parent, {"robot/archgen.yaml": START + SECOND.replace("{implements: arm}", "{}")})
-    assert history(robot).points[-1].whole.mapped == 1
+    assert count_history(robot).points[-1].project_row.mapped == 1
 
 
 def test_a_comment_that_silences_a_finding_counts(tmp_path: Path) -> None:
@@ -201,5 +203,5 @@ def test_a_comment_that_silences_a_finding_counts(tmp_path: Path) -> None:
         folder, {"archgen.yaml": START.replace(line, f"{line[:-1]}  # archgen: ignore[unread-output] later\n")}
     )
     repositories.commit(folder, {"archgen.yaml": START + "# archgen: ignore[unread-output] later\n"})
-    first, second, third = (point.whole.findings.warning for point in history(folder).points)
+    first, second, third = (point.project_row.findings.warning for point in count_history(folder).points)
     assert second < first <= third

@@ -8,21 +8,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from archgen import importers
-from archgen.pipeline import Checked, check
-from archgen.start import answers, plan, slices
+from archgen.pipeline import CheckedProject, check_project
+from archgen.start import start_answers, start_plan, starter_slices
 from tests.running import RAMCIP, ROOT, archgen
 
 FIRST = ROOT / "examples" / "first_robot"
 
 
-def read(data: bytes) -> importers.Imported:
-    return importers.read([("t.csv", data)], "jazzy")
+def read(data: bytes) -> importers.ImportResult:
+    return importers.import_tables([("t.csv", data)], "jazzy")
 
 
-def made(imported: importers.Imported) -> Checked:
+def made(imported: importers.ImportResult) -> CheckedProject:
     """Check the files that the data become."""
-    given = answers.with_partners(answers.gathered("r"), imported.data.get("partners", {}))
-    return plan.judge(slices.imported(given, imported.data, others=False), "r")
+    given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
+    return start_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
 
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12) | st.sampled_from(
@@ -93,9 +93,9 @@ def test_what_archgen_list_writes_comes_back(tmp_path: Path) -> None:
     for sort in ("components", "groups", "edges", "nodes", "types", "requirements"):
         table = archgen("list", "--of", sort, "--format", "csv", "-C", RAMCIP, cwd=tmp_path).stdout
         told.append((f"{sort}.csv", table))
-    found = importers.read(told, "jazzy")
+    found = importers.import_tables(told, "jazzy")
     assert found.diagnostics == ()
-    before, after = check(RAMCIP).architecture, made(found).architecture
+    before, after = check_project(RAMCIP).architecture, made(found).architecture
     assert {(e.output, e.input) for e in after.edges} == {(e.output, e.input) for e in before.edges}
     assert {c.id: (c.title, c.owner, c.role) for c in after.components.values()} == {
         c.id: (c.title, c.owner, c.role) for c in before.components.values()
@@ -112,5 +112,8 @@ def test_what_archgen_list_writes_comes_back(tmp_path: Path) -> None:
 
 def test_connections_as_listed_come_back(tmp_path: Path) -> None:
     table = archgen("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
-    before, after = check(FIRST).architecture, made(importers.read([("c.csv", table)], "jazzy")).architecture
+    before, after = (
+        check_project(FIRST).architecture,
+        made(importers.import_tables([("c.csv", table)], "jazzy")).architecture,
+    )
     assert {(c.input, c.target) for c in after.connections} == {(c.input, c.target) for c in before.connections}

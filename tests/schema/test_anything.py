@@ -8,10 +8,10 @@ import yaml as pyyaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from archgen.link.merge import merge
-from archgen.schema import normalise, validate
-from archgen.schema.validate import schema
-from archgen.syntax import yaml
+from archgen.link.slice_merging import merge_documents
+from archgen.schema import normalise_document, validate_document
+from archgen.schema.schema_validation import load_schema
+from archgen.syntax import yaml_parser
 
 
 def _names(part: Any) -> set[str]:  # noqa: ANN401
@@ -25,7 +25,7 @@ def _names(part: Any) -> set[str]:  # noqa: ANN401
 
 KEYS = st.sampled_from(
     [
-        *sorted(_names(schema())),
+        *sorted(_names(load_schema())),
         "a",
         "b_c",
         "R-1",
@@ -80,24 +80,26 @@ DOCUMENTS = st.one_of(
 def test_any_data(trees: list[object]) -> None:
     documents = []
     for name, tree in zip("abc", trees, strict=False):
-        document, _ = yaml.parse(name, pyyaml.safe_dump(tree, allow_unicode=True))
+        document, _ = yaml_parser.parse_yaml(name, pyyaml.safe_dump(tree, allow_unicode=True))
         if document is None:
             continue
-        validate(document)
-        left = validate(document)  # only ids that are not well formed, and kept so that references to them hold
+        validate_document(document)
+        left = validate_document(
+            document
+        )  # only ids that are not well formed, and kept so that references to them hold
         assert [d.message for d in left if not d.message.endswith((" cannot be an id", " cannot be a port"))] == []
-        normalise(document)
+        normalise_document(document)
         documents.append(document)
-    merge(documents)
+    merge_documents(documents)
 
 
 @settings(max_examples=300, deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes(data: bytes) -> None:
-    document, found = yaml.parse("f", data.decode("latin-1"))
+    document, found = yaml_parser.parse_yaml("f", data.decode("latin-1"))
     if document is None:
         assert found != ()
     else:
-        validate(document)
-        normalise(document)
-        merge([document])
+        validate_document(document)
+        normalise_document(document)
+        merge_documents([document])

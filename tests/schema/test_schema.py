@@ -8,9 +8,9 @@ from typing import Any
 import jsonschema_rs
 import pytest
 
-from archgen.schema.validate import schema
+from archgen.schema.schema_validation import load_schema
 
-SCHEMA = schema()
+SCHEMA = load_schema()
 
 
 def parts(part: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:  # noqa: ANN401

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from archgen.simulation.engine import go
-from archgen.simulation.flatten import flatten
-from archgen.timing.system import Activity, Arc, System
+from archgen.simulation.event_loop import run_plan
+from archgen.simulation.plan_builder import build_plan
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 
 MS = 1000
 """Units of the engine in one ms."""
@@ -38,11 +38,11 @@ def event(name: str, wcet: int, *triggers: str, **rest: object) -> Activity:
 
 def system(
     activities: Sequence[Activity], arcs: Sequence[Arc] = (), cores: Mapping[str, int] | None = None, **rest: object
-) -> System:
+) -> TimingSystem:
     """Put a system together."""
     names = [activity.id for activity in activities]
     return replace(
-        System(
+        TimingSystem(
             Fraction(1_000_000),
             dict(zip(names, activities, strict=True)),
             tuple(arcs),
@@ -54,14 +54,19 @@ def system(
     )
 
 
-def jobs(of: System, until: int, seed: int = 0) -> dict[str, list[tuple[float, float, float]]]:
+def jobs(of: TimingSystem, until: int, seed: int = 0) -> dict[str, list[tuple[float, float, float]]]:
     """Run a system (seed 0: all phases zero, all execution times the longest); give (fired, started, ended) in ms."""
-    plan = flatten(of)
-    run = go(plan, seed, until * MS, range(len(plan.steps)))
+    plan = build_plan(of)
+    run = run_plan(plan, seed, until * MS, range(len(plan.activities)))
     return {
         step.id: [
             (fired / MS, start / MS, end / MS)
-            for fired, start, end in zip(run.steps.firings[at], run.steps.starts[at], run.steps.ends[at], strict=False)
+            for fired, start, end in zip(
+                run.activities.job_activations[at],
+                run.activities.job_starts[at],
+                run.activities.job_ends[at],
+                strict=False,
+            )
         ]
-        for at, step in enumerate(plan.steps)
+        for at, step in enumerate(plan.activities)
     }

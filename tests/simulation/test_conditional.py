@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
-from archgen.simulation.series import Trace, series
+from archgen.simulation.chain_series import ChainTrace, measure_chain
 
 PROJECT = """
 groups:
@@ -24,12 +24,12 @@ groups:
 types: {Seen: {message: std_msgs/msg/Empty}}
 chains: {reach: {through: [eye, watch, hand], deadline: 20 ms}}
 """
-TRACE = Trace(
+TRACE = ChainTrace(
     samplings=[0, 10, 20, 30],
-    logs=[[0, 1, 2, 3], [0, 3]],  # of what `watch` had from the second and third input, it said nothing
-    ends=[6, 36],
-    passed=[None, frozenset({0, 3})],
-    samples=True,
+    source_logs=[[0, 1, 2, 3], [0, 3]],  # of what `watch` had from the second and third input, it said nothing
+    job_ends=[6, 36],
+    forwarded_jobs=[None, frozenset({0, 3})],
+    samples_world=True,
 )
 
 
@@ -42,14 +42,14 @@ def told(tmp_path: Path, more: str, *words: str) -> str:
 
 
 def test_over_all_inputs_a_reaction_waits_for_the_next_that_is_sent_on() -> None:
-    assert series(TRACE).reactions == ((26, 36), (16, 26), (6, 16))
-    assert series(TRACE).ages == ((6, 36),)
+    assert measure_chain(TRACE).reactions == ((26, 36), (16, 26), (6, 16))
+    assert measure_chain(TRACE).ages == ((6, 36),)
 
 
 def test_of_what_is_sent_on_at_once_only_its_own_way_counts() -> None:
-    passing = series(TRACE, passing=True)
+    passing = measure_chain(TRACE, forwarded_only=True)
     assert passing.reactions == ((6, 16),)
-    assert (passing.ages, passing.reduced_reaction, passing.inputs) == ((), 6, 1)
+    assert (passing.ages, passing.reduced_reaction, passing.input_count) == ((), 6, 1)
 
 
 def test_json_has_both(tmp_path: Path) -> None:

@@ -110,10 +110,10 @@ def test_every_third_and_throttle() -> None:
 
 def test_a_full_queue_drops_the_oldest() -> None:
     # The reader takes 10 for each of what comes every 4; it keeps two.
-    from archgen.simulation import simulate
+    from archgen.simulation import simulate_system
 
     one = system([timed("clock", 4, 0), event("reader", 10, "clock")], [arc("clock", "reader", depth=2)])
-    seen = simulate(one, 1, 1)
+    seen = simulate_system(one, 1, 1)
     assert seen.drops == {("reader", "clock", "/clock"): 251 - 101 - 2}
 
 
@@ -154,7 +154,7 @@ def test_a_computed_latency_is_tried_out_and_not_taken() -> None:
     # 1000 B at 500 kB/s take 2 ms, and all takes 3 besides; that the analysis allows for 33 slows nothing down.
     activities = [timed(name, 20, 0) for name in "ab"] + [event("r", 0, "a", "b")]
     arcs = [arc(name, "r", link="lan", best=3, worst=33, size=1000, depth=5) for name in "ab"]
-    found = jobs(system(activities, arcs, bandwidths={"lan": Fraction(500_000)}, queued=frozenset({"lan"})), 19)
+    found = jobs(system(activities, arcs, bandwidths={"lan": Fraction(500_000)}, queued_links=frozenset({"lan"})), 19)
     assert [job[0] for job in found["r"]] == [5, 7]
 
 
@@ -196,7 +196,7 @@ def test_what_jitter_holds_back_enters_the_queue_when_it_is_let_go() -> None:
 
 
 def test_events_from_outside_come_at_the_period_that_is_stated() -> None:
-    found = jobs(system([event("bumper", 1, "world", period=8)], external={"bumper": ("world",)}), 20)
+    found = jobs(system([event("bumper", 1, "world", period=8)], external_inputs={"bumper": ("world",)}), 20)
     assert found["bumper"] == [(0, 0, 1), (8, 8, 9), (16, 16, 17)]
 
 

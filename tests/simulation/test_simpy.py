@@ -8,11 +8,11 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.simulation.engine import play
-from archgen.simulation.flatten import flatten
-from archgen.simulation.run import Run
-from archgen.simulation.state import FIFO
-from archgen.timing.system import Activity, System
+from archgen.simulation.event_loop import process_events
+from archgen.simulation.plan_builder import build_plan
+from archgen.simulation.run_state import FIRST_FIRST
+from archgen.simulation.simulation_run import SimulationRun
+from archgen.timing.system.timing_system import Activity, TimingSystem
 from tests.simulation.simpy_model import Job, Model, Task, Wire
 from tests.simulation.systems import arc, event, system, timed
 
@@ -61,7 +61,7 @@ def _direct(tasks: list[Task], dice: random.Random) -> list[Task]:
     ]
 
 
-def modelled(tasks: list[Task], cores: dict[str, str]) -> System:
+def modelled(tasks: list[Task], cores: dict[str, str]) -> TimingSystem:
     """Put the same tasks into a system."""
     arcs = [
         replace(
@@ -90,23 +90,28 @@ def _activity(task: Task, cores: dict[str, str]) -> Activity:
 
 def ours(tasks: list[Task], cores: dict[str, str]) -> dict[str, list[Job]]:
     """Run our simulator with the same phases; everything takes its longest, and nothing else is left to chance."""
-    plan = flatten(modelled(tasks, cores))
-    run = Run(plan, 0, range(len(plan.steps)), range(len(plan.wires)))
-    run.steps.phase = [task.phase for task in tasks]
-    run.steps.turn = [0] * len(tasks)
-    run.threads.members = list(plan.members)
-    run.threads.scheduler = [FIFO] * len(plan.processors)
-    ranked = {plan.threads[step.thread] for step in plan.steps if step.priority is not None}
-    run.threads.preemptive = [at in ranked for at in range(len(plan.processors))]
-    play(run, UNTIL)
+    plan = build_plan(modelled(tasks, cores))
+    run = SimulationRun(plan, 0, range(len(plan.activities)), range(len(plan.wires)))
+    run.activities.phase = [task.phase for task in tasks]
+    run.activities.every_counter = [0] * len(tasks)
+    run.threads.members = list(plan.thread_members)
+    run.threads.scheduler = [FIRST_FIRST] * len(plan.processors)
+    ranked = {plan.threads[step.thread] for step in plan.activities if step.priority is not None}
+    run.threads.is_preemptive = [at in ranked for at in range(len(plan.processors))]
+    process_events(run, UNTIL)
     return {
         step.id: [
-            (fired, start, end, tuple(run.wires.log[wire][job] for wire in step.wires))
+            (fired, start, end, tuple(run.wires.source_log[wire][job] for wire in step.wires))
             for job, (fired, start, end) in enumerate(
-                zip(run.steps.firings[at], run.steps.starts[at], run.steps.ends[at], strict=False)
+                zip(
+                    run.activities.job_activations[at],
+                    run.activities.job_starts[at],
+                    run.activities.job_ends[at],
+                    strict=False,
+                )
             )
         ]
-        for at, step in enumerate(plan.steps)
+        for at, step in enumerate(plan.activities)
     }
 
 

@@ -29,7 +29,7 @@ def told(tmp_path: Path, *words: str) -> str:
 
 
 def test_json_is_as_the_schema_says(tmp_path: Path) -> None:
-    schema = json.loads(resources.path("schemas", "simulation.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(resources.resource_path("schemas", "simulation.schema.json").read_text(encoding="utf-8"))
     data = json.loads(told(tmp_path, "--format", "json"))
     jsonschema_rs.validator_for(schema).validate(data)
     chain = data["chains"]["reach"]

@@ -9,21 +9,21 @@ from fractions import Fraction
 from archgen.model.architecture import Architecture, Chain, ProjectInfo, Waypoint
 from archgen.model.node import Node
 from archgen.model.quantity import Quantity
-from archgen.timing.analysis import Analysis, Pace, Response
-from archgen.timing.system import Activity, Arc, System
-from archgen.timing.value import UNKNOWN, Value
+from archgen.timing.analysis import Analysis, EventPace, ResponseTime
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 
 MS = 10**6
 
 
-def ms(count: float | Fraction) -> Value:
+def ms(count: float | Fraction) -> TimingValue:
     """Make a known duration."""
-    return Value(Fraction(count) * MS)
+    return TimingValue(Fraction(count) * MS)
 
 
-def missing(*names: str) -> Value:
+def missing(*names: str) -> TimingValue:
     """Make a figure that is not known."""
-    return Value(None, complete=False, missing=names)
+    return TimingValue(None, complete=False, missing=names)
 
 
 def periodic(name: str, period: int, **keys: object) -> Activity:
@@ -45,28 +45,28 @@ def arc(source: str, target: str, **keys: object) -> Arc:
 def analysis(
     activities: Sequence[Activity],
     arcs: Sequence[Arc],
-    responses: Mapping[str, Value | float],
-    gaps: Mapping[str, Value | float],
-    out_gaps: Mapping[str, Value | float] | None = None,
+    responses: Mapping[str, TimingValue | float],
+    gaps: Mapping[str, TimingValue | float],
+    out_gaps: Mapping[str, TimingValue | float] | None = None,
 ) -> Analysis:
     """Lay all together. Best and worst response are one; an output's gap is its activity's where nobody says otherwise."""
     into, out_of = defaultdict[str, list[Arc]](list), defaultdict[str, list[Arc]](list)
     for each in arcs:
         into[each.target].append(each)
         out_of[each.source].append(each)
-    system = System(
+    system = TimingSystem(
         Fraction(1),
         {a.id: a for a in activities},
         tuple(arcs),
         {key: tuple(row) for key, row in into.items()},
         {key: tuple(row) for key, row in out_of.items()},
     )
-    known = {a.id: _value(gaps.get(a.id, UNKNOWN)) for a in activities}
-    paces = {a.id: Pace(a.behaviour, gap=known[a.id]) for a in activities}
+    known = {a.id: _value(gaps.get(a.id, UNKNOWN_VALUE)) for a in activities}
+    paces = {a.id: EventPace(a.behaviour, gap=known[a.id]) for a in activities}
     sent = {a.id: _value((out_gaps or {}).get(a.id, known[a.id])) for a in activities}
-    outputs = {(a.id, f"{a.id}.out"): Pace(a.behaviour, gap=sent[a.id]) for a in activities}
+    outputs = {(a.id, f"{a.id}.out"): EventPace(a.behaviour, gap=sent[a.id]) for a in activities}
     found = {key: _value(value) for key, value in responses.items()}
-    tiers = {key: Response(value, value, "priorities") for key, value in found.items()}
+    tiers = {key: ResponseTime(value, value, "priorities") for key, value in found.items()}
     return Analysis(system, paces, outputs, tiers, {}, {}, {}, ())
 
 
@@ -78,5 +78,5 @@ def architecture(names: Sequence[str], *through: str, deadline: int | None = Non
     return Architecture(ProjectInfo("p", "P"), nodes=nodes, chains={"c": Chain("c", "C", points, limit)})
 
 
-def _value(given: Value | float) -> Value:
-    return given if isinstance(given, Value) else ms(given)
+def _value(given: TimingValue | float) -> TimingValue:
+    return given if isinstance(given, TimingValue) else ms(given)

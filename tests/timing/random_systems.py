@@ -10,13 +10,13 @@ import json
 import random
 from dataclasses import dataclass, field
 
-from archgen.link.declare import link
-from archgen.link.merge import merge
+from archgen.link.project_linking import link_project
+from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
-from archgen.model.interfaces import Interfaces
-from archgen.schema import normalise, validate
-from archgen.syntax import yaml
-from archgen.transform import transform
+from archgen.model.known_interfaces import Interfaces
+from archgen.schema import normalise_document, validate_document
+from archgen.syntax import yaml_parser
+from archgen.transform import transform_architecture
 from tests.timing.random_places import Places, Tree
 
 PERIODS = (2, 4, 5, 8, 10, 10, 12, 20, 20, 25, 40, 50)
@@ -25,13 +25,15 @@ PERIODS = (2, 4, 5, 8, 10, 10, 12, 20, 20, 25, 40, 50)
 
 def architecture(text: str) -> Architecture:
     """Read a project that is one text; nothing in it may be wrong."""
-    document, found = yaml.parse("random.yaml", text)
+    document, found = yaml_parser.parse_yaml("random.yaml", text)
     assert document is not None, found
-    assert (validate(document), normalise(document)) == ((), ()), text
-    table, _ = merge([document])
-    linked, problems = link(table, default_id="r", default_title="R", shipped={}, interfaces=Interfaces("jazzy"))
+    assert (validate_document(document), normalise_document(document)) == ((), ()), text
+    table, _ = merge_documents([document])
+    linked, problems = link_project(
+        table, default_id="r", default_title="R", shipped_types={}, interfaces=Interfaces("jazzy")
+    )
     assert not problems, (problems, text)
-    return transform(linked)
+    return transform_architecture(linked)
 
 
 def random_text(seed: int) -> str:

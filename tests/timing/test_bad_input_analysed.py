@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.pipeline import check
-from archgen.timing.analyse import analyse
-from archgen.timing.chains import chains
+from archgen.pipeline import check_project
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
 
 PROJECT = """
 groups:
@@ -43,15 +43,15 @@ MS = 10**6
 def test_the_rest_is_analysed(tmp_path: Path, seer: str) -> None:
     file = tmp_path / "robot.yaml"
     file.write_text(PROJECT.replace("{SEER}", f"{{{seer}}}"), encoding="utf-8")
-    checked = check(file)
+    checked = check_project(file)
     assert len([f for f in checked.findings if f.severity == "error"]) == 3
-    analysis = analyse(checked.architecture)
+    analysis = analyse_architecture(checked.architecture)
     assert {name: pace.gap.value for name, pace in analysis.paces.items()} == {
         "camera": 3 * MS,
         "seer": 3 * MS + 1 * MS,
         "mover": 20 * MS,
     }
-    found = chains(analysis, checked.architecture)
+    found = bound_all_chains(analysis, checked.architecture)
     assert found["good"].bound.value == (3 + 2 + 1 + 20 + 3) * MS
     assert found["good"].deadline is None
     assert found["backwards"].bound.value is None
@@ -62,8 +62,8 @@ def test_of_a_chain_through_what_is_not_there_nothing_is_said(tmp_path: Path, th
     file = tmp_path / "robot.yaml"
     text = PROJECT.replace("{SEER}", "{wcet: 1 ms}").replace("[camera, mover]", through).replace("0 ms}", "1 s}")
     file.write_text(text, encoding="utf-8")
-    checked = check(file)
-    result = chains(analyse(checked.architecture), checked.architecture)["good"]
+    checked = check_project(file)
+    result = bound_all_chains(analyse_architecture(checked.architecture), checked.architecture)["good"]
     assert result.verdict == "open"
     for value in (result.bound, result.best, result.reduced_reaction, result.reduced_age):
         assert (value.value, value.complete, value.missing) == (None, False, ("nobody",))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.timing import windows
+from archgen.timing.load import busy_windows
 from tests.timing.exceeded import exceeded
 from tests.timing.random_systems import random_text
 
@@ -12,7 +12,7 @@ from tests.timing.random_systems import random_text
 @pytest.mark.parametrize("first", range(0, 500, 50))
 def test_no_simulation_exceeds_a_bound(first: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # A few systems are just short of full: to search for seconds there, and find nothing, shows nothing here.
-    monkeypatch.setattr(windows, "_ONE_SEARCH", 100_000)
+    monkeypatch.setattr(busy_windows, "_MAX_TERMS_PER_SEARCH", 100_000)
     found = {seed: exceeded(random_text(seed), seconds=1, seeds=3) for seed in range(first, first + 50)}
     assert {seed: wrong for seed, (wrong, _) in found.items() if wrong} == {}
     assert sum(held for _, held in found.values()) > 250

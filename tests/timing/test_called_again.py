@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.model.architecture import Architecture
-from archgen.simulation import simulate
-from archgen.timing.analyse import analyse
-from archgen.timing.chains import chains
+from archgen.simulation import simulate_system
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.task_sets import MS
 
 Derived = Callable[[str], Architecture]
@@ -38,9 +38,9 @@ def test_a_call_uses_again_what_came_together_last(derived: Derived) -> None:
     may wait for one of the other kind: 2 ms each.
     """
     architecture = derived(CALLED)
-    found = analyse(architecture)
-    way = chains(found, architecture)["way"]
+    found = analyse_architecture(architecture)
+    way = bound_all_chains(found, architecture)["way"]
     assert way.reduced_age.value == (10 + 60 + 2 + 2) * MS
-    seen = simulate(found.system, 2, 6, {"way": way.through}).chains["way"].every.reduced_age
+    seen = simulate_system(found.system, 2, 6, {"way": way.through}).chains["way"].all_inputs.reduced_age
     assert seen is not None
     assert 50 * MS < seen <= way.reduced_age.value

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import archgen
-from archgen.findings import timing_json
-from archgen.timing import duerr
+from archgen.emit.data import timing_json
+from archgen.timing.chains import duerr_bounds
 
 S1 = {"a": (10, 1), "b": (20, 2)}
 S2 = {"imu": (5, 1), "ctrl": (10, 2), "loc": (20, 4), "plan": (100, 20)}
@@ -50,7 +50,7 @@ def test_published_task_sets(
     result = project.chains()["c"]
     assert [term.response.value for term in result.terms] == [response * 10**6 for response in responses]
     assert result.bound.complete
-    published = duerr.of_chain(project.timing(), result.through) or ()
+    published = duerr_bounds.bound_periodic_chain(project.timing(), result.through) or ()
     assert [value // 10**6 for value in (result.bound.value or 0, *published)] == list(expected)
 
 
@@ -102,7 +102,7 @@ def test_what_is_sent_on_a_condition_is_sent_for_the_stimulus(tmp_path: Path) ->
     assert result.verdict == "met"
     said = "watch publishes /g/watch/alarm for this very input"
     assert said in result.bound.assumptions
-    plain = timing_json.chain(result)
+    plain = timing_json.chain_to_json(result)
     assert all(said in plain[figure]["assumptions"] for figure in ("bound", "reduced_reaction"))
     assert said in plain["terms"][-1]["sampling"]["assumptions"]
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 from math import lcm
 from random import Random
 
-from archgen.timing.analyse import analyse_system
-from archgen.timing.system import Activity, System
+from archgen.timing.run_analysis import analyse_system
+from archgen.timing.system.timing_system import Activity, TimingSystem
 
 _PERIODS = (3, 4, 5, 6, 8, 10, 12)
 Task = tuple[int, int]
@@ -42,7 +42,7 @@ def _analysed(tasks: list[Task]) -> list[object]:
         )
         for at, (period, cost) in enumerate(tasks)
     }
-    system = System(Fraction(1), activities, (), {}, {}, cores={"pc": 1})
+    system = TimingSystem(Fraction(1), activities, (), {}, {}, cores={"pc": 1})
     return [response.worst.value for response in analyse_system(system).responses.values()]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen import pipeline
-from archgen.timing import analyse as module
+from archgen.timing import run_analysis as module
 
 PROJECT = """\
 archgen: 1

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.model.architecture import Architecture
-from archgen.timing.analyse import analyse
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains import chains
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.task_sets import MS
 
 Derived = Callable[[str], Architecture]
@@ -34,7 +34,7 @@ chains: {see: {through: [left, viewer], deadline: 125 ms}}
 
 def cameras(derived: Derived, latency: str = "", size: str = "size: 1 MB") -> tuple[Architecture, Analysis]:
     architecture = derived(CAMERAS.replace("LATENCY", latency).replace("SIZE", size))
-    return architecture, analyse(architecture)
+    return architecture, analyse_architecture(architecture)
 
 
 def test_two_pictures_wait_for_one_another(derived: Derived) -> None:
@@ -49,7 +49,7 @@ def test_two_pictures_wait_for_one_another(derived: Derived) -> None:
 
 def test_a_bandwidth_alone_bounds_the_latency(derived: Derived) -> None:
     architecture, found = cameras(derived)
-    see = chains(found, architecture)["see"]
+    see = bound_all_chains(found, architecture)["see"]
     assert see.bound.value == (100 + 1 + 16 + 3) * MS
     assert see.bound.assumptions == ("link lan takes no longer than its bandwidth lets it",)
     assert see.verdict == "met"
@@ -57,7 +57,7 @@ def test_a_bandwidth_alone_bounds_the_latency(derived: Derived) -> None:
 
 def test_what_is_on_its_way_anyhow_comes_on_top(derived: Derived) -> None:
     architecture, found = cameras(derived, "latency: {best: 6 ms}")
-    see = chains(found, architecture)["see"]
+    see = bound_all_chains(found, architecture)["see"]
     assert see.bound.value == (100 + 1 + 6 + 16 + 3) * MS
     assert see.best.value == 7 * MS
     assert see.verdict == "missed"
@@ -65,21 +65,21 @@ def test_what_is_on_its_way_anyhow_comes_on_top(derived: Derived) -> None:
 
 def test_a_worst_latency_that_is_written_holds_with_the_queueing_in_it(derived: Derived) -> None:
     architecture, found = cameras(derived, "latency: {best: 9 ms, worst: 20 ms}")
-    see = chains(found, architecture)["see"]
+    see = bound_all_chains(found, architecture)["see"]
     assert see.bound.value == (100 + 1 + 20 + 3) * MS
     assert see.bound.assumptions == ("queueing on link lan (up to 16 ms) is within its latency",)
 
 
 def test_a_worst_latency_below_the_queueing_is_taken_and_said(derived: Derived) -> None:
     architecture, found = cameras(derived, "latency: 1 ms")
-    see = chains(found, architecture)["see"]
+    see = bound_all_chains(found, architecture)["see"]
     assert see.bound.value == (100 + 1 + 1 + 3) * MS
     assert see.bound.assumptions == ("link lan keeps its written latency, though 16 ms of traffic can wait for it",)
 
 
 def test_without_sizes_nothing_is_said(derived: Derived) -> None:
     architecture, found = cameras(derived, size="comment: large")
-    see = chains(found, architecture)["see"]
+    see = bound_all_chains(found, architecture)["see"]
     assert (see.bound.complete, see.bound.missing, see.verdict) == (False, ("lan",), "open")
     assert found.links["lan"].queueing.missing == ("/g/left/image", "/g/right/image")
 
@@ -117,7 +117,7 @@ def test_a_bus_with_priorities_stays_within_the_busy_period(derived: Derived) ->
     """The three messages of Davis et al. 2007, 1 ms each: at most 3.5 ms with priorities, 3 first come, first served;
     whoever chooses the order, the bus falls idle after 7 ms.
     """
-    load = analyse(derived(CAN)).links["can"]
+    load = analyse_architecture(derived(CAN)).links["can"]
     assert load.queueing.value == 7 * MS
     assert load.burst.value == 375
 
@@ -139,7 +139,7 @@ links: {lan: {connects: [one, two], bandwidth: 10 MB/s}}
 
 def test_calls_and_their_answers_are_traffic(derived: Derived) -> None:
     """Two calls each 100 ms, 25 kB there and back: 1 MB/s; all four may meet and take 10 ms."""
-    found = analyse(derived(CALL))
+    found = analyse_architecture(derived(CALL))
     load = found.links["lan"]
     assert (load.traffic.value, load.burst.value, load.queueing.value) == (1_000_000, 100_000, 10 * MS)
     assert found.responses["planner"].worst.value == 10 * MS
@@ -168,7 +168,7 @@ def test_a_link_and_what_it_delays_find_one_fixed_point(derived: Derived) -> Non
     busy period of two messages ends before a third can come. a waits for c: 1 + 1.
     """
     architecture = derived(THERE_AND_BACK)
-    found = analyse(architecture)
+    found = analyse_architecture(architecture)
     assert found.links["lan"].queueing.value == 2 * MS
     assert found.paces["c"].jitter.value == (1 + 2 + 2) * MS
-    assert chains(found, architecture)["round"].bound.value == (20 + 2 + 2 + 1 + 2 + 1) * MS
+    assert bound_all_chains(found, architecture)["round"].bound.value == (20 + 2 + 2 + 1 + 2 + 1) * MS

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.model.architecture import Architecture
-from archgen.timing.analyse import analyse
+from archgen.timing.run_analysis import analyse_architecture
 
 Derived = Callable[[str], Architecture]
 
@@ -24,6 +24,6 @@ hosts: {pc: {cores: 2}}
 @pytest.mark.parametrize(("wcet", "bounded"), [("2 ms", True), ("9 ms", False)])
 def test_a_neighbour_without_a_bound_leaves_none(derived: Derived, wcet: str, *, bounded: bool) -> None:
     """With 9 ms, a and b have 0.9 + (0.9 + 0.05)/2 >= 1 each: no bound. c has 0.05 + 1.8/2 < 1, and theirs in its way."""
-    found = analyse(derived(PROJECT.replace("WCET", wcet))).responses
+    found = analyse_architecture(derived(PROJECT.replace("WCET", wcet))).responses
     assert {name: one.worst.value is not None for name, one in found.items()} == dict.fromkeys("abc", bounded)
     assert ("unbounded" in found["c"].worst.assumptions) is not bounded

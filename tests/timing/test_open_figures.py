@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import archgen
-from archgen.findings import timing_json
+from archgen.emit.data import timing_json
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains import chains
-from archgen.timing.sums import UNBOUNDED, smallest, total
-from archgen.timing.value import Value
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, add_values, smallest_value
 from tests.timing.made import missing, ms
 
 _LOOP = """
@@ -44,7 +44,7 @@ def _of(folder: Path, text: str) -> tuple[Analysis, dict[str, object]]:
     (folder / "archgen.yaml").write_text(f"archgen: 1\nproject: {{id: p, title: P}}\n{text}", encoding="utf-8")
     project = archgen.load(folder)
     analysis = project.timing()
-    return analysis, timing_json.document(analysis, chains(analysis, project.architecture))
+    return analysis, timing_json.timing_to_json(analysis, bound_all_chains(analysis, project.architecture))
 
 
 def test_what_is_missing_is_named_however_far_round_a_loop(tmp_path: Path) -> None:
@@ -71,26 +71,26 @@ def test_a_best_latency_that_nobody_wrote_counts_as_none(tmp_path: Path) -> None
 
 def test_the_smallest_of_what_is_half_known_is_no_more_than_each() -> None:
     """A bound from below of one says nothing while another is unknown; what grows beyond any bound is no smallest."""
-    partial = Value(ms(100).value, complete=False, missing=("x",), side="at least")
-    assert smallest((partial, missing("y"))).value is None
-    assert smallest((partial, UNBOUNDED)) == partial
-    assert smallest((partial, ms(200))) == ms(200)
+    partial = TimingValue(ms(100).value, complete=False, missing=("x",), side="at least")
+    assert smallest_value((partial, missing("y"))).value is None
+    assert smallest_value((partial, UNBOUNDED_VALUE)) == partial
+    assert smallest_value((partial, ms(200))) == ms(200)
 
 
 def test_what_is_unbounded_stays_so_beside_what_is_missing() -> None:
     """It is above any sum, and what is missing stays named."""
-    both = Value(None, complete=False, missing=("x",), assumptions=("unbounded",))
-    assert total((ms(1), both)) == both
+    both = TimingValue(None, complete=False, missing=("x",), assumptions=("unbounded",))
+    assert add_values((ms(1), both)) == both
 
 
 def test_the_json_says_on_which_side_a_figure_holds() -> None:
     """Only where something is missing."""
-    partial = Value(ms(1).value, complete=False, missing=("x",), side="at least")
-    upper = Value(ms(1).value, complete=False, missing=("x",), side="at most")
-    assert timing_json.time(partial)["side"] == "at least"
-    assert timing_json.time(upper)["side"] == "at most"
-    assert "side" not in timing_json.time(ms(1))
-    assert "side" not in timing_json.time(missing("x"))
+    partial = TimingValue(ms(1).value, complete=False, missing=("x",), side="at least")
+    upper = TimingValue(ms(1).value, complete=False, missing=("x",), side="at most")
+    assert timing_json.duration_to_json(partial)["side"] == "at least"
+    assert timing_json.duration_to_json(upper)["side"] == "at most"
+    assert "side" not in timing_json.duration_to_json(ms(1))
+    assert "side" not in timing_json.duration_to_json(missing("x"))
 
 
 def test_a_chain_with_a_wrong_name_is_open_and_not_late(tmp_path: Path) -> None:

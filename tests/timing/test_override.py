@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.override import OverrideError, lay
+from archgen.link.timing_overrides import OverrideError, apply_overrides
 from archgen.model.architecture import Architecture
-from archgen.pipeline import check
+from archgen.pipeline import check_project
 
 PROJECT = """
 groups:
@@ -30,19 +30,19 @@ nodes:
 def architecture(tmp_path: Path) -> Architecture:
     file = tmp_path / "project.yaml"
     file.write_text(PROJECT.replace("  both: {implements: [see.camera, see.finder]}\n", ""))
-    return check(file).architecture
+    return check_project(file).architecture
 
 
 def test_a_figure_is_laid_over_a_node_or_its_component(architecture: Architecture) -> None:
     for element in ("find", "finder", "see.finder", "find.finder"):
-        changed = lay(architecture, [f"{element}.timing.wcet=120ms", f"{element}.timing.priority=7"])
+        changed = apply_overrides(architecture, [f"{element}.timing.wcet=120ms", f"{element}.timing.priority=7"])
         timing = changed.nodes["find"].timing["see.finder"]
         assert (str(timing.wcet), str(timing.bcet), timing.priority) == ("120 ms", "2 ms", 7)
     assert architecture.nodes["find"].timing["see.finder"].wcet is None
 
 
 def test_a_period_replaces_a_rate(architecture: Architecture) -> None:
-    timing = lay(architecture, ["cam.timing.period=50 ms"]).nodes["cam"].timing["see.camera"]
+    timing = apply_overrides(architecture, ["cam.timing.period=50 ms"]).nodes["cam"].timing["see.camera"]
     assert (timing.rate, str(timing.period)) == (None, "50 ms")
 
 
@@ -67,5 +67,5 @@ def test_a_period_replaces_a_rate(architecture: Architecture) -> None:
 )
 def test_what_makes_no_sense_is_refused(architecture: Architecture, text: str, said: str) -> None:
     with pytest.raises(OverrideError) as caught:
-        lay(architecture, [text])
+        apply_overrides(architecture, [text])
     assert str(caught.value).startswith(said)

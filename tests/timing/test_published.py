@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.model.architecture import Architecture
-from archgen.timing.analyse import analyse
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.task_sets import MS, periodic, tasks, worst
 
 Derived = Callable[[str], Architecture]
@@ -42,7 +42,7 @@ Rows = dict[str, tuple[str, str]]
     ],
 )
 def test_fixed_priorities(derived: Derived, rows: Rows, expected: dict[str, int]) -> None:
-    found = analyse(derived(tasks({name: periodic(*row) for name, row in rows.items()})))
+    found = analyse_architecture(derived(tasks({name: periodic(*row) for name, row in rows.items()})))
     assert worst(found) == expected
     assert {response.tier for response in found.responses.values()} == {"priorities"}
 
@@ -59,7 +59,7 @@ def test_fixed_priorities(derived: Derived, rows: Rows, expected: dict[str, int]
     ],
 )
 def test_hosts_are_judged_as_published(derived: Derived, rows: Rows, verdict: str) -> None:
-    found = analyse(derived(tasks({name: periodic(*row) for name, row in rows.items()})))
+    found = analyse_architecture(derived(tasks({name: periodic(*row) for name, row in rows.items()})))
     assert found.hosts["pc"].verdict == verdict
 
 
@@ -80,11 +80,11 @@ def test_hosts_are_judged_as_published(derived: Derived, rows: Rows, verdict: st
 def test_below_the_bound_only_priorities_by_rate_are_sure_to_do(
     derived: Derived, rows: dict[str, str], verdict: str
 ) -> None:
-    assert analyse(derived(tasks(rows))).hosts["pc"].verdict == verdict
+    assert analyse_architecture(derived(tasks(rows))).hosts["pc"].verdict == verdict
 
 
 def test_the_bounds_hold_for_one_core(derived: Derived) -> None:
-    load = analyse(derived(tasks({"a": periodic("10", "4", "")}, host="cores: 2"))).hosts["pc"]
+    load = analyse_architecture(derived(tasks({"a": periodic("10", "4", "")}, host="cores: 2"))).hosts["pc"]
     for bound in (load.rate_monotonic_bound, load.earliest_deadline_bound):
         assert (bound.value, bound.assumptions) == (None, ("one core only",))
 
@@ -95,7 +95,7 @@ def test_the_bounds_hold_for_one_core(derived: Derived) -> None:
 )
 def test_the_rate_monotonic_bound(derived: Derived, number: int, bound: str) -> None:
     """Liu and Layland 1973: n (2^(1/n) - 1); for earliest deadline first it is 1."""
-    found = analyse(derived(tasks({f"t{at}": periodic("100", "1") for at in range(number)})))
+    found = analyse_architecture(derived(tasks({f"t{at}": periodic("100", "1") for at in range(number)})))
     load = found.hosts["pc"]
     assert f"{float(load.rate_monotonic_bound.value or 0):.6f}" == bound
     assert load.earliest_deadline_bound.value == 1
@@ -121,7 +121,7 @@ links: {wire: {connects: [r1, r2], latency: 0 ms}}
 
 def test_jitter_is_passed_on_from_host_to_host(derived: Derived) -> None:
     """The example of static priorities of pyCPA (J. Diemer, P. Axer, R. Ernst, WATERS 2012): its results."""
-    assert worst(analyse(derived(PYCPA))) == {"t11": 10, "t12": 13, "t21": 2, "t22": 19}
+    assert worst(analyse_architecture(derived(PYCPA))) == {"t11": 10, "t12": 13, "t21": 2, "t22": 19}
 
 
 def test_messages_without_preemption_stay_below_the_bound_for_any_order(derived: Derived) -> None:
@@ -130,12 +130,12 @@ def test_messages_without_preemption_stay_below_the_bound_for_any_order(derived:
     what the analysis before them had missed; with B's 3 and A's 2 it is within the longest busy period, 7.
     """
     rows = {"a": ("2.5", "1"), "b": ("3.5", "1"), "c": ("3.5", "1")}
-    found = analyse(derived(tasks({name: periodic(*row, "") for name, row in rows.items()})))
+    found = analyse_architecture(derived(tasks({name: periodic(*row, "") for name, row in rows.items()})))
     assert worst(found) == {"a": 7, "b": 7, "c": 7}
 
 
 def test_lehoczkys_jobs_one_by_one(derived: Derived) -> None:
     """The chain of the second task waits 100 and takes 118: Lehoczky's worst of 114, 102, 116, 104, 118, 106, 94."""
-    found = analyse(derived(tasks({"one": periodic("70", "26"), "two": periodic("100", "62")})))
+    found = analyse_architecture(derived(tasks({"one": periodic("70", "26"), "two": periodic("100", "62")})))
     assert found.responses["two"].worst.value == 118 * MS
     assert found.hosts["pc"].verdict == "undecided"  # later than the next activation, but bounded

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from archgen.model.architecture import Architecture
-from archgen.timing.analyse import analyse
+from archgen.timing.run_analysis import analyse_architecture
 
 _SENSORS = {
     "front_lidar": 100,
@@ -70,7 +70,7 @@ def _text() -> str:
 
 
 def test_the_reference_system(derived: Callable[[str], Architecture]) -> None:
-    found = analyse(derived(_text()))
+    found = analyse_architecture(derived(_text()))
     assert len(found.paces) == 25
     special: dict[str, Fraction | int] = {name: Fraction(25, 3) for name in _SLOW}
     special |= {"visualizer": Fraction(50, 3), "cluster_settings": 40, "intersection": 40, "intersection_output": 40}

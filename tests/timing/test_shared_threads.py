@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.model.architecture import Architecture
-from archgen.simulation import simulate
-from archgen.timing.analyse import analyse
+from archgen.simulation import simulate_system
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.task_sets import MS, worst
 
 Derived = Callable[[str], Architecture]
@@ -28,40 +28,40 @@ def test_who_waits_for_a_thread_waits_for_work_on_other_cores(derived: Derived) 
 
     While anyone waits, core 0 or 1 works: 1 + 5 + 5 = 11 ms in all. d shares neither threads nor core with them.
     """
-    found = analyse(derived(BOX.replace("THREADS", "2")))
+    found = analyse_architecture(derived(BOX.replace("THREADS", "2")))
     assert worst(found) == {"a": 11, "b": 11, "c": 11, "d": 7}
     assert "pc core 0 and on those that wait with it" in found.responses["a"].reasons[0].text
-    seen = simulate(found.system, 2, 8)
-    assert seen.activities["a"].worst == 6 * MS
+    seen = simulate_system(found.system, 2, 8)
+    assert seen.activities["a"].worst_response == 6 * MS
 
 
 def test_with_a_thread_for_each_member_nobody_waits_across_cores(derived: Derived) -> None:
-    found = analyse(derived(BOX.replace("THREADS", "3")))
+    found = analyse_architecture(derived(BOX.replace("THREADS", "3")))
     assert worst(found) == {"a": 1, "b": 10, "c": 10, "d": 7}
 
 
 def test_what_is_too_much_for_one_core_but_not_for_two_has_no_bound_and_is_no_overload(derived: Derived) -> None:
     text = BOX.replace("THREADS", "2").replace("20 ms, wcet: 1 ms, bcet: 1 ms", "20 ms, wcet: 15 ms, bcet: 15 ms")
-    found = analyse(derived(text))
+    found = analyse_architecture(derived(text))
     assert found.responses["a"].worst.assumptions == ("unbounded",)
     assert found.hosts["pc"].verdict == "undecided"
 
 
 def test_one_thread_runs_where_its_first_pinned_member_is(derived: Derived) -> None:
-    found = analyse(derived(BOX.replace("THREADS", "1")))
+    found = analyse_architecture(derived(BOX.replace("THREADS", "1")))
     assert worst(found) == {"a": 11, "b": 11, "c": 11, "d": 7}
     assert found.responses["c"].worst.assumptions == (
         "container box has one thread: it runs where the first pinned member is",
     )
-    assert [name for name, _, _ in found.hosts["pc"].places] == ["pc core 0", "pc core 2"]
+    assert [name for name, _, _ in found.hosts["pc"].core_loads] == ["pc core 0", "pc core 2"]
 
 
 def test_a_core_that_is_not_there_keeps_nothing_free(derived: Derived) -> None:
     """The analysis takes d to run anywhere, and so does the simulation: all three cores are there for what is not pinned."""
     text = BOX.replace("THREADS", "3").replace("core: 2", "core: 9").replace("cores: 4", "cores: 3")
-    found = analyse(derived(text))
+    found = analyse_architecture(derived(text))
     assert worst(found)["d"] == 7
-    assert simulate(found.system, 2, 4).activities["d"].worst == 7 * MS
+    assert simulate_system(found.system, 2, 4).activities["d"].worst_response == 7 * MS
 
 
 HELD_UP = """
@@ -82,6 +82,6 @@ def test_what_a_thread_held_back_comes_at_once_and_delays_who_is_less_urgent(der
 
     What bounds it is the busy period of all: 1 + 100 + 1 + 12 of high.
     """
-    assert worst(analyse(derived(HELD_UP))) == {"low": 114, "high": 114, "middle": 114, "other": 114}
+    assert worst(analyse_architecture(derived(HELD_UP))) == {"low": 114, "high": 114, "middle": 114, "other": 114}
     alone = HELD_UP.replace("high, container: box", "high, host: pc")
-    assert worst(analyse(derived(alone)))["other"] == 2
+    assert worst(analyse_architecture(derived(alone)))["other"] == 2

@@ -7,27 +7,27 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline, resources
-from archgen.views.agreement import Made, agreement
-from archgen.views.agreement.interfaces import between
+from archgen.views.agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.partner_interfaces import find_interfaces_between
 from archgen.views.shapes import Inlines, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
 
 
-def made(folder: Path, first: str = "north", second: str = "south", source: str = DUO) -> Made:
-    return agreement(view(checked(folder, source)), first, second, revision="r1")
+def made(folder: Path, first: str = "north", second: str = "south", source: str = DUO) -> PartnerAgreement:
+    return make_agreement(view(checked(folder, source)), first, second, revision="r1")
 
 
-def changed(folder: Path, *edits: tuple[str, str]) -> Made:
+def changed(folder: Path, *edits: tuple[str, str]) -> PartnerAgreement:
     after = DUO
     for old, new in edits:
         assert old in after
         after = after.replace(old, new)
     earlier = view(checked(folder / "before"))
-    return agreement(view(checked(folder / "after", after)), "north", "south", since=("v1", earlier))
+    return make_agreement(view(checked(folder / "after", after)), "north", "south", earlier_revision=("v1", earlier))
 
 
 def keys(folder: Path, first: str, second: str, source: str = DUO) -> list[tuple[str, str, str]]:
-    return [(each.key, *each.pair) for each in between(view(checked(folder, source)), first, second)]
+    return [(each.key, *each.pair) for each in find_interfaces_between(view(checked(folder, source)), first, second)]
 
 
 def test_both_directions_those_of_the_first_partner_first(tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_a_node_of_two_partners_components_makes_neither_answer_for_the_other(tm
     shared = DUO.replace("planner_node: {implements: planner,", "planner_node: {implements: [planner, finder],")
     shared = shared.replace("implements: finder\n", "implements: finder\n    owner: south\n")
     assert ("seeing.camera.image", "south", "north") in keys(tmp_path, "north", "south", shared)
-    found = between(view(checked(tmp_path, shared)), "north", "south")
+    found = find_interfaces_between(view(checked(tmp_path, shared)), "north", "south")
     assert [port.id for each in found if each.key == "seeing.camera.image" for port in each.inputs] == [
         "moving.calibration.image"
     ]
@@ -95,13 +95,13 @@ def test_a_physical_flow_needs_no_message(tmp_path: Path) -> None:
 
 
 def test_every_connection_between_owners_is_in_their_agreement() -> None:
-    found = view(pipeline.check(resources.path("example_ramcip")))
+    found = view(pipeline.check_project(resources.resource_path("example_ramcip")))
     architecture, partners = found.architecture, sorted(found.architecture.partners)
     agreed = {
         (each.key, port.id): each.pair
         for at, first in enumerate(partners)
         for second in partners[at + 1 :]
-        for each in between(found, first, second)
+        for each in find_interfaces_between(found, first, second)
         for port in each.inputs
     }
     for edge in architecture.edges:
@@ -200,11 +200,11 @@ def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
 def test_nothing_changed(tmp_path: Path) -> None:
     moved = DUO.replace("  seeing:\n    owner: south\n", "  seeing: # moved\n\n    owner: south\n")
     assert moved != DUO
-    found = agreement(
-        view(checked(tmp_path / "b", moved)), "north", "south", since=("v1", view(checked(tmp_path / "a")))
+    found = make_agreement(
+        view(checked(tmp_path / "b", moved)), "north", "south", earlier_revision=("v1", view(checked(tmp_path / "a")))
     )
     assert found.changes is not None
-    assert not found.changes.some
+    assert not found.changes.has_changes
     assert text(found.outline.notices[0].inlines) == "Nothing between the two has changed since v1."
 
 
@@ -252,7 +252,7 @@ def test_a_new_name_on_the_same_topic_is_a_change(tmp_path: Path) -> None:
         ("through: [camera, finder", "through: [camera, searcher"),
     )
     assert found.changes is not None
-    assert (found.changes.added, found.changes.removed) == (frozenset(), ())
+    assert (found.changes.added_keys, found.changes.removed_records) == (frozenset(), ())
     assert "Title | ~ changed | Finder · objects | Searcher · objects" in lines(
         section(found.outline, "Searcher · objects").blocks
     )
@@ -270,7 +270,7 @@ def test_a_reader_more_and_a_field_less(tmp_path: Path) -> None:
     assert "Field format | + added |  | string" in said
 
 
-def _summary(found: Made) -> tuple[tuple[Inlines, ...], ...]:
+def _summary(found: PartnerAgreement) -> tuple[tuple[Inlines, ...], ...]:
     table = section(found.outline, "At a glance").blocks[0]
     assert isinstance(table, Table)
     return table.rows
@@ -278,9 +278,9 @@ def _summary(found: Made) -> tuple[tuple[Inlines, ...], ...]:
 
 @pytest.mark.parametrize(("first", "second"), [("certh", "sssa"), ("accrea", "tum"), ("forth", "certh")])
 def test_the_case_study_s_pictures_account_for_all_that_flows(first: str, second: str) -> None:
-    found = view(pipeline.check(resources.path("example_ramcip")))
-    made_of = agreement(found, first, second)
+    found = view(pipeline.check_project(resources.resource_path("example_ramcip")))
+    made_of = make_agreement(found, first, second)
     assert made_of.graph.asked == sum(arrow.count for arrow in made_of.graph.arrows)
     assert {box.id for box in made_of.graph.boxes} >= {end for a in made_of.graph.arrows for end in (a.tail, a.head)}
     listed = [each for each in made_of.outline.sections if each.anchor.startswith("way:")]
-    assert sum(len(each.sections) for each in listed) == made_of.interfaces > 0
+    assert sum(len(each.sections) for each in listed) == made_of.interface_count > 0

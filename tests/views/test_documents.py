@@ -11,36 +11,39 @@ import jsonschema_rs
 import pytest
 
 from archgen import pipeline, resources
-from archgen.outputs import Ask, select, view
-from archgen.pipeline import Checked
-from archgen.views import card, listed, pages, record, report, statistics, words
-from archgen.views.graphs import all_graphs
-from archgen.views.index import Index
-from archgen.views.report import Edition
+from archgen.pipeline import CheckedProject
+from archgen.products.project_outputs import OutputOptions, make_scoped_lookup, select_elements
+from archgen.views import inline_text, resolved_record
+from archgen.views.elements import element_card
+from archgen.views.graphs import make_all_graphs
+from archgen.views.lookup import Lookup
+from archgen.views.pages import report_outline, site_pages
+from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Paragraph, Section, Table, Text
+from archgen.views.tables import element_rows, statistics_tables
 
 WITHOUT_PAGE = {"link", "chain", "view", "policy"}
 """Sorts of element that stand in a table or a chapter of their own and have no page."""
 
 
 @pytest.fixture(scope="module")
-def checked() -> Checked:
-    return pipeline.check(resources.path("example_ramcip"))
+def checked() -> CheckedProject:
+    return pipeline.check_project(resources.resource_path("example_ramcip"))
 
 
 @pytest.fixture(scope="module")
-def whole(checked: Checked) -> Index:
-    return view(checked, Ask())
+def whole(checked: CheckedProject) -> Lookup:
+    return make_scoped_lookup(checked, OutputOptions())
 
 
-def _edition(checked: Checked, index: Index) -> Edition:
-    graphs = {graph.id: graph for graph in all_graphs(index.architecture)}
-    return Edition(
+def _edition(checked: CheckedProject, index: Lookup) -> DocumentEdition:
+    graphs = {graph.id: graph for graph in make_all_graphs(index.architecture)}
+    return DocumentEdition(
         revision="r",
-        chapters=checked.chapters.order,
-        texts=checked.chapters.texts,
-        graphs=graphs,
-        statistics=statistics.statistics(index.architecture),
+        chapter_names=checked.chapters.order,
+        project_chapters=checked.chapters.texts,
+        drawings=graphs,
+        statistics=statistics_tables.make_statistics_tables(index.architecture),
     )
 
 
@@ -76,23 +79,25 @@ def _anchors(sections: tuple[Section, ...]) -> list[str]:
     return found
 
 
-def test_the_report_names_every_place_once(checked: Checked, whole: Index) -> None:
-    outline = report.report(whole, _edition(checked, whole))
+def test_the_report_names_every_place_once(checked: CheckedProject, whole: Lookup) -> None:
+    outline = report_outline.make_report(whole, _edition(checked, whole))
     twice = [anchor for anchor, count in Counter(_anchors(outline.sections)).items() if count > 1]
     assert twice == []
 
 
-def test_the_report_keeps_the_order_of_chapters(checked: Checked, whole: Index) -> None:
-    outline = report.report(whole, _edition(checked, whole))
+def test_the_report_keeps_the_order_of_chapters(checked: CheckedProject, whole: Lookup) -> None:
+    outline = report_outline.make_report(whole, _edition(checked, whole))
     titles = [section.title for section in outline.sections]
     assert titles[:4] == ["Introduction", "Scenarios", "Overview", "Cognitive Reasoning"]
     assert titles[-5:] == ["Type mapping", "Connections", "Requirements trace", "Open points", "Statistics"]
     assert [section.appendix for section in outline.sections] == [False] * (len(titles) - 5) + [True] * 5
 
 
-def test_every_table_is_whole(checked: Checked, whole: Index) -> None:
+def test_every_table_is_whole(checked: CheckedProject, whole: Lookup) -> None:
     edition = _edition(checked, whole)
-    sections = report.report(whole, edition).sections + tuple(page.section for page in pages.pages(whole, edition))
+    sections = report_outline.make_report(whole, edition).sections + tuple(
+        page.section for page in site_pages.make_pages(whole, edition)
+    )
     tables = [block for section in _sections(sections) for block in section.blocks if isinstance(block, Table)]
     assert len(tables) > 300
     for table in tables:
@@ -100,16 +105,16 @@ def test_every_table_is_whole(checked: Checked, whole: Index) -> None:
         assert {len(row) for row in table.rows} == {len(table.columns)}, table.anchor
 
 
-def test_every_mention_leads_to_a_page(checked: Checked, whole: Index) -> None:
-    made = pages.pages(whole, _edition(checked, whole))
+def test_every_mention_leads_to_a_page(checked: CheckedProject, whole: Lookup) -> None:
+    made = site_pages.make_pages(whole, _edition(checked, whole))
     known = {page.anchor for page in made}
     assert len(known) == len(made) == len({page.path for page in made})
     refs = {text.ref for text in _texts(tuple(page.section for page in made)) if text.ref}
     assert {ref for ref in refs - known if ref.split(":")[0] not in WITHOUT_PAGE} == set()
 
 
-def test_every_element_has_a_page(checked: Checked, whole: Index) -> None:
-    known = {page.anchor for page in pages.pages(whole, _edition(checked, whole))}
+def test_every_element_has_a_page(checked: CheckedProject, whole: Lookup) -> None:
+    known = {page.anchor for page in site_pages.make_pages(whole, _edition(checked, whole))}
     found = whole.architecture
     wanted = {f"group:{name}" for name in found.groups} | {f"component:{name}" for name in found.components}
     wanted |= {f"node:{name}" for name in found.nodes} | {f"topic:{topic.name}" for topic in found.topics.values()}
@@ -118,11 +123,11 @@ def test_every_element_has_a_page(checked: Checked, whole: Index) -> None:
     assert wanted - known == set()
 
 
-def test_a_part_holds_nothing_of_others(checked: Checked) -> None:
-    selection, problems = select(checked, "owner:certh")
+def test_a_part_holds_nothing_of_others(checked: CheckedProject) -> None:
+    selection, problems = select_elements(checked, "owner:certh")
     assert problems == ()
-    part = view(checked, Ask(selection, "owner:certh"))
-    outline = report.report(part, _edition(checked, part))
+    part = make_scoped_lookup(checked, OutputOptions(selection, "owner:certh"))
+    outline = report_outline.make_report(part, _edition(checked, part))
     shown = {
         anchor.removeprefix("component:") for anchor in _anchors(outline.sections) if anchor.startswith("component:")
     }
@@ -132,61 +137,63 @@ def test_a_part_holds_nothing_of_others(checked: Checked) -> None:
     assert "owner:certh" in [text.text for notice in outline.notices for text in notice.inlines]
 
 
-def test_the_functional_level_speaks_of_no_node(checked: Checked, whole: Index) -> None:
-    edition = Edition(level="functional", chapters=checked.chapters.order)
-    anchors = _anchors(report.report(whole, edition).sections)
+def test_the_functional_level_speaks_of_no_node(checked: CheckedProject, whole: Lookup) -> None:
+    edition = DocumentEdition(level="functional", chapter_names=checked.chapters.order)
+    anchors = _anchors(report_outline.make_report(whole, edition).sections)
     assert [anchor for anchor in anchors if anchor.split(":")[0] in {"node", "implementation"}] == []
-    assert {page.kind for page in pages.pages(whole, edition)}.isdisjoint({"nodes", "topics", "services", "actions"})
+    assert {page.kind for page in site_pages.make_pages(whole, edition)}.isdisjoint(
+        {"nodes", "topics", "services", "actions"}
+    )
 
 
-def test_the_record_follows_its_schema(whole: Index) -> None:
-    schema = json.loads(resources.path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
-    data = json.loads(json.dumps(record.record(whole)))
+def test_the_record_follows_its_schema(whole: Lookup) -> None:
+    schema = json.loads(resources.resource_path("schemas", "resolved.schema.json").read_text(encoding="utf-8"))
+    data = json.loads(json.dumps(resolved_record.make_record(whole)))
     assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
     assert len(data["components"]) == 61
     assert data["edges"][0].keys() >= {"from", "to", "type", "message"}
 
 
 @pytest.mark.parametrize("sort", ["components", "nodes", "groups", "connections", "edges", "topics", "types", "hosts"])
-def test_lists_are_whole(whole: Index, sort: str) -> None:
-    columns, rows = listed.listed(whole, sort)
+def test_lists_are_whole(whole: Lookup, sort: str) -> None:
+    columns, rows = element_rows.list_element_rows(whole, sort)
     assert rows
     assert {len(row) for row in rows} == {len(columns)}
 
 
-def test_all_connections_are_listed(whole: Index) -> None:
-    _, rows = listed.listed(whole, "connections")
+def test_all_connections_are_listed(whole: Lookup) -> None:
+    _, rows = element_rows.list_element_rows(whole, "connections")
     assert len(rows) == 138
 
 
-def test_every_element_has_a_card(whole: Index) -> None:
-    for name, sorts in card.ids(whole).items():
+def test_every_element_has_a_card(whole: Lookup) -> None:
+    for name, sorts in element_card.kinds_by_id(whole).items():
         for sort in sorts:
-            made = card.card(whole, sort, name)
+            made = element_card.make_card(whole, sort, name)
             assert made.id == name
             assert all(value for _, value in made.facts)
 
 
-def test_a_card_is_found_by_the_end_of_an_id_or_by_a_title(whole: Index) -> None:
+def test_a_card_is_found_by_the_end_of_an_id_or_by_a_title(whole: Lookup) -> None:
     wanted = [("component", "environment_state.object_recognition")]
-    assert card.matches(whole, "object_recognition") == wanted
-    assert card.matches(whole, "environment_state.object_recognition") == wanted
-    assert card.matches(whole, "object Recognition") == wanted
-    assert card.matches(whole, "nothing of this name") == []
+    assert element_card.find_elements(whole, "object_recognition") == wanted
+    assert element_card.find_elements(whole, "environment_state.object_recognition") == wanted
+    assert element_card.find_elements(whole, "object Recognition") == wanted
+    assert element_card.find_elements(whole, "nothing of this name") == []
 
 
 def test_empty_projects_have_all_documents(tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text("archgen: 1\n", encoding="utf-8")
-    empty = pipeline.check(tmp_path)
-    index = view(empty, Ask())
+    empty = pipeline.check_project(tmp_path)
+    index = make_scoped_lookup(empty, OutputOptions())
     edition = _edition(empty, index)
-    assert report.report(index, edition).title
-    assert next(page.path for page in pages.pages(index, edition)) == "index.html"
-    assert record.record(index)["components"] == {}
+    assert report_outline.make_report(index, edition).title
+    assert next(page.path for page in site_pages.make_pages(index, edition)) == "index.html"
+    assert resolved_record.make_record(index)["components"] == {}
 
 
 def test_what_a_finding_names_is_code() -> None:
-    said = words.spoken("nobody reads `x` of `g.c`, or `it")
+    said = inline_text.message_to_inlines("nobody reads `x` of `g.c`, or `it")
     assert [(run.text, run.code) for run in said] == [
         ("nobody reads ", False),
         ("x", True),
@@ -194,4 +201,4 @@ def test_what_a_finding_names_is_code() -> None:
         ("g.c", True),
         (", or `it", False),
     ]
-    assert words.spoken("take `x` out", muted=True)[1] == Text("x", code=True, muted=True)
+    assert inline_text.message_to_inlines("take `x` out", muted=True)[1] == Text("x", code=True, muted=True)

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.outputs import Ask, view
-from archgen.views import card, listed, pages_rest, tables
-from archgen.views.index import Index
+from archgen.products.project_outputs import OutputOptions, make_scoped_lookup
+from archgen.views.elements import element_card
+from archgen.views.lookup import Lookup
+from archgen.views.pages import context_pages
 from archgen.views.shapes import Facts, Page
+from archgen.views.tables import architecture_tables, element_rows
 
 PROJECT = """
 archgen: 1
@@ -33,9 +35,9 @@ SIZES = {"Speed": "52 B (computed)", "Image": "", "Bell": "1 kB", "Word": "at mo
 
 
 @pytest.fixture
-def index(tmp_path: Path) -> Index:
+def index(tmp_path: Path) -> Lookup:
     (tmp_path / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
-    return view(pipeline.check(tmp_path), Ask())
+    return make_scoped_lookup(pipeline.check_project(tmp_path), OutputOptions())
 
 
 def fact(page: Page) -> str:
@@ -43,21 +45,25 @@ def fact(page: Page) -> str:
     return "".join(text.text for name, value in facts.rows if name == "Size" for text in value)
 
 
-def test_tables_lists_and_cards(index: Index) -> None:
-    table = tables.types(index)
+def test_tables_lists_and_cards(index: Lookup) -> None:
+    table = architecture_tables.make_type_table(index)
     assert table is not None
     assert {row[0][0].text: "".join(text.text for text in row[2]) for row in table.rows} == SIZES
-    assert {row[0]: row[2] for row in listed.listed(index, "types")[1]} == SIZES
-    assert {name: dict(card.card(index, "type", name).facts).get("size", "") for name in SIZES} == SIZES
+    assert {row[0]: row[2] for row in element_rows.list_element_rows(index, "types")[1]} == SIZES
+    assert {name: dict(element_card.make_card(index, "type", name).facts).get("size", "") for name in SIZES} == SIZES
 
 
-def test_the_page_of_a_type_says_why_its_size_is_not_known(index: Index) -> None:
-    made = {page.title: fact(page) for page in pages_rest.pages(index, tuple) if page.section.anchor[:5] == "type:"}
+def test_the_page_of_a_type_says_why_its_size_is_not_known(index: Lookup) -> None:
+    made = {
+        page.title: fact(page)
+        for page in context_pages.make_context_pages(index, tuple)
+        if page.section.anchor[:5] == "type:"
+    }
     assert made == {**SIZES, "Image": "unknown: the field header.frame_id may have any length (string)"}
 
 
-def test_the_page_of_a_topic(index: Index) -> None:
-    made = {page.title: fact(page) for page in pages_rest.topics(index)}
+def test_the_page_of_a_topic(index: Lookup) -> None:
+    made = {page.title: fact(page) for page in context_pages.make_topic_pages(index)}
     assert made["/driving/guard/velocity"] == "52 B (computed)"
     assert made["/driving/guard/bell"] == "1 kB"
     assert made["/driving/guard/picture"] == ""

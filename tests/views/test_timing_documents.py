@@ -8,23 +8,24 @@ from dataclasses import replace
 import pytest
 
 from archgen import pipeline, resources
-from archgen.views import pages, report, timing, timing_of
-from archgen.views.drawings import drawings
-from archgen.views.index import Index, index
-from archgen.views.report import Edition
+from archgen.views.drawing_set import make_drawings
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.pages import report_outline, site_pages
+from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import Facts, Figure, Section, Table
+from archgen.views.timing import element_timing, timing_tables
 from tests.timings import timed
 
 
 @pytest.fixture(scope="module")
-def view() -> Index:
-    architecture = pipeline.check(resources.path("example_ramcip")).architecture
-    return index(architecture, timed=timed(architecture))
+def view() -> Lookup:
+    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    return make_lookup(architecture, timing_lookup=timed(architecture))
 
 
 @pytest.fixture(scope="module")
-def edition(view: Index) -> Edition:
-    return Edition(graphs=drawings(view, None, "implementation"))
+def edition(view: Lookup) -> DocumentEdition:
+    return DocumentEdition(drawings=make_drawings(view, None, "implementation"))
 
 
 def _sections(sections: tuple[Section, ...]) -> Iterator[Section]:
@@ -43,8 +44,8 @@ def _cells(table: Table, first: str) -> list[str]:
     return ["".join(part.text for part in cell) for cell in row]
 
 
-def test_the_chapter_has_every_table_and_picture(view: Index, edition: Edition) -> None:
-    (chapter,) = (each for each in report.report(view, edition).sections if each.anchor == "page:timing")
+def test_the_chapter_has_every_table_and_picture(view: Lookup, edition: DocumentEdition) -> None:
+    (chapter,) = (each for each in report_outline.make_report(view, edition).sections if each.anchor == "page:timing")
     assert set(_tables(chapter)) == {
         "table:periods",
         "table:timing",
@@ -53,60 +54,64 @@ def test_the_chapter_has_every_table_and_picture(view: Index, edition: Edition) 
         "table:bandwidth",
     }
     shown = {block.graph for each in _sections((chapter,)) for block in each.blocks if isinstance(block, Figure)}
-    assert shown == {name for name in edition.graphs if name.split("/")[0] in {"timing", "load"}}
+    assert shown == {name for name in edition.drawings if name.split("/")[0] in {"timing", "load"}}
 
 
-def test_report_and_site_say_the_same(view: Index, edition: Edition) -> None:
-    (chapter,) = (each for each in report.report(view, edition).sections if each.anchor == "page:timing")
-    (page,) = (each for each in pages.pages(view, edition) if each.path == "timing.html")
+def test_report_and_site_say_the_same(view: Lookup, edition: DocumentEdition) -> None:
+    (chapter,) = (each for each in report_outline.make_report(view, edition).sections if each.anchor == "page:timing")
+    (page,) = (each for each in site_pages.make_pages(view, edition) if each.path == "timing.html")
     assert _tables(page.section) == _tables(chapter)
 
 
-def test_every_activity_has_its_row(view: Index) -> None:
-    assert view.timed is not None
-    table = timing.elements(view, view.timed)
+def test_every_activity_has_its_row(view: Lookup) -> None:
+    assert view.timing is not None
+    table = timing_tables.make_activity_table(view, view.timing)
     assert table is not None
-    assert [row[0][0].text for row in table.rows] == list(view.timed.analysis.system.activities)
+    assert [row[0][0].text for row in table.rows] == list(view.timing.analysis.system.activities)
     assert _cells(table, "object_recognizer")[1:4] == ["periodic", "5 Hz", "200 ms"]
     assert _cells(table, "floor_watch")[4].startswith("from object_recognizer")
     assert _cells(table, "light_engine")[5] == "unknown"
 
 
-def test_every_chain_has_a_section_and_a_page(view: Index, edition: Edition) -> None:
-    outline = report.report(view, edition)
+def test_every_chain_has_a_section_and_a_page(view: Lookup, edition: DocumentEdition) -> None:
+    outline = report_outline.make_report(view, edition)
     anchors = [section.anchor for section in _sections(outline.sections)]
     assert len(anchors) == len(set(anchors))
     wanted = {f"chain:{name}" for name in view.architecture.chains}
     assert wanted <= set(anchors)
-    assert wanted == {page.anchor for page in pages.pages(view, edition) if page.kind == "chains"}
+    assert wanted == {page.anchor for page in site_pages.make_pages(view, edition) if page.kind == "chains"}
 
 
-def test_the_functional_level_has_no_timing_pictures(view: Index) -> None:
-    functional = Edition(level="functional", graphs=drawings(view, None, "functional"))
-    assert [name for name in functional.graphs if name.split("/")[0] in {"timing", "load"}] == []
-    assert "page:timing" not in {section.anchor for section in report.report(view, functional).sections}
+def test_the_functional_level_has_no_timing_pictures(view: Lookup) -> None:
+    functional = DocumentEdition(level="functional", drawings=make_drawings(view, None, "functional"))
+    assert [name for name in functional.drawings if name.split("/")[0] in {"timing", "load"}] == []
+    assert "page:timing" not in {section.anchor for section in report_outline.make_report(view, functional).sections}
 
 
-def test_without_timing_the_chains_are_listed_with_their_deadlines(view: Index) -> None:
-    plain = replace(view, timed=None)
-    (chapter,) = (each for each in report.report(plain, Edition()).sections if each.anchor == "page:chains")
+def test_without_timing_the_chains_are_listed_with_their_deadlines(view: Lookup) -> None:
+    plain = replace(view, timing=None)
+    (chapter,) = (
+        each for each in report_outline.make_report(plain, DocumentEdition()).sections if each.anchor == "page:chains"
+    )
     assert [column.title for column in _tables(chapter)["table:chains"].columns][2] == "Deadline"
 
 
-def test_pages_of_elements_say_the_derived_rate(view: Index) -> None:
+def test_pages_of_elements_say_the_derived_rate(view: Lookup) -> None:
     node = view.architecture.nodes["floor_watch"]
-    facts = {name: "".join(part.text for part in value) for name, value in timing_of.node_facts(view, node)}
+    facts = {name: "".join(part.text for part in value) for name, value in element_timing.make_node_facts(view, node)}
     assert facts["Rate"].endswith("event, from object_recognizer, semantic_mapper")
     assert facts["Response"] == "within 12 ms (own core assumed)"
-    (first, *_) = timing_of.host_blocks(view, "vision_pc")
+    (first, *_) = element_timing.make_load_blocks(view, "vision_pc")
     assert isinstance(first, Figure)
     assert first.graph == "load/vision_pc"
 
 
-def test_a_chain_names_what_is_missing(view: Index) -> None:
-    assert view.timed is not None
-    (result,) = (each for each in view.timed.chains if each.verdict == "open")
-    facts = next(block for block in timing_of.chain_blocks(view, view.timed, result) if isinstance(block, Facts))
+def test_a_chain_names_what_is_missing(view: Lookup) -> None:
+    assert view.timing is not None
+    (result,) = (each for each in view.timing.chains if each.verdict == "open")
+    facts = next(
+        block for block in element_timing.make_chain_blocks(view, view.timing, result) if isinstance(block, Facts)
+    )
     said = {name: "".join(part.text for part in value) for name, value in facts.rows}
     assert said["Reaction time and data age, at the latest"].endswith(
         "; no bound: execution time of light_engine unknown"

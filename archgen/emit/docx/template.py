@@ -73,7 +73,7 @@ class Template:
 
 def opened(data: bytes | None) -> Template:
     """Open a partner's template, or archgen's own for None."""
-    package = unpacked(resources.path("backends", "report", "template")) if data is None else unpack(data)
+    package = unpacked(resources.resource_path("backends", "report", "template")) if data is None else unpack(data)
     main = _main_part(package)
     root = parse(package.parts[main], main)
     if root.tag == f"{{{_STRICT}}}document":
@@ -93,7 +93,7 @@ def opened(data: bytes | None) -> Template:
 
 def own_styles() -> etree._Element:
     """Give the styles of archgen's own template."""
-    path = resources.path("backends", "report", "template", "word", "styles.xml")
+    path = resources.resource_path("backends", "report", "template", "word", "styles.xml")
     return parse(path.read_bytes(), path.name)
 
 

@@ -15,29 +15,35 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from archgen.emit.graphviz import cache as store
+from archgen.emit.graphviz import picture_cache as store
+from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.palette import dark_rules
-from archgen.emit.graphviz.pool import MissingGraphviz, Progress, Watch, Worker, idle
-from archgen.emit.graphviz.pool import draw as draw_all
-from archgen.emit.graphviz.worker import Task
+from archgen.emit.graphviz.worker_pool import (
+    DrawingObserver,
+    DrawingWorker,
+    MissingGraphviz,
+    ProgressCallback,
+    create_worker,
+)
+from archgen.emit.graphviz.worker_pool import draw_tasks as draw_all
 from archgen.emit.picture import Picture
-from archgen.views.bars import Chart, Drawing
+from archgen.views.chart_shapes import Chart, Drawing
 
-__all__ = ["FORMATS", "MissingGraphviz", "dark_rules", "draw", "early"]
+__all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 
-FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
+PICTURE_FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
 """The formats that can be asked for, by Picture's fields; `dot` is always there."""
 
 
-def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
-    graphs: Sequence[Drawing],
+def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
+    drawings: Sequence[Drawing],
     formats: Sequence[str],
     *,
-    link: Callable[[str], str | None],
+    resolve_link: Callable[[str], str | None],
     cache: Path | None = None,
     workers: int | None = None,
-    progress: Progress | None = None,
-    ready: Sequence[Worker] = (),
+    progress: ProgressCallback | None = None,
+    ready_workers: Sequence[DrawingWorker] = (),
 ) -> dict[str, Picture]:
     """Draw graphs and charts in some formats. Return the pictures by the graphs' ids.
 
@@ -45,47 +51,51 @@ def draw(  # noqa: PLR0913 - what to draw, and how, each by its name
     folder that archgen may fill; `ready_workers` comes from `start_early_workers`. Raise MissingGraphviz where nothing
     can be drawn and not all pictures are cached.
     """
-    cache = cache if cache and _writable(cache) else None
-    wanted = tuple(form for form in FORMATS if form in formats)
+    cache = cache if cache and _is_writable(cache) else None
+    wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
-    linked = [dict(_links(graph, link)) for graph in graphs]
-    keys = [store.key(graph, links) for graph, links in zip(graphs, linked, strict=True)]
-    found = {at: hit for at, name in enumerate(keys) if cache and (hit := store.load(cache, name, wanted))}
-    missing = [at for at in range(len(graphs)) if at not in found]
+    addresses = [dict(_link_addresses(graph, resolve_link)) for graph in drawings]
+    keys = [store.picture_key(graph, links) for graph, links in zip(drawings, addresses, strict=True)]
+    pictures = {
+        at: hit for at, name in enumerate(keys) if cache and (hit := store.load_picture(cache, name, wanted_formats))
+    }
+    missing = [at for at in range(len(drawings)) if at not in pictures]
     if missing:
-        tasks = [Task(graphs[at], linked[at], wanted) for at in missing]
+        tasks = [DrawingTask(drawings[at], addresses[at], wanted_formats) for at in missing]
 
-        def keep(at: int, picture: Picture) -> None:
+        def keep_picture(index: int, picture: Picture) -> None:
             # A picture with a warning is drawn anew each time: a layout that was only too slow may succeed in the next
             # run.
             if cache and picture.warning is None:
                 # Stored as soon as it is drawn, in the worker's thread: while other pictures are still laid out.
                 with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
-                    store.store(cache, keys[missing[at]], picture, wanted)
+                    store.store_picture(cache, keys[missing[index]], picture, wanted_formats)
 
-        drawn = _draw(tasks, cache, workers or os.cpu_count() or 1, Watch(progress, keep), ready)
-        found.update(zip(missing, drawn, strict=True))
+        drawn = _draw_tasks(
+            tasks, cache, workers or os.cpu_count() or 1, DrawingObserver(progress, keep_picture), ready_workers
+        )
+        pictures.update(zip(missing, drawn, strict=True))
         if cache:
-            store.prune(cache, len(graphs))
-    return {graph.id: found[at] for at, graph in enumerate(graphs)}
+            store.prune_pictures(cache, len(drawings))
+    return {graph.id: pictures[at] for at, graph in enumerate(drawings)}
 
 
 @contextmanager
-def early(cache: Path | None) -> Iterator[Sequence[Worker]]:
+def start_early_workers(cache: Path | None) -> Iterator[Sequence[DrawingWorker]]:
     """Start drawing processes before the graphs are known, if no picture is cached: then all processes are needed."""
-    workers: list[Worker] = []
-    if cache and _writable(cache) and not any(cache.glob("*.picture")):
-        workers = [idle(cache) for _ in range(os.cpu_count() or 1)]
+    workers: list[DrawingWorker] = []
+    if cache and _is_writable(cache) and not any(cache.glob("*.picture")):
+        workers = [create_worker(cache) for _ in range(os.cpu_count() or 1)]
     try:
-        for each in workers:
-            each.begin()
+        for worker in workers:
+            worker.start_process()
         yield workers
     finally:
-        for each in workers:
-            each.stop()
+        for worker in workers:
+            worker.stop_process()
 
 
-def _writable(folder: Path) -> bool:
+def _is_writable(folder: Path) -> bool:
     """Return whether a folder can hold the cache. Without one, pictures are drawn each time."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -95,24 +105,28 @@ def _writable(folder: Path) -> bool:
         return False
 
 
-def _draw(
-    tasks: Sequence[Task], cache: Path | None, workers: int, watch: Watch, ready: Sequence[Worker]
+def _draw_tasks(
+    tasks: Sequence[DrawingTask],
+    cache: Path | None,
+    workers: int,
+    observer: DrawingObserver,
+    ready_workers: Sequence[DrawingWorker],
 ) -> tuple[Picture, ...]:
     if cache:
-        return draw_all(tasks, cache, workers=workers, watch=watch, ready=ready)
+        return draw_all(tasks, cache, workers=workers, observer=observer, ready_workers=ready_workers)
     # Even without a cache the workers need a folder for fontconfig. Early workers exist only with a cache: none to pass
     # on.
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
-        return draw_all(tasks, Path(folder), workers=workers, watch=watch)
+        return draw_all(tasks, Path(folder), workers=workers, observer=observer)
 
 
-def _links(graph: Drawing, link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
+def _link_addresses(drawing: Drawing, resolve_link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
     """Yield each ref of a graph that has an address, with the address."""
-    if isinstance(graph, Chart):
-        refs = [bar.ref for bar in graph.bars]
+    if isinstance(drawing, Chart):
+        refs = [bar.ref for bar in drawing.bars]
     else:
-        refs = [item.ref for items in (graph.boxes, graph.arrows, graph.clusters) for item in items]
+        refs = [item.ref for items in (drawing.boxes, drawing.arrows, drawing.clusters) for item in items]
     for ref in dict.fromkeys(refs):
-        href = link(ref) if ref else None
+        href = resolve_link(ref) if ref else None
         if ref and href:
             yield ref, href

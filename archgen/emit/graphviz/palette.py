@@ -97,39 +97,39 @@ _DARK = {
 }
 
 
-def hue(index: int | None) -> str:
+def hue_colour(index: int | None) -> str:
     """Return the colour of a palette index; beyond ten they repeat."""
     return FRAME if index is None else HUES[index % len(HUES)]
 
 
-def tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
+def mix_tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
     """Return the paper's colour with a share of another colour mixed in."""
     pairs = ((int(colour[at : at + 2], 16), int(paper[at : at + 2], 16)) for at in (1, 3, 5))
     return "#" + "".join(f"{round(share * over + (1 - share) * under):02x}" for over, under in pairs)
 
 
-def text_on(fill: str) -> str:
+def text_colour_on(fill: str) -> str:
     """Return white or dark, whichever reads better as text on a fill."""
     red, green, blue = (int(fill[at : at + 2], 16) for at in (1, 3, 5))
     # Perceived brightness (the weights of ITU-R BT.601), 0 to 255.
     if 0.299 * red + 0.587 * green + 0.114 * blue < 135:  # noqa: PLR2004
         return PAPER
-    return INK if fill in _STEADY else TEXT
+    return INK if fill in _STEADY_FILLS else TEXT
 
 
-def rim_on(fill: str) -> str:
+def rim_colour_on(fill: str) -> str:
     """Return a frame colour that stands out from its fill and from the paper, in the light and in the dark."""
-    return RIM if text_on(fill) == INK else FRAME
+    return RIM if text_colour_on(fill) == INK else FRAME
 
 
-_STEADY = frozenset(PERIODS.values()) - {PAPER}
+_STEADY_FILLS = frozenset(PERIODS.values()) - {PAPER}
 
 
 def dark_pairs() -> tuple[tuple[str, str], ...]:
     """Return pairs of each light colour and its dark counterpart."""
     hues = dict(zip(HUES, _DARK_HUES, strict=True))
-    tints = {tint(light): tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
-    tints |= {tint(light): tint(_DARK[light], 0.16, _DARK_PAPER) for light in CHANGES.values()}
+    tints = {mix_tint(light): mix_tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
+    tints |= {mix_tint(light): mix_tint(_DARK[light], 0.16, _DARK_PAPER) for light in CHANGES.values()}
     return tuple({**tints, **hues, **_DARK}.items())
 
 

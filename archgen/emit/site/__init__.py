@@ -9,25 +9,25 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from archgen.emit import backends
+from archgen.emit import backend_manifests
+from archgen.emit.file_tree import FileTree, make_file_tree
 from archgen.emit.picture import Picture
-from archgen.emit.site import pictures as drawing
-from archgen.emit.site.blocks import Writer
-from archgen.emit.site.chapters import ChapterFiles, Chapters
-from archgen.emit.site.links import Links, collect, here
-from archgen.emit.site.markup import clean
-from archgen.emit.site.navigation import Navigation, navigation
-from archgen.emit.tree import FileTree, tree
+from archgen.emit.site import page_pictures as drawing
+from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
+from archgen.emit.site.html_blocks import PageWriter
+from archgen.emit.site.html_text import replace_forbidden
+from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
+from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
 from archgen.views.shapes import Page, Paragraph
 
 if TYPE_CHECKING:
     from jinja2 import Environment, Template
 
-FONTS = Path(__file__).resolve().parent.parent / "fonts"
+FONT_FOLDER = Path(__file__).resolve().parent.parent / "fonts"
 """The font that pictures are laid out with. Pages load the same, so that text fits its boxes in every browser."""
 
 
-def write(  # noqa: PLR0913 - what a site is made of
+def build_site(  # noqa: PLR0913 - what a site is made of
     pages: Sequence[Page],
     pictures: Mapping[str, Picture],
     *,
@@ -40,48 +40,59 @@ def write(  # noqa: PLR0913 - what a site is made of
 
     Links in the pictures must be `#` and the anchor that they lead to.
     """
-    backend = backends.shipped("site")
-    links = collect(pages)
-    way = navigation(pages, links, _kinds(backend))
-    chapters = Chapters(chapter_files)
-    template = _template(backend.folder)
-    found = [*_assets(backend.folder), *_pictures(pictures, links)]
+    backend = backend_manifests.read_shipped_backend("site")
+    links = collect_links(pages)
+    navigation = build_navigation(pages, links, _navigation_kinds(backend))
+    chapter_writer = ChapterWriter(chapter_files)
+    template = _page_template(backend.folder)
+    files = [*_read_assets(backend.folder), *_picture_files(pictures, links)]
     for page in pages:
         path = links.files[page.path]
-        writer = Writer(here(path, links), pictures, chapters)
-        frame = _frame(page, writer, way, notices)
+        writer = PageWriter(open_page(path, links), pictures, chapter_writer)
+        variables = _page_variables(page, writer, navigation, notices)
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
-        found.append((path, template.render(frame, title=clean(title), revision=clean(revision)).encode()))
-    return tree((*found, *chapters.files.items()))
+        files.append(
+            (
+                path,
+                template.render(
+                    variables, title=replace_forbidden(title), revision=replace_forbidden(revision)
+                ).encode(),
+            )
+        )
+    return make_file_tree((*files, *chapter_writer.files.items()))
 
 
-def _frame(page: Page, writer: Writer, way: Navigation, notices: Sequence[Paragraph]) -> dict[str, object]:
+def _page_variables(
+    page: Page, writer: PageWriter, navigation: SiteNavigation, notices: Sequence[Paragraph]
+) -> dict[str, object]:
     """Return the variables of a page's template."""
-    place = writer.here
+    current_page = writer.current_page
     return {
-        "heading": clean(page.title),
-        "lead": clean(page.lead),
-        "root": place.root,
-        "start": place.root + way.start,
-        "crumbs": [(clean(text), href) for text, href in way.crumbs(page, place.root)],
-        "navigation": way.html(page, place.root),
-        "notices": [writer.paragraph(notice) for notice in notices],
-        "contents": [(clean(section.title), place.id(section.anchor)) for section in page.section.sections],
-        "content": writer.content(page.section),
+        "heading": replace_forbidden(page.title),
+        "lead": replace_forbidden(page.lead),
+        "root": current_page.root,
+        "start": current_page.root + navigation.start,
+        "crumbs": [(replace_forbidden(text), href) for text, href in navigation.page_crumbs(page, current_page.root)],
+        "navigation": navigation.write_tree(page, current_page.root),
+        "notices": [writer.write_paragraph(notice) for notice in notices],
+        "contents": [
+            (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
+        ],
+        "content": writer.write_content(page.section),
     }
 
 
-def _kinds(backend: backends.Backend) -> tuple[tuple[str, str], ...]:
+def _navigation_kinds(backend: backend_manifests.Backend) -> tuple[tuple[str, str], ...]:
     return tuple((entry["kind"], entry["title"]) for entry in backend.options["navigation"])
 
 
 @cache
-def _template(folder: Path) -> Template:
+def _page_template(folder: Path) -> Template:
     """Compile the template of pages, once for all pages and all runs of a process."""
-    return environment(folder).get_template("page.html.j2")
+    return page_environment(folder).get_template("page.html.j2")
 
 
-def environment(folder: Path) -> Environment:
+def page_environment(folder: Path) -> Environment:
     """Create Jinja's environment for the site's own templates: all that is not marked safe is escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -94,22 +105,25 @@ def environment(folder: Path) -> Environment:
     )
 
 
-def _pictures(pictures: Mapping[str, Picture], links: Links) -> Iterator[tuple[str, bytes]]:
+def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterator[tuple[str, bytes]]:
     """Yield a file for each picture; the page's picture links to it."""
-    for graph, picture in pictures.items():
+    for picture_id, picture in pictures.items():
         if picture.svg is not None:
-            path = drawing.path(graph)
-            place = here(path, links)
-            yield path, drawing.alone(picture.svg, place.href, drawing.style_alone(place.root))
+            path = drawing.picture_path(picture_id)
+            current_page = open_page(path, links)
+            yield (
+                path,
+                drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root)),
+            )
 
 
 @cache
-def _assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
+def _read_assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
     """Read the files that pages load: style, script and fonts, and the style of pictures."""
-    own = (
+    asset_paths = (
         (path.relative_to(folder).as_posix(), path) for path in sorted((folder / "assets").rglob("*")) if path.is_file()
     )
-    fonts = ((f"assets/fonts/{path.name.lower()}", path) for path in sorted(FONTS.iterdir()))
+    font_paths = ((f"assets/fonts/{path.name.lower()}", path) for path in sorted(FONT_FOLDER.iterdir()))
     # Lower case, as all paths that archgen makes.
-    files = [(name.lower(), path.read_bytes()) for name, path in (*own, *fonts)]
-    return (*files, ("assets/pictures.css", drawing.style_embedded().encode()))
+    files = [(name.lower(), path.read_bytes()) for name, path in (*asset_paths, *font_paths)]
+    return (*files, ("assets/pictures.css", drawing.embedded_style().encode()))

@@ -13,22 +13,22 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from archgen.diagnostic import Diagnostic
-from archgen.emit.backends import RULE, Backend
-from archgen.emit.names import safe_paths
-from archgen.emit.text.limits import Limits
-from archgen.emit.tree import FileTree, tree
-from archgen.source import Span
-from archgen.views.shapes import plain
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.emit.backend_manifests import BACKEND_ERROR_RULE, Backend
+from archgen.emit.file_tree import FileTree, make_file_tree
+from archgen.emit.safe_names import assign_safe_paths
+from archgen.emit.text.template_limits import TemplateLimits
+from archgen.views.shapes import shape_to_plain
 
-LIMITS = Limits()
-_ROOT = Path(__file__).resolve().parents[3]
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from archgen.emit.text.worker import main; main()"
-_LARGEST_ASSETS = 64_000_000
+DEFAULT_LIMITS = TemplateLimits()
+_PACKAGE_ROOT = Path(__file__).resolve().parents[3]
+_WORKER_CODE = "import sys; sys.path.insert(0, sys.argv[1]); from archgen.emit.text.template_worker import main; main()"
+_MAX_ASSET_BYTES = 64_000_000
 
 
-def write(
-    backend: Backend, views: Mapping[str, object], limits: Limits = LIMITS
+def render_backend(
+    backend: Backend, views: Mapping[str, object], limits: TemplateLimits = DEFAULT_LIMITS
 ) -> tuple[FileTree | None, tuple[Diagnostic, ...]]:
     """Render a backend's files. `views` has the shapes by their names in the manifest (`pages`, `record`, ...).
 
@@ -37,61 +37,61 @@ def write(
     request = {
         "templates": str(backend.folder / "templates"),
         "files": [asdict(file) for file in backend.files],
-        "data": {name: plain(views[name]) for name in backend.views},
-        "options": plain(backend.options),
+        "data": {name: shape_to_plain(views[name]) for name in backend.views},
+        "options": shape_to_plain(backend.options),
         "limits": asdict(limits),
     }
-    answer = _ask(request, limits)
+    answer = _run_worker(request, limits)
     if "error" in answer:
-        return None, (_diagnostic(backend, answer),)
+        return None, (_make_diagnostic(backend, answer),)
     rendered = [(str(path), str(text)) for path, text in answer["files"]]
     try:
-        found = [*_assets(backend), *((path, text.encode()) for path, text in rendered)]
+        files = [*_read_assets(backend), *((path, text.encode()) for path, text in rendered)]
     except (_AssetError, OSError) as error:
-        return None, (_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
-    paths = safe_paths(path for path, _ in found)
-    return tree((paths[path], data) for path, data in found), ()
+        return None, (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
+    paths = assign_safe_paths(path for path, _ in files)
+    return make_file_tree((paths[path], data) for path, data in files), ()
 
 
 class _AssetError(Exception):
     """An asset cannot be copied."""
 
 
-def _ask(request: Mapping[str, Any], limits: Limits) -> Mapping[str, Any]:
+def _run_worker(request: Mapping[str, Any], limits: TemplateLimits) -> Mapping[str, Any]:
     """Run the worker process and return its answer, or an `error` where one of its limits ended it."""
     # -I: neither the current folder nor the environment decides what is imported. -B: a confined process writes no
     # files.
-    command = [sys.executable, "-I", "-B", "-c", _START, str(_ROOT)]
+    command = [sys.executable, "-I", "-B", "-c", _WORKER_CODE, str(_PACKAGE_ROOT)]
     try:
-        done = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
+        process = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
             command, input=json.dumps(request).encode(), capture_output=True, timeout=limits.waiting, check=False
         )
     except subprocess.TimeoutExpired:
         return {"error": f"it takes more than {limits.waiting:g} s", "template": None, "line": None}
     try:
-        answer = json.loads(done.stdout)
+        answer = json.loads(process.stdout)
     except ValueError:
         answer = None
-    if isinstance(answer, dict) and done.returncode == 0:
+    if isinstance(answer, dict) and process.returncode == 0:
         return answer
-    return {"error": _cause(done, limits), "template": None, "line": None}
+    return {"error": _explain_failure(process, limits), "template": None, "line": None}
 
 
-def _cause(done: subprocess.CompletedProcess[bytes], limits: Limits) -> str:
+def _explain_failure(process: subprocess.CompletedProcess[bytes], limits: TemplateLimits) -> str:
     """Describe what ended a worker that could not answer."""
-    if b"MemoryError" in done.stderr:
+    if b"MemoryError" in process.stderr:
         return f"it needs more than {limits.memory // 1_000_000} MB of memory"
     # Ended by a signal: SIGXCPU or SIGKILL from the limit on computing time.
-    if done.returncode < 0:
+    if process.returncode < 0:
         return f"its templates were stopped: they may compute for {limits.computing} s"
-    last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no reason was given"]
-    return f"its templates could not be run: {last[0]}"
+    last_line = process.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no reason was given"]
+    return f"its templates could not be run: {last_line[0]}"
 
 
-def _assets(backend: Backend) -> list[tuple[str, bytes]]:
+def _read_assets(backend: Backend) -> list[tuple[str, bytes]]:
     """Read the files in assets/: no link, and not more than `_MAX_ASSET_BYTES` in all."""
     folder = backend.folder / "assets"
-    found, size = [], 0
+    assets, size = [], 0
     for path in sorted(folder.rglob("*")) if folder.is_dir() and not folder.is_symlink() else ():
         name = path.relative_to(backend.folder).as_posix()
         if path.is_symlink():
@@ -99,15 +99,15 @@ def _assets(backend: Backend) -> list[tuple[str, bytes]]:
             raise _AssetError(msg)
         if path.is_file():
             size += path.stat().st_size
-            if size > _LARGEST_ASSETS:
-                msg = f"its assets have more than {_LARGEST_ASSETS // 1_000_000} MB"
+            if size > _MAX_ASSET_BYTES:
+                msg = f"its assets have more than {_MAX_ASSET_BYTES // 1_000_000} MB"
                 raise _AssetError(msg)
-            found.append((name, path.read_bytes()))
-    return found
+            assets.append((name, path.read_bytes()))
+    return assets
 
 
-def _diagnostic(backend: Backend, answer: Mapping[str, Any]) -> Diagnostic:
+def _make_diagnostic(backend: Backend, answer: Mapping[str, Any]) -> Diagnostic:
     template, line = answer["template"], answer["line"] or 1
     file = f"{backend.name}/templates/{template}" if template else f"{backend.name}/backend.yaml"
     message = f"the backend `{backend.id}` fails: {answer['error']}"
-    return Diagnostic(RULE.name, message, Span(file, line, 1, line, 1))
+    return Diagnostic(BACKEND_ERROR_RULE.name, message, Span(file, line, 1, line, 1))

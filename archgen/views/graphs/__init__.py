@@ -18,71 +18,77 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.selector import Selecting, Selection
-from archgen.views.graphs import selected, timing
-from archgen.views.graphs.component import component
-from archgen.views.graphs.folding import fold
-from archgen.views.graphs.group import group
-from archgen.views.graphs.hosts import hosts
-from archgen.views.graphs.implementation import implementation
-from archgen.views.graphs.overview import components, overview
-from archgen.views.graphs.ros import ros
-from archgen.views.index import Index, index
+from archgen.model.selector_evaluation import Selection, SelectorEvaluator
+from archgen.views.graphs import selection_graphs, timing_graphs
+from archgen.views.graphs.component_graph import draw_component
+from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.graphs.group_graph import draw_group
+from archgen.views.graphs.host_graph import draw_hosts
+from archgen.views.graphs.implementation_graph import draw_implementation
+from archgen.views.graphs.overview_graphs import draw_components, draw_overview
+from archgen.views.graphs.ros_graph import draw_ros_graph
+from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Graph
-from archgen.views.timed import Timed
+from archgen.views.timing.timing_lookup import TimingLookup
 
 __all__ = [
-    "all_graphs",
-    "component",
-    "components",
-    "group",
-    "hosts",
-    "implementation",
-    "overview",
-    "ros",
-    "selected",
-    "timing",
+    "draw_component",
+    "draw_components",
+    "draw_group",
+    "draw_hosts",
+    "draw_implementation",
+    "draw_overview",
+    "draw_ros_graph",
+    "make_all_graphs",
+    "selection_graphs",
+    "timing_graphs",
 ]
 
 
-def all_graphs(
+def make_all_graphs(
     architecture: Architecture,
     selection: Selection | None = None,
     findings: Iterable[Diagnostic] = (),
-    timed: Timed | None = None,
+    timed: TimingLookup | None = None,
 ) -> tuple[Graph, ...]:
     """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out."""
-    return tuple(graph for graph in _all(index(architecture, findings, timed=timed), selection) if graph.boxes)
+    return tuple(
+        graph
+        for graph in _iterate_graphs(make_lookup(architecture, findings, timing_lookup=timed), selection)
+        if graph.boxes
+    )
 
 
-def _all(view: Index, selection: Selection | None) -> Iterator[Graph]:
-    architecture = view.architecture
-    shown = list(architecture.components.values())
+def _iterate_graphs(lookup: Lookup, selection: Selection | None) -> Iterator[Graph]:
+    architecture = lookup.architecture
+    shown_components = list(architecture.components.values())
     if selection is None:
-        yield fold(overview(view))
-        yield fold(components(view))
+        yield fold_graph(draw_overview(lookup))
+        yield fold_graph(draw_components(lookup))
     else:
-        shown = [component for component in shown if component.id in selection.components]
+        shown_components = [component for component in shown_components if component.id in selection.components]
         # The same ids as without a selection (`overview` here, `ros` below), since pages and reports refer to graphs by
         # id.
-        yield selected.functional(view, "overview", "The selected part", selection.components)
-    for name in dict.fromkeys(each.group for each in shown):
-        yield fold(group(view, name))
-    for each in shown:
-        yield component(view, each.id)
-        yield implementation(view, each.id)
+        yield selection_graphs.draw_functional_part(lookup, "overview", "The selected part", selection.components)
+    for name in dict.fromkeys(each.group for each in shown_components):
+        yield fold_graph(draw_group(lookup, name))
+    for each in shown_components:
+        yield draw_component(lookup, each.id)
+        yield draw_implementation(lookup, each.id)
     if selection is None:
-        yield ros(view)
-        yield hosts(view)
+        yield draw_ros_graph(lookup)
+        yield draw_hosts(lookup)
     else:
-        yield selected.implementation(view, "ros", "Nodes of the selected part", selection.nodes)
-    if view.timed is not None:
-        groups = dict.fromkeys(each.group for each in shown)
-        yield from timing.pictures(view, view.timed, groups, selection.nodes if selection else None)
-    selecting = Selecting(architecture)
+        yield selection_graphs.draw_implementation_part(lookup, "ros", "Nodes of the selected part", selection.nodes)
+    if lookup.timing is not None:
+        groups = dict.fromkeys(each.group for each in shown_components)
+        yield from timing_graphs.draw_timing_graphs(
+            lookup, lookup.timing, groups, selection.nodes if selection else None
+        )
+    selecting = SelectorEvaluator(architecture)
     # Views of the project show what they say, whatever is selected.
-    for asked in architecture.views.values():
-        chosen, _ = selecting.select(asked.show)
-        yield selected.of_view(view, asked, chosen)
+    for project_view in architecture.views.values():
+        view_selection, _ = selecting.evaluate(project_view.show)
+        yield selection_graphs.draw_view(lookup, project_view, view_selection)

@@ -169,7 +169,7 @@ def broken(compared: Compared, project: str, edits: list[tuple[str, str]]) -> li
 def told(found: Comparison) -> list[str]:
     """Give what breaks whom."""
     return [
-        f"{change.element}{f'/{change.key}' if change.key else ''} {each.partner}: {each.why}"
+        f"{change.element_id}{f'/{change.key}' if change.key else ''} {each.partner}: {each.reason}"
         for change in found.changes
         for each in change.breaks
     ]

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from archgen.emit.graphviz import fonts
+from archgen.emit.graphviz import font_config
 
 
 @pytest.fixture(autouse=True, scope="session")
 def shipped_font(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = fonts.configure(tmp_path_factory.mktemp("fonts"))
+    file = font_config.write_font_config(tmp_path_factory.mktemp("fonts"))
     os.environ["FONTCONFIG_FILE"] = str(file)
     return file

@@ -12,21 +12,30 @@ from pathlib import Path
 
 import pytest
 
-from archgen.emit.graphviz import FORMATS, MissingGraphviz, cache, dark_rules, draw, early, fonts, pool
-from archgen.emit.graphviz.png import snapped
-from archgen.emit.graphviz.worker import Task
-from archgen.views.graphs import component, group, overview
-from archgen.views.index import index
+from archgen.emit.graphviz import (
+    PICTURE_FORMATS,
+    MissingGraphviz,
+    dark_rules,
+    draw_pictures,
+    font_config,
+    picture_cache,
+    start_early_workers,
+    worker_pool,
+)
+from archgen.emit.graphviz.drawing_worker import DrawingTask
+from archgen.emit.graphviz.png_writer import snap_palette
+from archgen.views.graphs import draw_component, draw_group, draw_overview
+from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Arrow, Box, Graph
 from tests.architectures import robot
 
-VIEW = index(robot(1))
-GRAPHS = (overview(VIEW), group(VIEW, "human_state"), component(VIEW, "human_state.fall_detector"))
+VIEW = make_lookup(robot(1))
+GRAPHS = (draw_overview(VIEW), draw_group(VIEW, "human_state"), draw_component(VIEW, "human_state.fall_detector"))
 TINY = Graph("tiny", "Tiny", "flow", (Box("a", "A", ref="component:a"), Box("b", "B")), (Arrow("x", "a", "b", "Data"),))
 
 
 def test_all_formats() -> None:
-    (made,) = draw((TINY,), FORMATS, link=lambda ref: f"#{ref}").values()
+    (made,) = draw_pictures((TINY,), PICTURE_FORMATS, resolve_link=lambda ref: f"#{ref}").values()
     assert made.warning is None
     assert (made.svg or b"").startswith(b'<svg class="archgen" role="group" ')
     assert b'xlink:href="#component:a"' in (made.svg or b"")
@@ -40,26 +49,32 @@ def test_all_formats() -> None:
 
 
 def test_only_what_is_asked_for() -> None:
-    made = draw((TINY,), ("png",), link=lambda _: None)["tiny"]
+    made = draw_pictures((TINY,), ("png",), resolve_link=lambda _: None)["tiny"]
     assert (made.svg, made.svg_outlines, made.pdf) == (None, None, None)
     assert made.png
 
 
 def test_the_same_bytes_with_any_number_of_workers() -> None:
-    one = draw(GRAPHS, FORMATS, link=lambda _: None, workers=1)
-    two = draw(GRAPHS[::-1], FORMATS, link=lambda _: None, workers=2)
+    one = draw_pictures(GRAPHS, PICTURE_FORMATS, resolve_link=lambda _: None, workers=1)
+    two = draw_pictures(GRAPHS[::-1], PICTURE_FORMATS, resolve_link=lambda _: None, workers=2)
     assert list(one) == ["overview", "groups/human_state", "components/human_state.fall_detector"]
     assert one == {name: two[name] for name in one}
 
 
 def test_progress() -> None:
     told: list[tuple[int, int]] = []
-    draw(GRAPHS, ("svg",), link=lambda _: None, workers=2, progress=lambda done, total: told.append((done, total)))
+    draw_pictures(
+        GRAPHS,
+        ("svg",),
+        resolve_link=lambda _: None,
+        workers=2,
+        progress=lambda done, total: told.append((done, total)),
+    )
     assert told == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_ids_and_classes_are_hooks_for_a_page() -> None:
-    svg = (draw(GRAPHS, ("svg",), link=lambda _: None)["groups/human_state"].svg or b"").decode()
+    svg = (draw_pictures(GRAPHS, ("svg",), resolve_link=lambda _: None)["groups/human_state"].svg or b"").decode()
     assert re.search(r'<g id="groups-human_state-n0" class="node box \w+ normal', svg)
     assert re.search(r'<g id="groups-human_state-e0" class="edge arrow \w+"', svg)
     assert "<title>Human State</title>" in svg
@@ -72,18 +87,18 @@ def test_ids_and_classes_are_hooks_for_a_page() -> None:
 # A worker that dies, sleeps or gives up when the picture is not the simple one, as the real one might.
 BROKEN = """
 import sys, os, time; sys.path.append({root!r})
-from archgen.emit.graphviz import worker
-true = worker._done
+from archgen.emit.graphviz import drawing_worker
+true = drawing_worker._draw_task
 def done(task):
-    if task.graph.id == "tiny" and {when}: {what}
+    if task.drawing.id == "tiny" and {when}: {what}
     return true(task)
-worker._done = done
-worker.main()
+drawing_worker._draw_task = done
+drawing_worker.main()
 """
 
 
 def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
-    root = str(Path(pool.__file__).parents[3])
+    root = str(Path(worker_pool.__file__).parents[3])
     return (sys.executable, "-P", "-c", BROKEN.format(root=root, what=what, when=when))
 
 
@@ -92,12 +107,12 @@ def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
     [
         ("os.abort()", "Graphviz broke down"),
         ("time.sleep(60)", "it took longer than 3 s"),
-        ("return worker.Failure('layout', '1 of 2 arrows were lost')", "1 of 2 arrows were lost"),
+        ("return drawing_worker.DrawingFailure('layout', '1 of 2 arrows were lost')", "1 of 2 arrows were lost"),
     ],
 )
 def test_a_broken_worker_costs_one_picture(what: str, said: str, tmp_path: Path) -> None:
-    tasks = [Task(graph, {}, ("svg",)) for graph in (TINY, replace(TINY, id="other"))]
-    tiny, other = pool.draw(tasks, tmp_path, workers=1, timeout=3, start=broken(what))
+    tasks = [DrawingTask(graph, {}, ("svg",)) for graph in (TINY, replace(TINY, id="other"))]
+    tiny, other = worker_pool.draw_tasks(tasks, tmp_path, workers=1, timeout=3, command_line=broken(what))
     assert tiny.warning == f"the picture tiny is drawn in a simpler way: {said}"
     assert tiny.svg
     assert (other.warning, other.id) == (None, "other")
@@ -105,7 +120,9 @@ def test_a_broken_worker_costs_one_picture(what: str, said: str, tmp_path: Path)
 
 def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
     start = broken("os.abort()", "True")
-    tiny, other = pool.draw([Task(TINY, {}, ("svg",)), Task(GRAPHS[2], {}, ("svg",))], tmp_path, workers=1, start=start)
+    tiny, other = worker_pool.draw_tasks(
+        [DrawingTask(TINY, {}, ("svg",)), DrawingTask(GRAPHS[2], {}, ("svg",))], tmp_path, workers=1, command_line=start
+    )
     assert tiny.svg is None
     assert tiny.warning == "the picture tiny is missing: Graphviz broke down"
     assert other.svg
@@ -114,10 +131,12 @@ def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
 def test_a_missing_library_is_named(tmp_path: Path) -> None:
     message = "libXrender.so.1: cannot open shared object file: No such file or directory"
     code = f"import sys; sys.modules['pygraphviz'] = None\nclass F:\n  def find_spec(s, n, *a):\n    if n == 'pygraphviz': raise ImportError({message!r})\ndel sys.modules['pygraphviz']; sys.meta_path.insert(0, F())\n"
-    root = str(Path(pool.__file__).parents[3])
-    code += f"sys.path.append({root!r})\nfrom archgen.emit.graphviz.worker import main; main()"
+    root = str(Path(worker_pool.__file__).parents[3])
+    code += f"sys.path.append({root!r})\nfrom archgen.emit.graphviz.drawing_worker import main; main()"
     with pytest.raises(MissingGraphviz) as raised:
-        pool.draw([Task(TINY, {}, ("svg",))], tmp_path, workers=1, start=(sys.executable, "-P", "-c", code))
+        worker_pool.draw_tasks(
+            [DrawingTask(TINY, {}, ("svg",))], tmp_path, workers=1, command_line=(sys.executable, "-P", "-c", code)
+        )
     assert str(raised.value) == (
         "pictures need the system package libxrender1 (or what it is called here): libXrender.so.1: cannot open shared "
         "object file: No such file or directory. "
@@ -126,7 +145,7 @@ def test_a_missing_library_is_named(tmp_path: Path) -> None:
 
 
 def test_what_else_can_be_missing() -> None:
-    assert pool.explain("No module named 'pygraphviz'") == (
+    assert worker_pool.explain_missing("No module named 'pygraphviz'") == (
         "pictures need pygraphviz, which cannot be imported: No module named 'pygraphviz'"
     )
 
@@ -136,10 +155,10 @@ def no_workers(*_: object, **__: object) -> tuple[()]:
 
 
 def test_the_second_time_comes_from_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = draw(GRAPHS, FORMATS, link=lambda _: None, cache=tmp_path)
+    first = draw_pictures(GRAPHS, PICTURE_FORMATS, resolve_link=lambda _: None, cache=tmp_path)
     monkeypatch.setattr("archgen.emit.graphviz.draw_all", no_workers)
-    assert draw(GRAPHS, FORMATS, link=lambda _: None, cache=tmp_path) == first
-    some = draw(GRAPHS, ("png",), link=lambda _: None, cache=tmp_path)["overview"]
+    assert draw_pictures(GRAPHS, PICTURE_FORMATS, resolve_link=lambda _: None, cache=tmp_path) == first
+    some = draw_pictures(GRAPHS, ("png",), resolve_link=lambda _: None, cache=tmp_path)["overview"]
     assert (some.png, some.svg) == (first["overview"].png, None)
 
 
@@ -148,43 +167,45 @@ def test_the_second_time_comes_from_the_cache(tmp_path: Path, monkeypatch: pytes
     [replace(TINY, title="Other"), replace(TINY, boxes=TINY.boxes[:1], arrows=())],
 )
 def test_what_changed_is_drawn_anew(change: Graph, tmp_path: Path) -> None:
-    before = draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path)["tiny"]
-    after = draw((change,), ("svg",), link=lambda _: None, cache=tmp_path)["tiny"]
+    before = draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path)["tiny"]
+    after = draw_pictures((change,), ("svg",), resolve_link=lambda _: None, cache=tmp_path)["tiny"]
     assert before.svg != after.svg
-    assert draw((TINY,), ("svg",), link=lambda ref: f"#{ref}", cache=tmp_path)["tiny"].svg != before.svg
+    assert (
+        draw_pictures((TINY,), ("svg",), resolve_link=lambda ref: f"#{ref}", cache=tmp_path)["tiny"].svg != before.svg
+    )
 
 
 @pytest.mark.parametrize("damage", [b"", b"{}\n", b'{"parts": 3}\n', b"\xff\xfe", b"[]\n"])
 def test_a_damaged_cache_is_not_taken(damage: bytes, tmp_path: Path) -> None:
-    first = draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path)
+    first = draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path)
     (kept,) = tmp_path.glob("*.picture")
     kept.write_bytes(damage)
-    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path) == first
+    assert draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path) == first
     whole = kept.read_bytes()
     kept.write_bytes(whole[:-9] + b"malicious")
-    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path) == first
+    assert draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path) == first
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path / "file" / "cache")["tiny"].svg
+    assert draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path / "file" / "cache")["tiny"].svg
 
 
 def test_old_pictures_go(tmp_path: Path) -> None:
     for at in range(150):
         (tmp_path / f"{at}.picture").write_bytes(b"")
-    cache.prune(tmp_path, 5)
+    picture_cache.prune_pictures(tmp_path, 5)
     assert len(list(tmp_path.iterdir())) == 120
 
 
 def test_pictures_with_a_warning_are_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pool, "command", lambda: broken("os.abort()"))
-    assert draw((TINY,), ("svg",), link=lambda _: None, cache=tmp_path)["tiny"].warning
+    monkeypatch.setattr(worker_pool, "worker_command", lambda: broken("os.abort()"))
+    assert draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path)["tiny"].warning
     assert not list(tmp_path.glob("*.picture"))
 
 
 def test_the_font_lies_beside_its_licence() -> None:
-    names = sorted(file.name for file in fonts.FOLDER.iterdir())
+    names = sorted(file.name for file in font_config.FONT_FOLDER.iterdir())
     assert names == ["DejaVuSans-Bold.ttf", "DejaVuSans.ttf", "LICENSE.DejaVu"]
 
 
@@ -193,27 +214,29 @@ def test_a_palette_is_set_right() -> None:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
     off, right = bytes([252, 254, 252, 9, 9, 9]), bytes([255, 255, 255, 9, 9, 9])
-    assert snapped(b"head" + chunk(b"PLTE", off) + b"tail") == b"head" + chunk(b"PLTE", right) + b"tail"
-    assert snapped(b"no palette") == b"no palette"
+    assert snap_palette(b"head" + chunk(b"PLTE", off) + b"tail") == b"head" + chunk(b"PLTE", right) + b"tail"
+    assert snap_palette(b"no palette") == b"no palette"
 
 
 def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -> None:
-    with early(tmp_path) as ready:
-        processes = [each.begin() for each in ready]
+    with start_early_workers(tmp_path) as ready:
+        processes = [each.start_process() for each in ready]
         assert len(processes) == os.cpu_count()
-        drawn = draw(GRAPHS, ("svg",), link=lambda _: None, cache=tmp_path, ready=ready)
+        drawn = draw_pictures(GRAPHS, ("svg",), resolve_link=lambda _: None, cache=tmp_path, ready_workers=ready)
     assert all(picture.svg for picture in drawn.values())
     assert all(process.returncode is not None for process in processes)
-    with early(tmp_path) as ready:
+    with start_early_workers(tmp_path) as ready:
         assert list(ready) == []
-    with early(None) as ready:
+    with start_early_workers(None) as ready:
         assert list(ready) == []
 
 
 def test_more_workers_than_pictures_are_ended(tmp_path: Path) -> None:
-    with early(tmp_path) as ready:
-        processes = [each.begin() for each in ready]
-        assert draw([TINY], ("svg",), link=lambda _: None, cache=tmp_path, ready=ready)["tiny"].svg
+    with start_early_workers(tmp_path) as ready:
+        processes = [each.start_process() for each in ready]
+        assert draw_pictures([TINY], ("svg",), resolve_link=lambda _: None, cache=tmp_path, ready_workers=ready)[
+            "tiny"
+        ].svg
     assert all(process.returncode is not None for process in processes)
 
 
@@ -221,5 +244,5 @@ def test_a_full_disk_costs_no_picture(tmp_path: Path, monkeypatch: pytest.Monkey
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cache, "store", full)
-    assert draw([TINY], ("svg",), link=lambda _: None, cache=tmp_path)["tiny"].svg
+    monkeypatch.setattr(picture_cache, "store_picture", full)
+    assert draw_pictures([TINY], ("svg",), resolve_link=lambda _: None, cache=tmp_path)["tiny"].svg

@@ -8,37 +8,39 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.emit.graphviz import drawing
-from archgen.emit.graphviz.scene import Scene, meet, meetings
+from archgen.emit.graphviz import graph_drawing
+from archgen.emit.graphviz.placed_scene import Scene, overlapping_parts, rectangles_meet
 from archgen.model.architecture import View
-from archgen.views.graphs import all_graphs, group
-from archgen.views.index import index
+from archgen.views.graphs import draw_group, make_all_graphs
+from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
 from tests.timings import timed
 
-ROBOT = all_graphs(robot(1))
+ROBOT = make_all_graphs(robot(1))
 
 
 def faults(graph: Graph) -> list[str]:
     """Say what is wrong with a drawing: what meets, what lies in a frame that is not its own, what is missing."""
-    drafted, scene = drawing.scene(graph, {})
-    wrong = [f"{one} meets {other}" for one, other in meetings(scene)]
+    drafted, scene = graph_drawing.lay_out_graph(graph, {})
+    wrong = [f"{one} meets {other}" for one, other in overlapping_parts(scene)]
     frames = [(frame.name, frame.rectangle) for frame in scene.frames]
-    wrong += [f"{a} meets {b}" for (a, one), (b, two) in combinations(frames, 2) if meet(one, two, -0.5)]
-    home = {drafted.names[box.id]: box.cluster for box in graph.boxes}
+    wrong += [f"{a} meets {b}" for (a, one), (b, two) in combinations(frames, 2) if rectangles_meet(one, two, -0.5)]
+    home = {drafted.dot_names[box.id]: box.cluster for box in graph.boxes}
     names = {f"c{at}": cluster.id for at, cluster in enumerate(graph.clusters)}
     for part in scene.parts:
         if part.name in home:
-            inside = [names[name] for name, rectangle in frames if meet(part.rectangle, rectangle, -0.5)]
+            inside = [names[name] for name, rectangle in frames if rectangles_meet(part.rectangle, rectangle, -0.5)]
             own = home[part.name] if home[part.name] in names.values() else None
             if inside != ([own] if own else []):
                 wrong.append(f"{part.name} lies in {inside}, not in {own}")
     missing = {arrow.id for arrow in graph.arrows} - {line.arrow for line in scene.lines}
     boxes = {box.id for box in graph.boxes} - {
-        box.id for box in graph.boxes if drafted.names[box.id] in {part.name for part in scene.parts}
+        box.id for box in graph.boxes if drafted.dot_names[box.id] in {part.name for part in scene.parts}
     }
-    wrong += [f"the text of {edge} is left out" for edge in drafted.labels if f"l{edge[1:]}" not in _names(scene)]
+    wrong += [
+        f"the text of {edge} is left out" for edge in drafted.label_attributes if f"l{edge[1:]}" not in _names(scene)
+    ]
     return [*wrong, *(f"{name} is not drawn" for name in sorted(missing | boxes))]
 
 
@@ -54,16 +56,16 @@ def test_pictures_of_a_robot(graph: Graph) -> None:
 
 @pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
 def test_pictures_of_timing(example: str) -> None:
-    architecture = pipeline.check(Path(__file__).parents[3] / example).architecture
-    graphs = [g for g in all_graphs(architecture, timed=timed(architecture)) if g.id.startswith("timing")]
+    architecture = pipeline.check_project(Path(__file__).parents[3] / example).architecture
+    graphs = [g for g in make_all_graphs(architecture, timed=timed(architecture)) if g.id.startswith("timing")]
     assert graphs
     assert [(graph.id, wrong) for graph in graphs if (wrong := faults(graph))] == []
 
 
 @pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
 def test_pictures_of_the_examples(example: str) -> None:
-    checked = pipeline.check(Path(__file__).parents[3] / example)
-    graphs = all_graphs(checked.architecture, findings=checked.findings)
+    checked = pipeline.check_project(Path(__file__).parents[3] / example)
+    graphs = make_all_graphs(checked.architecture, findings=checked.findings)
     wrong = [(graph.id, faults(graph)) for graph in graphs]
     assert [each for each in wrong if each[1]] == []
     assert [graph.id for graph in graphs if graph.asked != sum(arrow.count for arrow in graph.arrows)] == []
@@ -71,15 +73,15 @@ def test_pictures_of_the_examples(example: str) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_two_hundred_groups(seed: int) -> None:
-    view = index(generated(seed, 10, 3 + seed % 10, 40 + 6 * seed))
-    wrong = [(name, faults(group(view, name))) for name in view.architecture.groups]
+    view = make_lookup(generated(seed, 10, 3 + seed % 10, 40 + 6 * seed))
+    wrong = [(name, faults(draw_group(view, name))) for name in view.architecture.groups]
     assert [each for each in wrong if each[1]] == []
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_other_architectures_as_a_whole(seed: int) -> None:
     architecture = generated(seed, 2 + 2 * seed, 9, 30 + 10 * seed)
-    whole = [graph for graph in all_graphs(architecture) if graph.layout in {"two-step", "overview"}]
+    whole = [graph for graph in make_all_graphs(architecture) if graph.layout in {"two-step", "overview"}]
     assert [graph.id for graph in whole] == ["overview", "components", "ros", "hosts"]
     assert [(graph.id, faults(graph)) for graph in whole if faults(graph)] == []
 
@@ -141,7 +143,7 @@ def test_hostile_texts(layout: str) -> None:
     graph = hostile(layout)
     assert [fault for fault in faults(graph) if not (layout in {"two-step", "overview"} and "the text" in fault)] == []
     links = dict.fromkeys(HOSTILE, "javascript:alert(1)")
-    made = drawing.picture(graph, links, ("svg", "svg_outlines", "pdf", "png"))
+    made = graph_drawing.draw_picture(graph, links, ("svg", "svg_outlines", "pdf", "png"))
     assert made.svg is not None
     assert made.svg_outlines is not None
     root = etree.fromstring(made.svg)
@@ -154,7 +156,7 @@ def test_hostile_texts(layout: str) -> None:
 
 def test_what_found_no_place_is_said() -> None:
     graph = hostile("two-step")
-    made = drawing.picture(graph, {}, ("svg",))
+    made = graph_drawing.draw_picture(graph, {}, ("svg",))
     lost = sum("the text" in fault for fault in faults(graph))
     assert lost > 0
     assert f"{lost} of the texts beside arrows had no place here" in (made.svg or b"").decode()
@@ -170,9 +172,9 @@ def test_a_box_with_ports_takes_arrows_at_its_ports() -> None:
     )
     graph = Graph("ports", "Ports", "flow", boxes, arrows)
     assert faults(graph) == []
-    drafted, scene = drawing.scene(graph, {})
+    drafted, scene = graph_drawing.lay_out_graph(graph, {})
     by_arrow = {line.arrow: line for line in scene.lines}
-    assert by_arrow["3"].tail == drafted.names["l"], "laid out from left to right"
+    assert by_arrow["3"].tail == drafted.dot_names["l"], "laid out from left to right"
     assert by_arrow["3"].attributes["dir"] == '"back"', "and drawn from client to server"
 
 
@@ -184,14 +186,18 @@ def test_views_of_the_project_in_either_size() -> None:
         "large": View("large", "Large", "human_state robot_state robot_action_planner"),
         "low": View("low", "Low", "robot_state", level="implementation", colour="status"),
     }
-    graphs = {graph.id: graph for graph in all_graphs(replace(robot(1), views=views))}
+    graphs = {graph.id: graph for graph in make_all_graphs(replace(robot(1), views=views))}
     drawn = [graphs[f"views/{name}"] for name in views]
     assert [graph.layout for graph in drawn] == ["flow", "two-step", "flow"]
     assert [(graph.id, faults(graph)) for graph in drawn if faults(graph)] == []
 
 
 def test_meetings_are_found() -> None:
-    from archgen.emit.graphviz.scene import Part
+    from archgen.emit.graphviz.placed_scene import ScenePart
 
-    parts = (Part("a", {}, 0, 0, 10, 10), Part("b", {}, 6, 6, 10, 10, "label"), Part("c", {}, 0, 0, 4, 4, "mark"))
-    assert list(meetings(Scene(parts=parts))) == [("a", "b")]
+    parts = (
+        ScenePart("a", {}, 0, 0, 10, 10),
+        ScenePart("b", {}, 6, 6, 10, 10, "label"),
+        ScenePart("c", {}, 0, 0, 4, 4, "mark"),
+    )
+    assert list(overlapping_parts(Scene(parts=parts))) == [("a", "b")]

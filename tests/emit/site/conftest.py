@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.emit.site import write
-from archgen.emit.tree import FileTree
+from archgen.emit.site import build_site
 from archgen.views.shapes import (
     Bullets,
     Column,
@@ -271,7 +271,7 @@ def made() -> Callable[[], FileTree]:
     notices = (Paragraph((Text("This document shows a part: "), Text("owner:certh", code=True)), "note"),)
 
     def make() -> FileTree:
-        return write(
+        return build_site(
             pages,
             pictures,
             title="Robotic Assistant",

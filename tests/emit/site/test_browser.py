@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, Route, sync_playwright
 
-from archgen import outputs, pipeline
-from archgen.emit.site import write as make_site
-from archgen.emit.tree import FileTree, write
+from archgen import pipeline
+from archgen.emit.file_tree import FileTree, write_tree
+from archgen.emit.site import build_site as make_site
+from archgen.products import project_outputs
 from archgen.views import shapes
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -45,7 +46,7 @@ def needed(path: str | Path | None, package: str) -> str:
 def folder(site: FileTree, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the site to the disk."""
     place = tmp_path_factory.mktemp("out") / "site"
-    write(site, place)
+    write_tree(site, place)
     return place
 
 
@@ -53,7 +54,9 @@ def folder(site: FileTree, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the case study's site, with its real pictures."""
     place = tmp_path_factory.mktemp("out") / "example"
-    outputs.site(pipeline.check(ROOT / "example_ramcip"), outputs.Ask(revision="test"), place)
+    project_outputs.write_site(
+        pipeline.check_project(ROOT / "example_ramcip"), project_outputs.OutputOptions(revision="test"), place
+    )
     return place
 
 
@@ -253,7 +256,7 @@ def test_hostile_titles_run_nothing(visit: Open, tmp_path: Path) -> None:
     section = shapes.Section("page:index", HOSTILE, (table, shapes.Markdown(HOSTILE)))
     start = shapes.Page("index.html", "page:index", HOSTILE, "overview", section)
     made = make_site((start,), {}, title=HOSTILE, revision=HOSTILE, notices=(), chapter_files=lambda _: None)
-    write(made, tmp_path / "site")
+    write_tree(made, tmp_path / "site")
     page = visit("index.html", root=tmp_path / "site")
     assert page.title() == HOSTILE
     assert page.locator("h1").inner_text() == HOSTILE

@@ -10,9 +10,9 @@ from posixpath import dirname, join, normpath
 
 import pytest
 
+from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.emit.site import write
-from archgen.emit.tree import FileTree
+from archgen.emit.site import build_site
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -40,7 +40,7 @@ def other(path: str = "groups/g.html", anchor: str = "group:g", title: str = "Se
 
 
 def tree_of(*pages: Page, pictures: dict[str, Picture] | None = None, title: str = "Robot") -> FileTree:
-    return write(pages, pictures or {}, title=title, revision="1", notices=(), chapter_files=lambda _: None)
+    return build_site(pages, pictures or {}, title=title, revision="1", notices=(), chapter_files=lambda _: None)
 
 
 def body(tree: FileTree, path: str = "index.html") -> str:
@@ -232,14 +232,14 @@ def test_a_chapter_asks_for_no_file_outside(source: str) -> None:
         asked.append(path)
         return None
 
-    write((start,), {}, title="R", revision="", notices=(), chapter_files=files)
+    build_site((start,), {}, title="R", revision="", notices=(), chapter_files=files)
     assert all(not path.startswith(("/", "..")) for path in asked)
 
 
 def test_a_picture_is_what_its_bytes_are() -> None:
     start = page(Markdown("![x](a.png) ![y](b.svg)", "docs"))
     files = {"docs/a.png": b"<html>", "docs/b.svg": b"<svg/>"}
-    tree = write((start,), {}, title="R", revision="", notices=(), chapter_files=files.get)
+    tree = build_site((start,), {}, title="R", revision="", notices=(), chapter_files=files.get)
     assert [path for path in tree.files if path.startswith("pictures/")] == ["pictures/docs/b.svg"]
 
 
@@ -266,7 +266,7 @@ def test_hostile_titles_stay_text(draw: Draw) -> None:
     child = Page(
         f"{HOSTILE}.html", HOSTILE, HOSTILE, HOSTILE, Section(HOSTILE, HOSTILE, ()), ((HOSTILE, "page:index"),), HOSTILE
     )
-    tree = write(
+    tree = build_site(
         (start, child),
         {"x": Picture("x", 1, 1, svg=draw("x", {}).svg, warning=HOSTILE)},
         title=HOSTILE,

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from archgen.emit import text
-from archgen.emit.backends import find
+from archgen.emit.backend_manifests import find_backends
 from archgen.views.shapes import Page, Section
 
 DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
@@ -19,10 +19,10 @@ def test_the_example_works(tmp_path: Path) -> None:
     (folder / "backend.yaml").write_text(manifest)
     (folder / "templates" / "nodes.md.j2").write_text(template)
     (folder / "templates" / "node.md.j2").write_text("# {{ item.title|markdown }}\n")
-    backends, diagnostics = find(tmp_path)
+    backends, diagnostics = find_backends(tmp_path)
     assert diagnostics == ()
     page = Page("nodes/cam_1.html", "node:cam_1", "cam_1", "nodes", Section("node:cam_1", "cam_1", ()), lead="Driver")
-    tree, diagnostics = text.write(backends["node_list"], {"pages": (page,)})
+    tree, diagnostics = text.render_backend(backends["node_list"], {"pages": (page,)})
     assert diagnostics == ()
     assert tree is not None
     assert {path: data.decode() for path, data in tree.files.items()} == {

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from archgen.emit import text
-from archgen.emit.backends import Backend, find
-from archgen.emit.text.limits import Limits
+from archgen.emit.backend_manifests import Backend, find_backends
+from archgen.emit.text.template_limits import TemplateLimits
 
 RECORD = {"groups": {"a": {"title": "Sensing & <acting>"}, "b": {"title": "Cognition"}}, "name": "ramcip"}
-QUICK = Limits(computing=2, waiting=60, memory=400_000_000, output=10_000, files=5)
+QUICK = TemplateLimits(computing=2, waiting=60, memory=400_000_000, output=10_000, files=5)
 
 Make = Callable[..., Backend]
 
@@ -29,7 +29,7 @@ def make(tmp_path: Path) -> Make:
             "id: mine\ntitle: Mine\nemitter: text\nview: record\nfiles:\n"
             f"  - template: {name}\n    path: '{path}'\n{more}"
         )
-        found, diagnostics = find(tmp_path)
+        found, diagnostics = find_backends(tmp_path)
         assert diagnostics == ()
         return found["mine"]
 
@@ -37,14 +37,14 @@ def make(tmp_path: Path) -> Make:
 
 
 def files(backend: Backend) -> dict[str, str]:
-    tree, diagnostics = text.write(backend, {"record": RECORD}, QUICK)
+    tree, diagnostics = text.render_backend(backend, {"record": RECORD}, QUICK)
     assert diagnostics == ()
     assert tree is not None
     return {path: data.decode() for path, data in tree.files.items()}
 
 
 def fault(backend: Backend) -> str:
-    tree, diagnostics = text.write(backend, {"record": RECORD}, QUICK)
+    tree, diagnostics = text.render_backend(backend, {"record": RECORD}, QUICK)
     assert tree is None
     (found,) = diagnostics
     assert found.rule == "backend-error"
@@ -161,7 +161,7 @@ def test_time_memory_and_output_are_bounded(make: Make, template: str, said: str
 
 def test_the_number_of_files_is_bounded(make: Make) -> None:
     backend = make("x", "x.md", "    for_each: record.many\n")
-    tree, (found,) = text.write(backend, {"record": {"many": list(range(6))}}, QUICK)
+    tree, (found,) = text.render_backend(backend, {"record": {"many": list(range(6))}}, QUICK)
     assert tree is None
     assert "more than 5 files" in found.message
 

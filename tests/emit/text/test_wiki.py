@@ -6,8 +6,14 @@ import pytest
 from markdown_it import MarkdownIt
 
 from archgen.emit import text
-from archgen.emit.backends import shipped
-from archgen.emit.text.filters import code, commonmark, identifier, markdown, mermaid
+from archgen.emit.backend_manifests import read_shipped_backend
+from archgen.emit.text.template_filters import (
+    escape_markdown,
+    escape_mermaid,
+    make_code_span,
+    make_identifier,
+    safe_commonmark,
+)
 from archgen.views.shapes import Arrow, Box, Cluster, Column, Facts, Figure, Graph, Markdown, Page, Section, Table, Text
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
@@ -47,7 +53,7 @@ def wiki(title: str) -> dict[str, str]:
         Page("groups/g.html", "group:g", title, "groups", group, (HOME,), title),
         Page("components/g.a.html", "component:g.a", title, "components", component, (HOME, (title, "group:g"))),
     )
-    tree, diagnostics = text.write(shipped("wiki"), {"pages": pages, "graphs": (graph,)})
+    tree, diagnostics = text.render_backend(read_shipped_backend("wiki"), {"pages": pages, "graphs": (graph,)})
     assert diagnostics == ()
     assert tree is not None
     return {path: data.decode() for path, data in tree.files.items()}
@@ -100,27 +106,32 @@ def test_hostile_text_stays_text() -> None:
     ],
 )
 def test_markdown(given: str, written: str) -> None:
-    assert markdown(given) == written
+    assert escape_markdown(given) == written
 
 
 def test_code_spans_outnumber_their_ticks() -> None:
-    assert [code("a"), code("a`b"), code("``"), code("")] == ["`a`", "``a`b``", "``` `` ```", "` `"]
+    assert [make_code_span("a"), make_code_span("a`b"), make_code_span("``"), make_code_span("")] == [
+        "`a`",
+        "``a`b``",
+        "``` `` ```",
+        "` `",
+    ]
 
 
 def test_mermaid_labels_hold_no_mark() -> None:
-    assert mermaid('a "b" <c> #d; `e`') == "a #34;b#34; #60;c#62; #35;d#59; #96;e#96;"
+    assert escape_mermaid('a "b" <c> #d; `e`') == "a #34;b#34; #60;c#62; #35;d#59; #96;e#96;"
 
 
 def test_identifiers_differ_as_their_texts_do() -> None:
     texts = ("a.b", "a_b", "end", "a_2e_b")
-    assert [identifier(text) for text in texts] == ["n_a_2e_b", "n_a__b", "n_end", "n_a__2e__b"]
+    assert [make_identifier(text) for text in texts] == ["n_a_2e_b", "n_a__b", "n_end", "n_a__2e__b"]
 
 
 @pytest.mark.parametrize(
     "evil", ["<b>x</b>", "a <!-- b -->", "[x](javascript:y)", "![x](data:image/svg+xml;a)", "<file:///x>"]
 )
 def test_commonmark_with_html_or_strange_addresses_is_shown_as_text(evil: str) -> None:
-    html = MarkdownIt("commonmark", {"html": True}).render(commonmark(evil))
+    html = MarkdownIt("commonmark", {"html": True}).render(safe_commonmark(evil))
     assert "<a" not in html
     assert "<img" not in html
     assert "<b>" not in html
@@ -129,4 +140,4 @@ def test_commonmark_with_html_or_strange_addresses_is_shown_as_text(evil: str) -
 
 def test_good_commonmark_is_left_as_it_is() -> None:
     good = "See *this* [paper](https://example.org):\n\n- `a < b`\n"
-    assert commonmark(good) == good
+    assert safe_commonmark(good) == good

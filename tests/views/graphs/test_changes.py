@@ -9,12 +9,12 @@ import pytest
 
 from archgen import pipeline
 from archgen.compare import Comparison
-from archgen.compare.selected import selected
+from archgen.compare.select_changes import select_changes
 from archgen.emit import graphviz
-from archgen.emit.text.mermaid import flowchart
-from archgen.model.selector import Selecting
-from archgen.sides import Side, compared
-from archgen.views.graphs.changes import LARGE, SMALL, pictures
+from archgen.emit.markdown.mermaid_chart import write_flowchart
+from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.views.graphs.changes import LARGE_BUDGET, SMALL_BUDGET, draw_changes
 from archgen.views.shapes import Arrow, Box, Graph
 
 ROBOT = """\
@@ -57,8 +57,8 @@ def found(tmp_path: Path) -> Compared:
         for name, text in (("before", ROBOT), ("after", after)):
             (tmp_path / name).mkdir(exist_ok=True)
             (tmp_path / name / "robot.yaml").write_text(text, encoding="utf-8")
-            sides.append(Side(name, pipeline.check(tmp_path / name / "robot.yaml")))
-        return compared(*sides)
+            sides.append(ProjectVersion(name, pipeline.check_project(tmp_path / name / "robot.yaml")))
+        return compare_named_versions(*sides)
 
     return run
 
@@ -90,7 +90,7 @@ def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None
         ("  lidar: {implements: lidar}", "  radar: {implements: radar, timing: {rate: 10 Hz}}"),
         ("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"),
     )
-    components, nodes = pictures(change)
+    components, nodes = draw_changes(change)
     assert boxes(components) == [
         "sensing: Camera (grey)",
         "sensing: + Radar (added)",
@@ -113,7 +113,7 @@ def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None
 
 
 def test_a_rename_is_no_removal(found: Compared) -> None:
-    (components,) = pictures(
+    (components,) = draw_changes(
         found(
             ("finder: {inputs", "seeker: {inputs"),
             ("finder.people", "seeker.people"),
@@ -125,7 +125,7 @@ def test_a_rename_is_no_removal(found: Compared) -> None:
 
 
 def test_quality_of_service_is_drawn_among_nodes(found: Compared) -> None:
-    (nodes,) = pictures(found(("reliability: reliable", "reliability: best_effort")))
+    (nodes,) = draw_changes(found(("reliability: reliable", "reliability: best_effort")))
     assert boxes(nodes) == ["None: ~ camera (changed)", "None: finder (grey)", "None: /image"]
     assert lines(nodes) == ["node camera > topic /image ~ publishes (changed)", "topic /image > node finder"]
     assert "QoS reliability `reliable` → `best_effort`" in nodes.arrows[0].flows[0]
@@ -139,7 +139,7 @@ def test_quality_of_service_is_drawn_among_nodes(found: Compared) -> None:
     ],
 )
 def test_texts_are_not_drawn(found: Compared, change: tuple[str, str]) -> None:
-    assert pictures(found(change)) == ()
+    assert draw_changes(found(change)) == ()
 
 
 def test_a_selection_draws_nothing_else(found: Compared) -> None:
@@ -148,8 +148,8 @@ def test_a_selection_draws_nothing_else(found: Compared) -> None:
         ("{people: finder.people, grid: map.grid}", "{grid: map.grid}"),
         ("subscribes: {image: {}}", "package: p"),
     )
-    sides = [Selecting(side.architecture).select("screen")[0] for side in (change.before, change.after)]
-    whole, part = pictures(change)[0], pictures(selected(change, *sides))[0]
+    sides = [SelectorEvaluator(side.architecture).evaluate("screen")[0] for side in (change.before, change.after)]
+    whole, part = draw_changes(change)[0], draw_changes(select_changes(change, *sides))[0]
     assert "sensing.camera > display.finder \u2212 Image (removed)" in lines(whole)
     assert lines(part) == ["display.map > display.screen", "display.finder > display.screen \u2212 People (removed)"]
 
@@ -157,8 +157,8 @@ def test_a_selection_draws_nothing_else(found: Compared) -> None:
 def test_above_its_budget_groups_are_folded_and_the_picture_says_so(found: Compared) -> None:
     many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}}}\n" for at in range(60))
     change = found(("      finder:", f"{many}      finder:"))
-    for budget in (SMALL, LARGE):
-        (components,) = pictures(change, budget)
+    for budget in (SMALL_BUDGET, LARGE_BUDGET):
+        (components,) = draw_changes(change, budget)
         assert boxes(components) == ["sensing: Camera (grey)", "None: Display (added)"]
         assert components.boxes[1].lines == ("+ 60 components",)
         assert lines(components) == ["sensing.camera > group display + 60 connections (added)"]
@@ -173,8 +173,8 @@ def test_lines_tell_what_happened_without_colour(found: Compared) -> None:
         ("  lidar: {implements: lidar}\n", ""),
         ("finder: {implements: finder,", "finder: {implements: finder, timing: {rate: 5 Hz},"),
     )
-    (graph, *_) = pictures(change)
-    svg = graphviz.draw((graph,), ("svg",), link=lambda _: None)[graph.id].svg
+    (graph, *_) = draw_changes(change)
+    svg = graphviz.draw_pictures((graph,), ("svg",), resolve_link=lambda _: None)[graph.id].svg
     assert svg is not None
     parts = svg.decode().replace("&#45;", "-").split("<g id=")
     added, removed, changed = (
@@ -193,8 +193,9 @@ def test_lines_tell_what_happened_without_colour(found: Compared) -> None:
 
 
 def test_mermaid_knows_boxes_by_number_only(found: Compared) -> None:
-    (graph, *_) = pictures(
-        found(("      lidar: {", "      extra: {title: '1. end \"]', outputs: {x: Image}}\n      lidar: {")), SMALL
+    (graph, *_) = draw_changes(
+        found(("      lidar: {", "      extra: {title: '1. end \"]', outputs: {x: Image}}\n      lidar: {")),
+        SMALL_BUDGET,
     )
-    text = list(flowchart(graph))
+    text = list(write_flowchart(graph))
     assert text[:3] == ["flowchart LR", '  subgraph g0["Sensing"]', '    n0("#8203;+ 1. end #34;#93;"):::added']

@@ -6,18 +6,27 @@ from dataclasses import replace
 
 import pytest
 
-from archgen.diagnostic import Diagnostic, Severity
-from archgen.model.architecture import Architecture, Edge, ProjectInfo, View
-from archgen.model.component import Component, Connection, Group, Input, Layout, Output
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.architecture import Architecture, PortEdge, ProjectInfo, View
+from archgen.model.component import Component, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.mapping import Type
+from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Qos
-from archgen.model.selector import Selection
-from archgen.source import NOWHERE
-from archgen.views.graphs import all_graphs, component, components, group, hosts, implementation, overview, ros
-from archgen.views.graphs.folding import ARROWS, BOXES, fold
-from archgen.views.graphs.selected import functional
-from archgen.views.index import Index, index
+from archgen.model.selector_evaluation import Selection
+from archgen.views.graphs import (
+    draw_component,
+    draw_components,
+    draw_group,
+    draw_hosts,
+    draw_implementation,
+    draw_overview,
+    draw_ros_graph,
+    make_all_graphs,
+)
+from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
+from archgen.views.graphs.selection_graphs import draw_functional_part
+from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot, topics
 
@@ -61,8 +70,8 @@ def make(groups: str, wires: str, types: str = "") -> Architecture:
         inputs=inputs,
         outputs=outputs,
         connections=connections,
-        edges=tuple(Edge(output, one.input) for one in connections for output in one.outputs),
-        types={name: Type(name, message) for name, message in mapped.items()},
+        edges=tuple(PortEdge(output, one.input) for one in connections for output in one.outputs),
+        types={name: ConceptualType(name, message) for name, message in mapped.items()},
     )
 
 
@@ -80,12 +89,12 @@ def text(graph: Graph) -> list[str]:
 SMALL = make("g: a b, h: c d", "g.a.x > g.b.i | g.a.x > h.c.i | g.b.y > h.c.j | h.c.z > g.a.k | g > h.d.all")
 
 
-def view(architecture: Architecture = SMALL) -> Index:
-    return index(architecture)
+def view(architecture: Architecture = SMALL) -> Lookup:
+    return make_lookup(architecture)
 
 
 def test_the_ids_of_all_graphs() -> None:
-    assert [graph.id for graph in all_graphs(SMALL)] == [
+    assert [graph.id for graph in make_all_graphs(SMALL)] == [
         "overview",
         "components",
         "groups/g",
@@ -98,14 +107,14 @@ def test_the_ids_of_all_graphs() -> None:
 
 
 def test_overview_counts_connections_between_groups() -> None:
-    graph = overview(view())
+    graph = draw_overview(view())
     assert text(graph) == ["g > h (3)", "h > g"]
     assert graph.asked == 4
     assert graph.alt == "2 groups of components. Most runs from G to H (3); H to G (1)."
 
 
 def test_components_draws_inside_one_by_one_and_between_merged() -> None:
-    graph = components(view())
+    graph = draw_components(view())
     assert text(graph) == ["g.a > g.b", "g > h (3)", "h > g"]
     assert graph.arrows[1].flows == (
         "A · x (T x) → C · i",
@@ -115,7 +124,7 @@ def test_components_draws_inside_one_by_one_and_between_merged() -> None:
 
 
 def test_a_group_has_neighbours_left_and_right() -> None:
-    graph = group(view(), "g")
+    graph = draw_group(view(), "g")
     assert text(graph) == [
         "g.a > g.b: T x",
         "g.a > >h.c: T x",
@@ -133,14 +142,14 @@ def test_a_group_has_neighbours_left_and_right() -> None:
 
 def test_many_flows_fold_the_neighbours() -> None:
     wires = "|".join(f"h.c{at}.x > g.a.i{at}" for at in range(46))
-    graph = group(index(make("g: a, h: " + " ".join(f"c{at}" for at in range(46)), wires)), "g")
+    graph = draw_group(make_lookup(make("g: a, h: " + " ".join(f"c{at}" for at in range(46)), wires)), "g")
     assert text(graph) == ["<h > g.a: 46 (46)"]
     assert graph.boxes[1].lines == ("C0", "C1", "C2", "C3", "C4", "and 41 more")
     assert graph.notes == ("Neighbours are folded: a box for each group, with the number of flows.",)
 
 
 def test_a_component_has_its_ports() -> None:
-    graph = component(view(), "h.c")
+    graph = draw_component(view(), "h.c")
     assert graph.boxes[0].ports_in == (("in i", "i"), ("in j", "j"))
     assert graph.boxes[0].ports_out == (("out z", "z"),)
     assert text(graph) == ["<g.a > h.c: T x", "<g.b > h.c: T y", "h.c > >g.a: T z"]
@@ -152,7 +161,7 @@ def test_a_component_has_its_ports() -> None:
 
 
 def test_a_whole_group_as_source_has_an_asterisk() -> None:
-    graph = component(view(), "h.d")
+    graph = draw_component(view(), "h.d")
     assert text(graph) == ["<g > h.d: * 2 types"]
     assert graph.boxes[1].lines == ("whole group", "T x", "T y")
     assert "star" in graph.legend
@@ -160,23 +169,23 @@ def test_a_whole_group_as_source_has_an_asterisk() -> None:
 
 def test_one_type_is_written_once_for_an_output() -> None:
     architecture = make("g: a b c", "g.a.x > g.b.i | g.a.x > g.c.i")
-    assert text(component(view(architecture), "g.a")) == ["g.a > >g.b: T x", "g.a > >g.c"]
+    assert text(draw_component(view(architecture), "g.a")) == ["g.a > >g.b: T x", "g.a > >g.c"]
 
 
 @pytest.mark.parametrize("kind", ["srv", "action"])
 def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
     style = {"srv": "service", "action": "action"}[kind]
     architecture = make("g: server client", "g.server.ask > g.client.call", f"T ask = pkg/{kind}/Ask")
-    assert text(components(view(architecture))) == [f"g.client > g.server [{style}]"]
-    assert text(component(view(architecture), "g.client")) == [f"g.client > <g.server: T ask [{style}]"]
-    assert text(component(view(architecture), "g.server")) == [f">g.client > g.server: T ask [{style}]"]
+    assert text(draw_components(view(architecture))) == [f"g.client > g.server [{style}]"]
+    assert text(draw_component(view(architecture), "g.client")) == [f"g.client > <g.server: T ask [{style}]"]
+    assert text(draw_component(view(architecture), "g.server")) == [f">g.client > g.server: T ask [{style}]"]
 
 
 def test_partners_outside_are_dashed() -> None:
     port = Input("g.a.voice", "voice", "g.a", external="The user speaks", physical=True, type="Speech")
     architecture = make("g: a", "")
     changed = replace(architecture.components["g.a"], inputs={"voice": port})
-    graph = component(view(replace(architecture, components={"g.a": changed})), "g.a")
+    graph = draw_component(view(replace(architecture, components={"g.a": changed})), "g.a")
     assert text(graph) == ["external left g.a.voice > g.a: Speech [physical]"]
     assert (graph.boxes[1].title, graph.boxes[1].style, graph.boxes[1].side) == ("The user speaks", "physical", "left")
 
@@ -204,7 +213,7 @@ def test_implementation_puts_topics_between_nodes() -> None:
         ("n_c", "serves", "/ask"),
         x=Qos(reliability="best_effort", durability="transient_local", written=True),
     )
-    graph = implementation(view(architecture), "g.b")
+    graph = draw_implementation(view(architecture), "g.b")
     assert text(graph) == [
         "<n_a > topic /x",
         "topic /x > n_b",
@@ -221,7 +230,7 @@ def test_implementation_puts_topics_between_nodes() -> None:
 
 def test_implementation_folds_a_neighbour_all_of_whose_topics_are_taken() -> None:
     uses = [("n_a", "publishes", f"/x{at}") for at in range(3)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
-    graph = implementation(view(low(*uses)), "g.b")
+    graph = draw_implementation(view(low(*uses)), "g.b")
     assert text(graph) == ["<n_a > topic * n_a", "topic * n_a > n_b"]
     assert graph.boxes[1].title == "* all topics of n_a"
     assert graph.boxes[1].lines == ("/x0", "/x1", "/x2")
@@ -230,13 +239,13 @@ def test_implementation_folds_a_neighbour_all_of_whose_topics_are_taken() -> Non
 
 def test_implementation_draws_each_topic_where_one_is_not_taken() -> None:
     uses = [("n_a", "publishes", f"/x{at}") for at in range(4)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
-    assert len(implementation(view(low(*uses)), "g.b").arrows) == 6
+    assert len(draw_implementation(view(low(*uses)), "g.b").arrows) == 6
 
 
 def test_ros_frames_nodes_by_group() -> None:
     architecture = low(("n_a", "publishes", "/x"), ("n_b", "subscribes", "/x"), ("n_a", "publishes", "/x"))
     alone = Node("alone", "Alone", namespace="/tools")
-    graph = ros(view(replace(architecture, nodes={**architecture.nodes, "alone": alone})))
+    graph = draw_ros_graph(view(replace(architecture, nodes={**architecture.nodes, "alone": alone})))
     assert text(graph) == ["n_a > n_b"]
     assert [(box.id, box.cluster) for box in graph.boxes] == [
         ("n_a", "g"),
@@ -258,7 +267,7 @@ def test_hosts_have_containers_nodes_and_links() -> None:
         containers={"box": Container("box", "Box", "pc", 1)},
         links={"can": Link("can", "CAN", ("pc", "arm")), "lan": Link("lan", "LAN", ("pc", "arm", "eye"))},
     )
-    graph = hosts(view(architecture))
+    graph = draw_hosts(view(architecture))
     assert text(graph) == [
         "pc > arm: CAN [link]",
         "link lan > pc [link]",
@@ -275,15 +284,15 @@ def test_hosts_have_containers_nodes_and_links() -> None:
 
 def test_findings_are_badges() -> None:
     found = [
-        Diagnostic(rule, "text", NOWHERE, severity, element="g.a")
+        Diagnostic(rule, "text", NO_SPAN, severity, element="g.a")
         for rule, severity in (("one", Severity.NOTE), ("two", Severity.ERROR))
     ]
-    badges = {box.id: box.badge for graph in all_graphs(SMALL, findings=found)[1:2] for box in graph.boxes}
+    badges = {box.id: box.badge for graph in make_all_graphs(SMALL, findings=found)[1:2] for box in graph.boxes}
     assert badges == {"g.a": "error", "g.b": None, "h.c": None, "h.d": None}
 
 
 def test_a_selection_has_grey_neighbours() -> None:
-    graph = functional(view(), "overview", "Part", {"g.b"})
+    graph = draw_functional_part(view(), "overview", "Part", {"g.b"})
     assert text(graph) == ["g.a > g.b: T x", "g.b > h.c: T y", "g.b > h.d: T y"]
     assert [(box.id, box.emphasis) for box in graph.boxes] == [
         ("g.b", "normal"),
@@ -295,13 +304,13 @@ def test_a_selection_has_grey_neighbours() -> None:
 
 def test_the_graphs_of_a_selection() -> None:
     chosen = Selection(frozenset({"g.b"}), frozenset())
-    assert [graph.id for graph in all_graphs(SMALL, chosen)] == ["overview", "groups/g", "components/g.b"]
+    assert [graph.id for graph in make_all_graphs(SMALL, chosen)] == ["overview", "groups/g", "components/g.b"]
 
 
 def test_a_large_selection_has_frames_and_folded_neighbours() -> None:
     architecture = robot(1)
     chosen = {name for name in architecture.components if name.startswith(("human_state.", "robot_action_planner."))}
-    graph = functional(index(architecture), "views/x", "X", chosen)
+    graph = draw_functional_part(make_lookup(architecture), "views/x", "X", chosen)
     assert graph.layout == "two-step"
     assert [cluster.id for cluster in graph.clusters] == ["human_state", "robot_action_planner"]
     assert all(box.cluster for box in graph.boxes if box.emphasis == "normal")
@@ -312,8 +321,8 @@ def test_a_large_selection_has_frames_and_folded_neighbours() -> None:
 
 def test_views_choose_level_colour_and_direction() -> None:
     owned = {name: replace(each, owner=f"p{at}") for at, (name, each) in enumerate(SMALL.components.items())}
-    asked = View("v", "V", "g", colour="owner", layout=Layout("top-bottom"))
-    graph = all_graphs(replace(SMALL, components=owned, views={"v": asked}))[-1]
+    asked = View("v", "V", "g", colour="owner", layout=DiagramLayout("top-bottom"))
+    graph = make_all_graphs(replace(SMALL, components=owned, views={"v": asked}))[-1]
     assert (graph.id, graph.direction) == ("views/v", "top-bottom")
     assert graph.legend_colours == ((0, "owner: p0"), (1, "owner: p1"))
     assert [box.colour for box in graph.boxes if box.emphasis == "normal"] == [0, 1]
@@ -321,11 +330,11 @@ def test_views_choose_level_colour_and_direction() -> None:
 
 def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
     architecture = generated(3, 8, 20, 150)
-    whole = components(index(architecture))
-    assert len(whole.boxes) > BOXES
-    graph = fold(whole)
-    assert len(graph.boxes) <= BOXES
-    assert len(graph.arrows) <= ARROWS
+    whole = draw_components(make_lookup(architecture))
+    assert len(whole.boxes) > MAX_BOXES
+    graph = fold_graph(whole)
+    assert len(graph.boxes) <= MAX_BOXES
+    assert len(graph.arrows) <= MAX_ARROWS
     folded = [box for box in graph.boxes if box.style == "fold"]
     left = max(sum(box.cluster == cluster.id for box in graph.boxes) for cluster in graph.clusters)
     assert all(int(box.lines[0].split()[0]) >= left for box in folded)
@@ -336,7 +345,7 @@ def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
 
 def test_what_cannot_be_folded_says_so() -> None:
     boxes = tuple(Box(f"b{at}", "B") for at in range(71))
-    assert fold(Graph("x", "X", "flow", boxes, ())).notes == (
+    assert fold_graph(Graph("x", "X", "flow", boxes, ())).notes == (
         "This picture is larger than 70 boxes and 160 arrows: select a part to see it well.",
     )
 
@@ -344,7 +353,7 @@ def test_what_cannot_be_folded_says_so() -> None:
 def test_folding_keeps_frames_that_fit() -> None:
     boxes = tuple(Box(f"b{at}", "B", cluster="big" if at < 70 else "small") for at in range(72))
     arrows = (Arrow("1", "b0", "b1"), Arrow("2", "b1", "b71"), Arrow("3", "b2", "b71"), Arrow("4", "b70", "b71"))
-    graph = fold(
+    graph = fold_graph(
         Graph("x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4)
     )
     assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
@@ -353,5 +362,5 @@ def test_folding_keeps_frames_that_fit() -> None:
 
 
 def test_what_feeds_a_component_is_named_by_its_title() -> None:
-    view = index(make("g: a b", "g.a.x > g.b.y"))
-    assert [arrow.flows for arrow in component(view, "g.b").arrows] == [("A · x → y",)]
+    view = make_lookup(make("g: a b", "g.a.x > g.b.y"))
+    assert [arrow.flows for arrow in draw_component(view, "g.b").arrows] == [("A · x → y",)]

@@ -9,21 +9,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compare import Comparison
-from archgen.views.graphs.changes.budget import LARGE, SMALL, Budget
-from archgen.views.graphs.changes.functional import functional
-from archgen.views.graphs.changes.implementation import implementation
+from archgen.views.graphs.changes.component_changes import draw_component_changes
+from archgen.views.graphs.changes.node_changes import draw_node_changes
+from archgen.views.graphs.changes.picture_budget import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
 from archgen.views.shapes import Graph
 
-__all__ = ["LARGE", "SMALL", "Budget", "pictures"]
+__all__ = ["LARGE_BUDGET", "SMALL_BUDGET", "PictureBudget", "draw_changes"]
 
 
-def pictures(found: Comparison, budget: Budget = LARGE) -> tuple[Graph, ...]:
+def draw_changes(comparison: Comparison, budget: PictureBudget = LARGE_BUDGET) -> tuple[Graph, ...]:
     """Draw the changed components, then the changed nodes; no picture if nothing changed that it could show."""
-    return tuple(_pictures(found, budget))
+    return tuple(_draw_pictures(comparison, budget))
 
 
-def _pictures(found: Comparison, budget: Budget) -> Iterator[Graph]:
-    for draw in (functional, implementation):
-        graph = draw(found, budget)
+def _draw_pictures(comparison: Comparison, budget: PictureBudget) -> Iterator[Graph]:
+    for draw_picture in (draw_component_changes, draw_node_changes):
+        graph = draw_picture(comparison, budget)
         if graph:
             yield graph

@@ -1,0 +1,96 @@
+"""Can data flow along each chain?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model import flow_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.model.architecture import Architecture, Waypoint
+
+
+def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Nothing flows from one element of a chain to the next, not even through others.
+
+    Why: A chain is a path of cause and effect, from a sensor to a reaction, with a deadline. Where no way leads from an
+    element to the next, the reaction never comes; mostly an input is missing, or the order is reversed.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+              brake: {inputs: {scan: scanner.scan}}
+        nodes:
+          scanner: {implements: scanner}
+          brake: {implements: brake}
+        chains:
+          see_and_stop: {through: [driving.brake, driving.scanner], deadline: 100 ms}
+
+    Good:
+        groups:
+          driving:
+            components:
+              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+              brake: {inputs: {scan: scanner.scan}}
+        nodes:
+          scanner: {implements: scanner}
+          brake: {implements: brake}
+        chains:
+          see_and_stop: {through: [driving.scanner, driving.brake], deadline: 100 ms}
+    """
+    if not any(len(chain.through) > 1 for chain in architecture.chains.values()):
+        return
+    # The graph of components, not of nodes: a chain can be judged before anything is mapped to nodes.
+    successors = flow_graph.build_component_graph(architecture).successors
+    readers = _readers_by_output(architecture)
+    open_components = {i.component for i in architecture.inputs.values() if i.from_written and not i.connections}
+    for chain in architecture.chains.values():
+        for waypoint, next_waypoint in pairwise(chain.through):
+            # A chain that goes through an output leaves its component by that output only.
+            starts = (
+                readers[waypoint.id] if waypoint.kind == "output" else _components_of_waypoint(architecture, waypoint)
+            )
+            goals = _components_of_waypoint(architecture, next_waypoint)
+            reached = flow_graph.find_reachable(successors, starts).keys()
+            # Inputs whose `from` could not be resolved are reported already, and one of them may be the missing step:
+            # `unsure - reached` are the components with such inputs that cannot be reached from here.
+            if (
+                not goals
+                or not _components_of_waypoint(architecture, waypoint)
+                or goals & reached
+                or open_components - reached
+            ):
+                continue
+            yield Diagnostic(
+                "broken-chain",
+                f"in the chain `{chain.id}`, nothing leads from `{waypoint.id}` to `{next_waypoint.id}`",
+                next_waypoint.at,
+                labels=(Label(waypoint.at, "from here"),),
+                help="name the connection that is missing in an input, or correct the order in `through`",
+                element=chain.id,
+            )
+
+
+def _readers_by_output(architecture: Architecture) -> Mapping[str, set[str]]:
+    """Return the ids of the components that read each output, by output id."""
+    readers = defaultdict[str, set[str]](set)
+    for edge in architecture.edges:
+        readers[edge.output].add(architecture.inputs[edge.input].component)
+    return readers
+
+
+def _components_of_waypoint(architecture: Architecture, waypoint: Waypoint) -> set[str]:
+    """Return the ids of the components that a chain's element belongs to."""
+    if waypoint.kind == "node":
+        return set(architecture.nodes[waypoint.id].implements)
+    return {waypoint.id if waypoint.kind == "component" else architecture.outputs[waypoint.id].component}
+
+
+RULES = ((broken_chain, Severity.WARNING),)

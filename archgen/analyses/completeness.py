@@ -1,0 +1,115 @@
+"""What does a component still lack?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
+
+
+def list_missing_details(architecture: Architecture, component: Component, *, is_timed: bool) -> Iterator[str]:
+    """Yield what is still missing of a component, in the order in which it is usually filled in.
+
+    `inputs: {}` and `requirements: []` are answers. A source needs no inputs, a sink no outputs.
+    """
+    if not component.functionality:
+        yield "functionality"
+    # A project without partners has nobody who could be the owner.
+    if architecture.partners and component.owner is None:
+        yield "owner"
+    if not component.requirements_known:
+        yield "requirements"
+    if not component.inputs_known and component.role != "source":
+        yield "inputs"
+    if not component.outputs_known and component.role != "sink":
+        yield "outputs"
+    untyped = [output.name for output in component.outputs.values() if output.type is None]
+    if untyped:
+        yield f"the type of {_join_words([f'`{name}`' for name in untyped])}"
+    if not component.performance:
+        yield "performance"
+    empty_indicators = [i.id for i in component.performance if i.accuracy is None and i.execution_time is None]
+    if empty_indicators:
+        yield f"figures for {_join_words([f'`{name}`' for name in empty_indicators])}"
+    if not is_timed:
+        yield "timing"
+
+
+def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Something about a component is not written yet.
+
+    Why: A design starts with stubs and is filled in. One note for each component lists what is blank, so that nobody has to
+    look for it. `archgen stats` counts the same by group and partner.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera:
+                functionality: Takes pictures of what lies in front of the robot.
+                requirements: []
+                inputs: {}
+                outputs: {image: sensor_msgs/msg/Image}
+                performance: {accuracy: 1280 x 720 pixels}
+              screen:
+                functionality: Shows the pictures to the operator.
+                requirements: []
+                inputs: {image: camera.image}
+                outputs: {}
+                performance: {execution_time: 20 ms}
+                timing: {behaviour: event}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera:
+                functionality: Takes pictures of what lies in front of the robot.
+                requirements: []
+                inputs: {}
+                outputs: {image: sensor_msgs/msg/Image}
+                performance: {accuracy: 1280 x 720 pixels}
+                timing: {rate: 30 Hz}
+              screen:
+                functionality: Shows the pictures to the operator.
+                requirements: []
+                inputs: {image: camera.image}
+                outputs: {}
+                performance: {execution_time: 20 ms}
+                timing: {behaviour: event}
+        nodes:
+          camera: {implements: camera}
+          screen: {implements: screen}
+    """
+    # Timing may be written on the component or on any of its nodes.
+    timed_components = {component for node in architecture.nodes.values() for component in node.timing}
+    for component in architecture.components.values():
+        missing_items = list(
+            list_missing_details(
+                architecture, component, is_timed=bool(component.timing) or component.id in timed_components
+            )
+        )
+        if missing_items:
+            yield Diagnostic(
+                "missing-detail",
+                f"`{component.id}` still lacks {_join_words(missing_items)}",
+                component.at,
+                element=component.id,
+            )
+
+
+def _join_words(words: list[str]) -> str:
+    """Join words as in "a, b and c"."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+RULES = ((missing_detail, Severity.NOTE),)

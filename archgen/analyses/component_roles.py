@@ -1,0 +1,159 @@
+"""Does each component do what its role says?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass
+from archgen.model.message_types import flow_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component, Connection
+
+
+@dataclass(frozen=True, slots=True)
+class PortSummary:
+    """The properties of a component's ports that its role depends on.
+
+    `is_fed`: an input takes data from another component; answers to the component's own calls do not count.
+    `may_be_fed`: an input's source is missing or could not be resolved. `may_serve_calls`: the message of an output is
+    unknown, so that it may be a service.
+    """
+
+    has_outputs: bool
+    is_fed: bool
+    may_be_fed: bool
+    has_digital_output: bool
+    """It has an output that is not physical."""
+    acts_outside: bool
+    """It has a physical or an external output."""
+    sends_messages: bool
+    """It has an output that carries messages."""
+    serves_calls: bool
+    may_serve_calls: bool
+
+
+def summarise_ports(architecture: Architecture, component: Component) -> PortSummary:
+    """Summarise the properties of a component's ports that its role depends on."""
+    outputs = component.outputs.values()
+    flows = [flow_of(architecture.message_of(o)) for o in outputs if not o.physical]
+    open_inputs = [i for i in component.inputs.values() if not (i.connections or i.external or i.optional)]
+    return PortSummary(
+        has_outputs=bool(outputs),
+        is_fed=any(
+            _brings_component_data(architecture, component, c) for i in component.inputs.values() for c in i.connections
+        ),
+        may_be_fed=bool(open_inputs),
+        has_digital_output=bool(flows),
+        acts_outside=any(o.physical or o.external for o in outputs),
+        sends_messages=any(
+            o.type and flow == "topic" for o, flow in zip((o for o in outputs if not o.physical), flows, strict=True)
+        ),
+        serves_calls=any(flow != "topic" for flow in flows),
+        may_serve_calls=any(architecture.message_of(o) is None and not o.physical for o in outputs),
+    )
+
+
+def role_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A component's inputs and outputs do not fit the role that it claims.
+
+    Why: The role tells readers what to expect, and policies and pictures rest on it. A source has an output and takes
+    nothing from other components. A filter takes data from another component and has an output that is not physical. A sink
+    is fed by others (or serves a service or action), and acts on the world outside or sends nothing. A reactive component
+    serves a service or an action. A call that a component makes does not count as data from others.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {role: source, outputs: {image: sensor_msgs/msg/Image}}
+              detector:
+                role: source
+                inputs: {image: camera.image}
+                outputs: {found: {type: vision_msgs/msg/Detection2DArray, external: The operator's tablet}}
+        nodes:
+          camera: {implements: camera}
+          detector: {implements: detector}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {role: source, outputs: {image: sensor_msgs/msg/Image}}
+              detector:
+                role: filter
+                inputs: {image: camera.image}
+                outputs: {found: {type: vision_msgs/msg/Detection2DArray, external: The operator's tablet}}
+        nodes:
+          camera: {implements: camera}
+          detector: {implements: detector}
+    """
+    for component in architecture.components.values():
+        if component.role is None or not (component.inputs or component.outputs):
+            continue
+        port_summary = summarise_ports(architecture, component)
+        fault = _find_role_fault(component.role, port_summary)
+        if fault is None:
+            continue
+        fitting_roles = [
+            role for role in ("source", "filter", "sink", "reactive") if _find_role_fault(role, port_summary) is None
+        ]
+        yield Diagnostic(
+            "role-mismatch",
+            f"`{component.id}` says that its role is `{component.role}`, but {fault}",
+            component.role_at,
+            help=f"its ports fit the role {' or '.join(f'`{role}`' for role in fitting_roles)}"
+            if fitting_roles
+            else None,
+            element=component.id,
+        )
+
+
+def _find_role_fault(role: str, port_summary: PortSummary) -> str | None:
+    """Return what contradicts a role, or None."""
+    return next((fault for fits, fault in _role_demands(role, port_summary) if not fits), None)
+
+
+def _role_demands(role: str, port_summary: PortSummary) -> tuple[tuple[bool, str], ...]:
+    """Return the conditions of a role, each with the fault to report where it does not hold."""
+    if role == "source":
+        return (
+            (port_summary.has_outputs, "it has no output"),
+            (not port_summary.is_fed, "it takes data from another component"),
+        )
+    # From here on what may still turn out either way counts in the component's favour.
+    may_serve = port_summary.serves_calls or port_summary.may_serve_calls
+    if role == "reactive":
+        return ((may_serve, "it serves no service and no action"),)
+    may_be_fed = port_summary.is_fed or port_summary.may_be_fed
+    if role == "filter":
+        return (
+            (port_summary.has_digital_output, "it has no output that is not physical"),
+            (may_be_fed, "it takes no data from another component"),
+        )
+    return (
+        (may_be_fed or may_serve, "no other component feeds it"),
+        (
+            port_summary.acts_outside or not port_summary.sends_messages,
+            "all that it sends stays inside the architecture",
+        ),
+    )
+
+
+def _brings_component_data(architecture: Architecture, component: Component, connection: Connection) -> bool:
+    """Whether a reference brings data from another component; answers to calls do not count."""
+    if connection.kind == "output":
+        output = architecture.outputs[connection.target]
+        flow = "topic" if output.physical else flow_of(architecture.message_of(output))
+        return output.component != component.id and flow == "topic"
+    if connection.outputs:
+        return any(architecture.outputs[o].component != component.id for o in connection.outputs)
+    # It brings nothing yet. A stub of another component will bring data once it has outputs; no component feeds itself.
+    return connection.target != component.id
+
+
+RULES = ((role_mismatch, Severity.WARNING),)

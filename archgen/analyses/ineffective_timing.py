@@ -1,0 +1,168 @@
+"""Is any key of timing without effect?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.declared_timing import Timing
+    from archgen.model.node import Node
+
+_INPUT_TRIGGER_KEYS = ("trigger", "every", "throttle")
+"""Keys that say how inputs trigger an activity: attributes of `Timing`, and keys of its `places`."""
+# Behaviours that inputs do not trigger, each with the reason and the help of its finding.
+_SELF_ACTIVATED = {
+    "periodic": ("its period fires it", "leave it out, or write `behaviour: event` where inputs are to fire it"),
+    "once": ("it works once, at the start", "leave it out"),
+    "on_demand": (
+        "calls fire it, each of them",
+        "leave it out, or write `behaviour: event` where inputs are to fire it",
+    ),
+}
+
+
+def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A key of timing has no effect where it stands.
+
+    Why: What somebody writes is meant to count. A `trigger`, `every` or `throttle` does not where a period, or a call, fires
+    the element; `calls` does not for an input that is a topic, and `max_gap` does not for an output that is not
+    `conditional`. One of the two is a slip.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          viewer: {implements: viewer, timing: {rate: 30 Hz, every: 2}}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          viewer: {implements: viewer, timing: {behaviour: event, every: 2}}
+    """
+    uses = _port_uses(architecture)
+    # One `timing` may stand for several components of a node: its faults are reported once.
+    reported_spans: set[Span] = set()
+    for node in architecture.nodes.values():
+        for timing in node.timing.values():
+            for finding in (
+                *_find_idle_triggers(node, timing),
+                *_find_idle_calls(node, timing, uses),
+                *_find_idle_gaps(node, timing),
+            ):
+                if finding.span not in reported_spans:
+                    reported_spans.add(finding.span)
+                    yield finding
+
+
+def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
+    """Return how each node uses each port ("publishes", ..., "unknown" without a message), by node id and port id."""
+    uses = defaultdict[tuple[str, str], set[str]](set)
+    for endpoint in architecture.endpoints:
+        # Without a message nobody knows yet whether it will be a topic or a service: no `calls` is idle then.
+        uses[endpoint.node, endpoint.port or endpoint.name].add(endpoint.use if endpoint.message else "unknown")
+    return uses
+
+
+def _find_idle_triggers(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    # As timing infers it: who states a rate and no behaviour is periodic.
+    has_rate = timing.period is not None or timing.rate is not None
+    behaviour = timing.behaviour or ("periodic" if has_rate else None)
+    if behaviour not in _SELF_ACTIVATED:
+        return
+    reason, cure = _SELF_ACTIVATED[behaviour]
+    key = "period" if timing.period is not None else "rate"
+    span = timing.places.get("behaviour" if timing.behaviour else key)
+    for name in _INPUT_TRIGGER_KEYS:
+        if getattr(timing, name) is not None:
+            labels = (Label(span, reason),) if span else ()
+            message = f"`{name}` of `{node.id}` has no effect: {reason}"
+            yield Diagnostic("idle-timing", message, timing.places[name], labels=labels, help=cure, element=node.id)
+
+
+def _find_idle_calls(node: Node, timing: Timing, uses: Mapping[tuple[str, str], set[str]]) -> Iterator[Diagnostic]:
+    for port in timing.calls:
+        if uses.get((node.id, port)) == {"subscribes"}:
+            yield Diagnostic(
+                "idle-timing",
+                f"`calls` of `{node.id}` has no effect for `{port}`: it is a topic, which nobody calls",
+                # The linker records the span of each entry below `calls` as `calls PORT`.
+                timing.places.get(f"calls {port}", timing.places.get("calls", timing.at)),
+                help="`calls` counts calls of services and actions; of a topic, `every` takes each n-th message",
+                element=node.id,
+            )
+
+
+def _find_idle_gaps(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    for port, output in timing.outputs.items():
+        if output.max_gap is not None and not output.conditional:
+            yield Diagnostic(
+                "idle-timing",
+                f"`max_gap` of `{port}` has no effect: it is published at each activation",
+                output.at,
+                help="write `conditional: true` beside it, or leave it out",
+                element=node.id,
+            )
+
+
+def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An element is pinned to a core that its host does not have.
+
+    Why: Cores are counted from 0, so that a host with four has 0 to 3. What is pinned to another one does not start, or runs
+    anywhere; timing takes it as not pinned.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 4}}
+        hosts: {pc: {cores: 4}}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 3}}
+        hosts: {pc: {cores: 4}}
+    """
+    reported_spans: set[Span] = set()
+    for node in architecture.nodes.values():
+        host = architecture.hosts.get(node.host or "")
+        for timing in node.timing.values():
+            span = timing.places.get("core")
+            # A host that does not say how many cores it has is judged by nobody.
+            if host is None or host.cores is None or timing.core is None or span is None or span in reported_spans:
+                continue
+            if timing.core >= host.cores:
+                reported_spans.add(span)
+                available_cores = "only core 0" if host.cores == 1 else f"the cores 0 to {host.cores - 1}"
+                yield Diagnostic(
+                    "absent-core",
+                    f"`{node.id}` is pinned to core {timing.core}, but `{host.id}` has {available_cores}",
+                    span,
+                    labels=(Label(host.at, "its host"),),
+                    help="cores are counted from 0; correct `core`, or the host's `cores`",
+                    element=node.id,
+                )
+
+
+RULES = ((idle_timing, Severity.WARNING), (absent_core, Severity.WARNING))

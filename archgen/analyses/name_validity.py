@@ -1,0 +1,170 @@
+"""Does ROS accept the names of nodes, namespaces, topics and services, and is every node's name unique?"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.ros_distro import is_ros_1
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Node
+
+_FORBIDDEN_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
+_SUBSTITUTION = re.compile(r"\{(?:node|ns|namespace)\}")
+
+
+def find_name_fault(text: str, *, ros_1: bool = False) -> str | None:
+    """Return what is wrong with the name of a topic, service or namespace, or None.
+
+    The rules are those of https://design.ros2.org/articles/topic_and_service_names.html as far as ROS 2 enforces them, and
+    of http://wiki.ros.org/Names for ROS 1, where only the first letter of the whole name must not be a digit.
+    """
+    if not text:
+        return "it is empty"
+    remaining_name = text
+    if text.startswith("~"):
+        remaining_name = text[1:]
+        if remaining_name and not remaining_name.startswith("/"):
+            return "`~` is followed by `/`"
+    if remaining_name == "/" or not remaining_name:
+        return None
+    if remaining_name.endswith("/"):
+        return "it ends with `/`"
+    # Substitutions such as `{node}` are replaced by a valid name; other braces remain and are reported.
+    tokens = _SUBSTITUTION.sub("x", remaining_name.removeprefix("/")).split("/")
+    for position, token in enumerate(tokens):
+        fault = _find_token_fault(
+            token, may_start_with_digit=ros_1 and (position > 0 or remaining_name.startswith("/"))
+        )
+        if fault:
+            return fault
+    return None
+
+
+def find_node_name_fault(name: str) -> str | None:
+    """Return what is wrong with a node's name, or None."""
+    if "/" in name:
+        return "it holds `/`: what stands before the name belongs into `namespace`"
+    return _find_token_fault(name, may_start_with_digit=False) if name else "it is empty"
+
+
+def _find_token_fault(token: str, *, may_start_with_digit: bool) -> str | None:
+    if not token:
+        return "two `/` follow one another"
+    forbidden = _FORBIDDEN_CHARACTER.search(token)
+    if forbidden:
+        character = "a blank" if forbidden[0].isspace() else f"`{forbidden[0]}`"
+        return f"it holds {character}, and only letters (a to z), digits and `_` are allowed"
+    if token[0].isdigit() and not may_start_with_digit:
+        return f"`{token}` begins with a digit"
+    return None
+
+
+def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
+    """ROS does not accept the name of a node, a namespace, a topic, a service or an action.
+
+    Why: The node would stop at its start with an exception. Names consist of letters, digits and `_`, in parts divided by `/`,
+    and (in ROS 2) no part begins with a digit.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera, publishes: {image: {topic: /front-camera/image}}}
+          image_view: {implements: screen}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera, publishes: {image: {topic: /front_camera/image}}}
+          image_view: {implements: screen}
+    """
+    ros_1 = is_ros_1(architecture.distro)
+    for node in architecture.nodes.values():
+        if not node.written:
+            continue
+        fault = find_node_name_fault(node.name)
+        if fault:
+            yield _report_invalid_name(node, "a node", node.name, node.name_at, fault)
+        fault = find_name_fault(node.namespace, ros_1=ros_1)
+        if fault and node.namespace:
+            yield _report_invalid_name(node, "a namespace", node.namespace, node.at, fault)
+        for use in node.uses:
+            kind = "a topic" if use.use in {"publishes", "subscribes"} else "a service or action"
+            # Only the linker fills in `topic_places`, one span for each topic.
+            spans = use.topic_places or (use.at,) * len(use.topics)
+            for topic, span in zip(use.topics, spans, strict=True):
+                fault = "it is only a `/`" if topic == "/" else find_name_fault(topic, ros_1=ros_1)
+                if fault:
+                    yield _report_invalid_name(node, kind, topic, span, fault)
+
+
+def _report_invalid_name(node: Node, kind: str, name: str, span: Span, fault: str) -> Diagnostic:
+    message = f"`{name}` cannot be the name of {kind}: {fault}"
+    return Diagnostic("invalid-ros-name", message, node.at if span == NO_SPAN else span, element=node.id)
+
+
+def _name_span(node: Node) -> Span:
+    """Return the span of a node's `name`, else of the node."""
+    return node.at if node.name_at == NO_SPAN else node.name_at
+
+
+def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Two nodes have one name.
+
+    Why: In ROS 1 the node that starts later shuts the earlier one down; in ROS 2 both run, and nobody can tell them apart
+    (parameters, life cycle and remappings reach one of them by chance).
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera, name: usb_cam}
+          image_view: {implements: screen, name: usb_cam}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              screen: {inputs: {image: camera.image}}
+        nodes:
+          camera_driver: {implements: camera, name: usb_cam}
+          image_view: {implements: screen, name: usb_cam, namespace: /operator}
+    """
+    first_by_name: dict[str, Node] = {}
+    for node in architecture.nodes.values():
+        if not node.written:
+            continue
+        earlier_node = first_by_name.setdefault(node.full_name, node)
+        if earlier_node is not node:
+            yield Diagnostic(
+                "duplicate-node-name",
+                f"`{node.id}` has the name `{node.full_name}`, which is the name of `{earlier_node.id}`",
+                _name_span(node),
+                labels=(Label(_name_span(earlier_node), "the first one"),),
+                help="give one of them another `name` or `namespace`",
+                element=node.id,
+            )
+
+
+RULES = (
+    (invalid_ros_name, Severity.ERROR),
+    (duplicate_node_name, Severity.WARNING),
+)

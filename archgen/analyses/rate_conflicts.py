@@ -1,0 +1,231 @@
+"""Are rates consistent: what elements state and what their inputs give, what is sent and what is read?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.timing.figures.figure_wording import format_number, format_rate
+from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
+from archgen.timing.rates.edge_fit import fires_each_time
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
+    from archgen.timing.analysis import Analysis, EdgeFit
+    from archgen.timing.figures.timing_values import TimingValue
+    from archgen.timing.system.timing_system import Activity
+
+
+def period_conflict(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """What an element states of its rate is not what its inputs, or the nodes that implement it, give.
+
+    Why: An event-driven element runs when its inputs arrive. Where it states another rate, one of the two is wrong, and so is
+    every figure that follows from it. The stated one is used, so that the rest can be judged meanwhile.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              detector: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          detector: {implements: detector, timing: {behaviour: event, rate: 10 Hz}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              detector: {inputs: {image: camera.image}}
+        nodes:
+          camera: {implements: camera, timing: {rate: 30 Hz}}
+          detector: {implements: detector, timing: {behaviour: event, every: 3}}
+    """
+    for name, derived in analysis.derived.items():
+        stated_rate = analysis.paces[name].rate.value
+        if stated_rate is None or not _is_impossible_rate(stated_rate, derived.rate):
+            continue
+        activity = analysis.system.activities[name]
+        reason = derived.reasons[-1] if derived.reasons else None
+        yield Diagnostic(
+            "period-conflict",
+            f"`{name}` states {format_rate(stated_rate)}, but what fires it gives {_format_bounded_rate(derived.rate)}",
+            _stated_rate_span(activity),
+            labels=(Label(reason.at, "it is fired here"),) if reason and reason.at != NO_SPAN else (),
+            help="leave the rate out, or correct it; `behaviour: periodic` if a timer decides",
+            element=name,
+        )
+    # A component with one node has one timing, written in either place. With several nodes its timing is a claim about
+    # the whole, which no node inherits: it is compared with what the nodes publish.
+    node_counts = Counter(component for node in architecture.nodes.values() for component in node.implements)
+    for component in architecture.components.values():
+        if component.timing and node_counts[component.id] > 1:
+            yield from _compare_component_rate(analysis, component)
+
+
+def _is_impossible_rate(stated_rate: Fraction, derived_rate: TimingValue) -> bool:
+    """Whether a stated rate contradicts the derived one (both in Hz): another exact value, or beyond a bound."""
+    if derived_rate.value is None:
+        return False
+    if derived_rate.side == "at most":
+        return stated_rate > derived_rate.value
+    if derived_rate.side == "at least":
+        return stated_rate < derived_rate.value
+    return stated_rate != derived_rate.value
+
+
+def _format_bounded_rate(value: TimingValue) -> str:
+    """Format a rate (Hz) with the side on which it bounds: "at most 10 Hz"."""
+    text = format_rate(value.value) if value.value is not None else "nothing known"
+    return text if value.side == "exact" else f"{value.side} {text}"
+
+
+def _stated_rate_span(activity: Activity) -> Span:
+    return activity.places.get("rate", activity.places.get("period", activity.at))
+
+
+def _compare_component_rate(analysis: Analysis, component: Component) -> Iterator[Diagnostic]:
+    """Report a component with several nodes whose stated rate none of its outputs has."""
+    component_period = written_period(component.timing) if component.timing else None
+    if component_period is None or component.timing is None:
+        return
+    stated_rate = NS_PER_SECOND / component_period
+    # Nodes of one component may work at different rates: the claim stands if any output has the stated rate.
+    published_rates = {
+        key: rate_and_gap.rate for (_, key), rate_and_gap in analysis.outputs.items() if key in _output_ids(component)
+    }
+    if not published_rates or not all(
+        _is_impossible_rate(stated_rate, published_rate) for published_rate in published_rates.values()
+    ):
+        return
+    port, port_rate = next(iter(published_rates.items()))
+    yield Diagnostic(
+        "period-conflict",
+        f"`{component.id}` states {format_rate(stated_rate)}, but its nodes publish `{port}` at {_format_bounded_rate(port_rate)}",
+        component.timing.places.get("rate", component.timing.places.get("period", component.timing.at)),
+        help="correct the component's rate, or the timing of its nodes",
+        element=component.id,
+    )
+
+
+def _output_ids(component: Component) -> frozenset[str]:
+    return frozenset(output.id for output in component.outputs.values())
+
+
+def lost_samples(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """An element waits for all of several inputs, and one of them comes more often than it can be used.
+
+    Why: An element that fires when all of its inputs have something new runs as often as the slowest of them. What the
+    others send more often is thrown away, and where the rates have no common measure, the pairs that are put together are
+    of another age each time. An element that samples its inputs by a timer does so on purpose, and is not meant here.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              left: {outputs: {image: sensor_msgs/msg/Image}}
+              right: {outputs: {image: sensor_msgs/msg/Image}}
+              stereo: {inputs: {left: left.image, right: right.image}}
+        nodes:
+          left: {implements: left, timing: {rate: 30 Hz}}
+          right: {implements: right, timing: {rate: 25 Hz}}
+          stereo: {implements: stereo, timing: {trigger: all}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              left: {outputs: {image: sensor_msgs/msg/Image}}
+              right: {outputs: {image: sensor_msgs/msg/Image}}
+              stereo: {inputs: {left: left.image, right: right.image}}
+        nodes:
+          left: {implements: left, timing: {rate: 30 Hz}}
+          right: {implements: right, timing: {rate: 30 Hz}}
+          stereo: {implements: stereo, timing: {trigger: all}}
+    """
+    for edge in analysis.edges:
+        target = analysis.system.activities[edge.arc.target]
+        waits_for_all = (
+            target.mode == "all" and edge.arc.input in target.triggers and target.every == 1 and not target.throttle
+        )
+        if not waits_for_all or not edge.loss.value or target.period is not None:
+            continue
+        sent_rate = analysis.outputs[edge.arc.source, edge.arc.output].rate.value
+        read_rate = analysis.paces[target.id].rate.value
+        if sent_rate is None or not read_rate:
+            continue  # `deadlocked-trigger` reports what never runs
+        yield Diagnostic(
+            "lost-samples",
+            f"`{target.id}` uses {format_number(100 * (1 - edge.loss.value))} % of what `{edge.arc.source}` sends: "
+            f"it comes at {format_rate(sent_rate)}, all inputs together at {format_rate(read_rate)}",
+            edge.arc.at if edge.arc.at != NO_SPAN else target.at,
+            help="let one input fire it and sample the other (`trigger: [input]`), or give the sources one rate",
+            element=target.id,
+        )
+
+
+def short_queue(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """An element keeps a queue that overflows before it is read.
+
+    Why: Whoever asks for a queue of several messages means to read all of them. Until a periodic reader has been through once
+    more, its largest gap and its response time pass, and the response of what each message fires; what comes in that time
+    must fit in, or the oldest is lost without a sign. A queue of one (only the newest counts), and a depth that nobody wrote, are not meant here.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
+              filter: {inputs: {motion: imu.motion}}
+        nodes:
+          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
+          filter:
+            implements: filter
+            subscribes: {motion: {qos: {depth: 5}}}
+            timing: {rate: 20 Hz, wcet: 2 ms}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
+              filter: {inputs: {motion: imu.motion}}
+        nodes:
+          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
+          filter:
+            implements: filter
+            subscribes: {motion: {qos: {depth: 11}}}
+            timing: {rate: 20 Hz, wcet: 2 ms}
+    """
+    for edge in analysis.edges:
+        depth, needed_depth = edge.arc.depth, edge.queue.value
+        if not edge.arc.depth_written or depth is None or depth < 2 or needed_depth is None or needed_depth <= depth:  # noqa: PLR2004
+            continue
+        target = analysis.system.activities[edge.arc.target]
+        if target.behaviour == "periodic" or fires_each_time(analysis.system, edge.arc):
+            yield _report_overflow(edge, target, depth, needed_depth)
+
+
+def _report_overflow(edge: EdgeFit, target: Activity, depth: int, needed_depth: Fraction) -> Diagnostic:
+    return Diagnostic(
+        "short-queue",
+        f"`{target.id}` keeps {depth} messages of `{edge.arc.topic}`, but {needed_depth} can come before it has read them",
+        edge.arc.queue_at if edge.arc.queue_at != NO_SPAN else edge.arc.at,
+        help=f"`depth: {needed_depth}` keeps all of them, `depth: 1` says that only the newest counts",
+        element=target.id,
+    )
+
+
+RULES = (
+    (period_conflict, Severity.WARNING),
+    (lost_samples, Severity.WARNING),
+    (short_queue, Severity.WARNING),
+)

@@ -1,0 +1,285 @@
+"""Do the messages, services and actions exist, and does every topic carry only one message?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics.suggestions import find_closest
+from archgen.model.architecture import Architecture
+from archgen.model.component import Input, Output
+from archgen.model.known_interfaces import Interfaces, InterfaceStatus
+from archgen.model.message_types import flow_of
+from archgen.model.node import Endpoint
+
+_FLOW_NOUNS = {"topic": "message", "service": "service", "action": "action"}
+
+
+class MessageMention(NamedTuple):
+    """A message as the project writes it, where, and the id of the element that it belongs to."""
+
+    message: str
+    span: Span
+    element: str
+
+
+def find_message_mentions(architecture: Architecture) -> Iterator[MessageMention]:
+    """Yield every mention of a message written in the project, once for each span, without planned messages.
+
+    A message is planned wherever it is mentioned if one type with `status: planned` maps to it.
+    """
+    planned_messages = {type_.message for type_ in architecture.types.values() if type_.status == "planned"}
+    seen_spans = set[Span]()
+    for mention in _find_written_messages(architecture):
+        if mention.span != NO_SPAN and mention.span not in seen_spans and mention.message not in planned_messages:
+            seen_spans.add(mention.span)
+            yield mention
+
+
+def _find_written_messages(architecture: Architecture) -> Iterator[MessageMention]:
+    ports: tuple[Output | Input, ...] = (*architecture.outputs.values(), *architecture.inputs.values())
+    # Reversed, so that the first port of each type wins, and outputs win over inputs.
+    port_spans = {port.type: port.type_at for port in reversed(ports)}
+    for type_ in architecture.types.values():
+        if type_.message is not None and type_.origin != "shipped":
+            # A type that is itself a message (`type: std_msgs/msg/String`) has no declaration: the port is its place.
+            span = _first_written_span(type_.message_at, type_.at, port_spans.get(type_.name, NO_SPAN))
+            yield MessageMention(type_.message, span, type_.name)
+    for node in architecture.nodes.values():
+        for use in node.uses:
+            if use.message is not None:
+                yield MessageMention(use.message, use.message_at, node.id)
+
+
+def _first_written_span(*spans: Span) -> Span:
+    """Return the first span that is not `NO_SPAN`, or `NO_SPAN`."""
+    return next((span for span in spans if span != NO_SPAN), NO_SPAN)
+
+
+def _mentions_with_status(architecture: Architecture, status: InterfaceStatus) -> Iterator[MessageMention]:
+    return (
+        mention
+        for mention in find_message_mentions(architecture)
+        if architecture.interfaces.status_of(mention.message) == status
+    )
+
+
+def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """No message, service or action of this name exists.
+
+    Why: the name is written for a package whose interfaces archgen holds completely for this distribution, or which the
+    project defines itself, and no such name is among them. The node that uses it will not build. A name that is
+    still to be defined is marked with `status: planned` at its type.
+
+    Bad:
+
+        ros: {distro: noetic}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {colour: Camera picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+        types:
+          Camera picture: {message: sensor_msgs/msg/Imgae}
+
+    Good:
+
+        ros: {distro: noetic}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {colour: Camera picture}}
+              screen: {inputs: {colour: camera.colour}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+        types:
+          Camera picture: {message: sensor_msgs/msg/Image}
+    """
+    interfaces = architecture.interfaces
+    for message, span, element in _mentions_with_status(architecture, "wrong"):
+        package = message.partition("/")[0]
+        definition_source = (
+            "which the project defines" if package in interfaces.project_packages else f"as {interfaces.distro} has it"
+        )
+        yield Diagnostic(
+            "unknown-message",
+            f"no {_FLOW_NOUNS[flow_of(message)]} `{message}` in `{package}`, {definition_source}",
+            span,
+            help=_suggest_interface(message, interfaces) or _suggest_definition(message, interfaces),
+            element=element,
+        )
+
+
+def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Nobody can tell whether this message, service or action exists.
+
+    Why: nobody holds a complete list of its package for this distribution: neither archgen nor the project. The name may
+    be right; a slip in it would go unseen. With the definition at hand, archgen checks the name and what is in it.
+
+    Bad:
+
+        ros: {distro: jazzy}
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {tags: Tags}}
+              screen: {inputs: {tags: camera.tags}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+        types:
+          Tags: {message: demo_msgs/msg/Tags}
+
+    Good:
+
+        ros:
+          distro: jazzy
+          definitions:
+            demo_msgs/msg/Tags: "string[] names"
+        groups:
+          sensing:
+            components:
+              camera: {outputs: {tags: Tags}}
+              screen: {inputs: {tags: camera.tags}}
+        nodes:
+          camera_driver: {implements: camera}
+          image_view: {implements: screen}
+        types:
+          Tags: {message: demo_msgs/msg/Tags}
+    """
+    interfaces = architecture.interfaces
+    if interfaces.distro is not None and not interfaces.has_names:
+        return  # `unknown-distro` reports that nothing is checked, once instead of for each message
+    for message, span, element in _mentions_with_status(architecture, "not held"):
+        yield Diagnostic(
+            "unchecked-message",
+            f"cannot tell whether the {_FLOW_NOUNS[flow_of(message)]} `{message}` exists: {_explain_unchecked(message, interfaces)}",
+            span,
+            help=_suggest_near_package(message, interfaces) or _suggest_definition_file(message),
+            element=element,
+        )
+
+
+def _explain_unchecked(message: str, interfaces: Interfaces) -> str:
+    """Explain why it is not known whether a message exists."""
+    package = message.partition("/")[0]
+    if interfaces.distro is None:
+        return "the project names no distribution (`ros: {distro: jazzy}`)"
+    if package in interfaces.known_packages():
+        return f"it is not among the names held of `{package}`, and newer ones may be missing there"
+    return f"archgen holds no names of `{package}` for {interfaces.distro}"
+
+
+def _suggest_interface(message: str, interfaces: Interfaces) -> str | None:
+    guess = interfaces.find_nearest(message)
+    return f"did you mean `{guess}`?" if guess else None
+
+
+def _suggest_near_package(message: str, interfaces: Interfaces) -> str | None:
+    """Suggest an interface whose package has nearly the same name, else nothing: the name may well be right."""
+    guess = interfaces.find_nearest(message)
+    is_near = guess and find_closest(message.partition("/")[0], [guess.partition("/")[0]])
+    return f"did you mean `{guess}`?" if is_near else None
+
+
+def _suggest_definition(message: str, interfaces: Interfaces) -> str:
+    """Suggest how to declare a message that is named correctly, but does not exist yet."""
+    package, kind, name = message.split("/")
+    planned_hint = "if it is still to be defined, write `status: planned` at its type"
+    if package in interfaces.project_packages:
+        return f"add its definition, `{package}/{kind}/{name}.{kind}`, to the others; {planned_hint}"
+    return planned_hint
+
+
+def _suggest_definition_file(message: str) -> str:
+    """Suggest a file that defines a message, and the setting that makes archgen read it."""
+    package, kind, name = message.split("/")
+    file = f"msgs/{package}/{kind}/{name}.{kind}"
+    return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
+
+
+def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Several messages are named for one topic, service or action.
+
+    Why: under one name all nodes have to use one message. Those that use another one are never connected (ROS 2), or are
+    refused with an error when they meet (ROS 1).
+
+    Bad:
+
+        ros: {distro: jazzy}
+        groups: {sensing: {components: {camera: Camera with preview}}}
+        nodes:
+          camera:
+            implements: sensing.camera
+            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+          viewer:
+            implements: sensing.camera
+            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/CompressedImage}}}
+
+    Good:
+
+        ros: {distro: jazzy}
+        groups: {sensing: {components: {camera: Camera with preview}}}
+        nodes:
+          camera:
+            implements: sensing.camera
+            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+          viewer:
+            implements: sensing.camera
+            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
+    """
+    for topic in architecture.topics.values():
+        users = _first_user_by_message((*topic.writers, *topic.readers))
+        if len(users) > 1:
+            # The finding is placed at the second user: the first one set the message, the second one deviates from it.
+            first, second = list(users.values())[:2]
+            labels = (
+                Label(_message_span(user, architecture), f"`{user.message}` here, by the node `{user.node}`")
+                for user in users.values()
+                if user is not second
+            )
+            names = " and ".join(f"`{message}`" for message in users)
+            yield Diagnostic(
+                "topic-type-conflict",
+                f"the {topic.flow} `{topic.name}` carries {names}",
+                _message_span(second, architecture),
+                labels=tuple(label for label in labels if label.span != NO_SPAN),
+                help=f"give both nodes the same message, or one of them another {topic.flow}: `{first.node}` has "
+                f"`{first.message}`, `{second.node}` `{second.message}`",
+                element=second.node,
+            )
+
+
+def _first_user_by_message(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
+    """Return the first endpoint that uses each message, by message, in the order of the endpoints."""
+    users = dict[str, Endpoint]()
+    for endpoint in endpoints:
+        if endpoint.message is not None:
+            users.setdefault(endpoint.message, endpoint)
+    return users
+
+
+def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
+    """Return the span where an endpoint's message was written, else its endpoint's, its port's or its node's."""
+    port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
+    node = architecture.nodes.get(endpoint.node)
+    return _first_written_span(
+        endpoint.message_at,
+        endpoint.at,
+        port.type_at if port else NO_SPAN,
+        port.at if port else NO_SPAN,
+        node.at if node else NO_SPAN,
+    )
+
+
+RULES = (
+    (unknown_message, Severity.ERROR),
+    (unchecked_message, Severity.NOTE),
+    (topic_type_conflict, Severity.ERROR),
+)

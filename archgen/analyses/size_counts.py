@@ -1,0 +1,175 @@
+"""How large is the architecture, and how far along? The figures of `archgen stats`."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal
+
+from archgen.frozen import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
+
+
+@dataclass(frozen=True, slots=True)
+class ArchitectureSize:
+    """Counts of elements, and means as exact fractions (0 if there is nothing to divide by).
+
+    `connections` are references as written, `edges` the pairs of output and input that they make. A connection is mapped
+    if all outputs that it carries have a message (a planned message counts); physical outputs need none. `nodes` are
+    those written in the project, `planned_nodes` those that archgen adds. `messages` are distinct names.
+    """
+
+    groups: int
+    components: int
+    components_per_group: Fraction
+    largest_group: int
+    connections: int
+    connections_per_component: Fraction
+    mapped_connections: int
+    edges: int
+    inputs: int
+    outputs: int
+    inputs_per_component: Fraction
+    outputs_per_component: Fraction
+    nodes: int
+    planned_nodes: int
+    topics: int
+    services: int
+    actions: int
+    types: int
+    messages: int
+    use_cases: int
+    requirements: int
+    partners: int
+    hosts: int
+    containers: int
+    links: int
+    chains: int
+    views: int
+    policies: int
+
+
+@dataclass(frozen=True, slots=True)
+class ProgressCounts:
+    """How many of a set of components have each kind of information.
+
+    `described`: a functionality. `typed`: at least one port, and a type for each output. `mapped`: a node written in
+    the project. `timed`: a timing, on the component or on all of its nodes. `traced`: a declared requirement.
+    """
+
+    scope: Literal["project", "group", "partner"]
+    id: str
+    """The id of the project, group or partner; empty for the components without an owner."""
+    title: str
+    components: int
+    described: int
+    typed: int
+    mapped: int
+    timed: int
+    traced: int
+
+
+def measure_size(architecture: Architecture) -> ArchitectureSize:
+    """Count the elements of each kind."""
+    # The field names are keys of `archgen stats --format json` (through `asdict`) and of views/statistics.
+    arch = architecture
+    components, groups = len(arch.components), len(arch.groups)
+    flows = [topic.flow for topic in arch.topics.values()]
+    written_nodes = sum(node.written for node in arch.nodes.values())
+    return ArchitectureSize(
+        groups=groups,
+        components=components,
+        components_per_group=_exact_mean(components, groups),
+        largest_group=max((len(group.components) for group in arch.groups.values()), default=0),
+        connections=len(arch.connections),
+        connections_per_component=_exact_mean(len(arch.connections), components),
+        mapped_connections=count_mapped_connections(arch),
+        edges=len(arch.edges),
+        inputs=len(arch.inputs),
+        outputs=len(arch.outputs),
+        inputs_per_component=_exact_mean(len(arch.inputs), components),
+        outputs_per_component=_exact_mean(len(arch.outputs), components),
+        nodes=written_nodes,
+        planned_nodes=len(arch.nodes) - written_nodes,
+        topics=flows.count("topic"),
+        services=flows.count("service"),
+        actions=flows.count("action"),
+        types=len(arch.types),
+        messages=len(_distinct_messages(arch)),
+        use_cases=len(arch.use_cases),
+        requirements=len(arch.requirements),
+        partners=len(arch.partners),
+        hosts=len(arch.hosts),
+        containers=len(arch.containers),
+        links=len(arch.links),
+        chains=len(arch.chains),
+        views=len(arch.views),
+        policies=len(arch.policies),
+    )
+
+
+def count_mapped_connections(architecture: Architecture) -> int:
+    """Count the connections whose outputs all have a message, from their type or from the node that publishes them."""
+    named_outputs = {e.port for e in architecture.endpoints if e.message and e.use in {"publishes", "serves"}}
+    named_outputs.update(o.id for o in architecture.outputs.values() if o.physical or architecture.message_of(o))
+    return sum(bool(c.outputs) and named_outputs.issuperset(c.outputs) for c in architecture.connections)
+
+
+def measure_progress(architecture: Architecture) -> tuple[ProgressCounts, ...]:
+    """Count for the project, each group, each partner, and (if there are partners) the components without an owner."""
+    # For each component, one entry for each of its written nodes: whether that node has a timing for it.
+    nodes_of = defaultdict[str, list[bool]](list)
+    for node in architecture.nodes.values():
+        for component in node.implements if node.written else ():
+            nodes_of[component].append(component in node.timing)
+    project = architecture.project
+    all_components = architecture.components.values()
+
+    def measure_set(
+        scope: Literal["project", "group", "partner"], scope_id: str, title: str, components: Iterable[Component]
+    ) -> ProgressCounts:
+        members = tuple(components)
+        return ProgressCounts(
+            scope,
+            scope_id,
+            title,
+            components=len(members),
+            described=sum(bool(c.functionality) for c in members),
+            typed=sum(_is_typed(c) for c in members),
+            mapped=sum(c.id in nodes_of for c in members),
+            timed=sum(c.timing is not None or (c.id in nodes_of and all(nodes_of[c.id])) for c in members),
+            traced=sum(any(r.is_id and r.text in architecture.requirements for r in c.requirements) for c in members),
+        )
+
+    def list_rows() -> Iterator[ProgressCounts]:
+        yield measure_set("project", project.id, project.title, all_components)
+        for group in architecture.groups.values():
+            yield measure_set("group", group.id, group.title, group.components.values())
+        for partner in architecture.partners.values():
+            yield measure_set(
+                "partner", partner.id, partner.title, (c for c in all_components if partner.id in c.owners)
+            )
+        if architecture.partners and any(c.owner is None for c in all_components):
+            yield measure_set("partner", "", "(nobody)", (c for c in all_components if c.owner is None))
+
+    return tuple(list_rows())
+
+
+def _is_typed(component: Component) -> bool:
+    outputs = component.outputs.values()
+    return bool(component.inputs or outputs) and all(output.type is not None for output in outputs)
+
+
+def _distinct_messages(architecture: Architecture) -> set[str]:
+    """Return the full names of all messages that topics or outputs carry."""
+    topic_messages = {message for topic in architecture.topics.values() for message in topic.messages}
+    return topic_messages | {m for o in architecture.outputs.values() if (m := architecture.message_of(o))}
+
+
+def _exact_mean(total: int, count: int) -> Fraction:
+    return Fraction(total, count) if count else Fraction(0)

@@ -1,0 +1,107 @@
+"""Are the figures of timing plausible? Values that are legal, but usually a mistake."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.declared_timing import Timing
+    from archgen.model.quantity import Quantity
+
+_NS_PER_SECOND = 10**9
+
+
+def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An execution takes longer, at worst, than the period in which it is to be done.
+
+    Why: The next activation comes before the last one is done. On one core that cannot go on for long, whatever else
+    runs there; on several it can, where one execution may begin while another still runs. It is worth a second look:
+    mostly a unit is wrong, or the worst case is one of start-up.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 80 ms}}
+          viewer: {implements: viewer, host: pc}
+        hosts: {pc: {cores: 4}}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms}}
+          viewer: {implements: viewer, host: pc}
+        hosts: {pc: {cores: 4}}
+    """
+    yield from _find_above_period(architecture, "wcet", "the worst case execution time", "long-execution")
+
+
+def large_jitter(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An activation may come later than the period after which the next one is due.
+
+    Why: With a jitter above the period several activations may fall together, and queues must hold them. That happens
+    where samples come in bursts, from a network for instance; where a timer is meant, a unit may be wrong.
+
+    Bad:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {period: 40 ms, jitter: 60 ms, wcet: 2 ms}}
+          viewer: {implements: viewer}
+
+    Good:
+        groups:
+          vision:
+            components:
+              camera: {outputs: {image: sensor_msgs/msg/Image}}
+              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
+        nodes:
+          camera: {implements: camera, timing: {period: 40 ms, jitter: 6 ms, wcet: 2 ms}}
+          viewer: {implements: viewer}
+    """
+    yield from _find_above_period(architecture, "jitter", "the jitter", "large-jitter")
+
+
+def _find_above_period(architecture: Architecture, key: str, description: str, rule_name: str) -> Iterator[Diagnostic]:
+    """Yield a finding for each figure (by its key in `Timing`) that is above the period, if both are written."""
+    # A node that implements several components may have one `timing` for all of them: the same span comes up again.
+    reported_spans: set[Span] = set()
+    for node in architecture.nodes.values():
+        for timing in node.timing.values():
+            # `key` is an attribute of `Timing` and the key in the YAML (and in `places`) alike.
+            quantity: Quantity | None = getattr(timing, key)
+            period = _period_of(timing)
+            if quantity and period and quantity.value > period and timing.places[key] not in reported_spans:
+                reported_spans.add(timing.places[key])
+                message = f"{description} of `{node.id}` (`{key}`, {quantity}) is above its period"
+                cure = "this is legal: correct it only where a figure or a unit is wrong"
+                period_key = "period" if timing.period else "rate"
+                label = Label(timing.places[period_key], f"its {period_key}")
+                yield Diagnostic(rule_name, message, timing.places[key], labels=(label,), help=cure, element=node.id)
+
+
+def _period_of(timing: Timing) -> Fraction | None:
+    """Return the period in ns, written as such or as a rate; None if neither is written."""
+    if timing.period:
+        return timing.period.value
+    return _NS_PER_SECOND / timing.rate.value if timing.rate else None
+
+
+RULES = ((long_execution, Severity.NOTE), (large_jitter, Severity.NOTE))

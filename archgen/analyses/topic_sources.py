@@ -1,0 +1,231 @@
+"""Do the topics and services of nodes agree with the interfaces of their components?"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Endpoint, FlowKind
+
+
+_STANDARD_SERVICES = re.compile(
+    r".*/((describe|list|get|set)_parameters|get_parameter_types|set_parameters_atomically|get_type_description"
+    r"|change_state|get_(state|available_states|available_transitions|transition_graph)"
+    r"|get_logger_levels|set_logger_levels|(un)?load_node|list_nodes)"
+)
+"""Services of every ROS 2 node (parameters, life cycle, loggers) and container: a design does not list them."""
+
+
+@dataclass(slots=True)
+class _TopicUsers:
+    """Writers and readers of topics and services, and the outputs that inputs name; shared topics are left out."""
+
+    writers: dict[tuple[str, FlowKind], list[Endpoint]] = field(default_factory=lambda: defaultdict(list))
+    readers: list[Endpoint] = field(default_factory=list)
+    topics_by_output: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    """The names of topics or services that each output is published under, by output id."""
+    outputs_by_component: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    """The ids of all outputs that a component's inputs name, by component id."""
+    outputs_by_input: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    """The ids of the outputs that an input names, by input id."""
+
+
+def _collect_topic_users(architecture: Architecture) -> _TopicUsers:
+    topic_users = _TopicUsers()
+    shared_topics = {(topic.name, topic.flow) for topic in architecture.topics.values() if topic.shared}
+    for endpoint in architecture.endpoints:
+        if (endpoint.name, endpoint.flow) in shared_topics or endpoint.name in architecture.shared_topics:
+            continue
+        if endpoint.use in {"publishes", "serves"}:
+            topic_users.writers[endpoint.name, endpoint.flow].append(endpoint)
+            if endpoint.port:
+                topic_users.topics_by_output[endpoint.port].add(endpoint.name)
+        else:
+            topic_users.readers.append(endpoint)
+    for edge in architecture.edges:
+        topic_users.outputs_by_input[edge.input].add(edge.output)
+        topic_users.outputs_by_component[architecture.inputs[edge.input].component].add(edge.output)
+    return topic_users
+
+
+def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A topic that a component reads also carries an output that none of the component's inputs names.
+
+    Why: Who reads a topic receives all that is published there, from everybody. The design shows fewer sources than the
+    robot has: two publishers of one command topic are the usual case.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {command: geometry_msgs/msg/Twist}}
+              joystick: {outputs: {command: {type: geometry_msgs/msg/Twist, external: The operator's tablet}}}
+              base: {inputs: {command: planner.command}}
+        nodes:
+          planner: {implements: planner, publishes: {command: /cmd_vel}}
+          joystick: {implements: joystick, publishes: {command: /cmd_vel}}
+          base: {implements: base}
+
+    Good:
+        groups:
+          driving:
+            components:
+              planner: {outputs: {command: geometry_msgs/msg/Twist}}
+              joystick: {outputs: {command: geometry_msgs/msg/Twist}}
+              base: {inputs: {command: [planner.command, joystick.command]}}
+        nodes:
+          planner: {implements: planner, publishes: {command: /cmd_vel}}
+          joystick: {implements: joystick, publishes: {command: /cmd_vel}}
+          base: {implements: base}
+    """
+    topic_users = _collect_topic_users(architecture)
+    # Several nodes and ports of a component may read one topic: one finding for each component and topic.
+    reported_pairs = set[tuple[str, str]]()
+    for reader in topic_users.readers:
+        if reader.port is None or reader.component is None or (reader.component, reader.name) in reported_pairs:
+            continue
+        extra_writers = [
+            writer
+            for writer in topic_users.writers.get((reader.name, reader.flow), ())
+            if writer.port
+            and writer.component != reader.component
+            and writer.port not in topic_users.outputs_by_component[reader.component]
+            and writer.port not in architecture.suspected_ids
+        ]
+        if extra_writers:
+            reported_pairs.add((reader.component, reader.name))
+            outputs = list(dict.fromkeys(f"`{writer.port}`" for writer in extra_writers))
+            yield Diagnostic(
+                "unnamed-source",
+                f"`{reader.name}` also brings {' and '.join(outputs)}, which no input of `{reader.component}` names",
+                _endpoint_span(architecture, reader),
+                labels=tuple(
+                    Label(_endpoint_span(architecture, writer), "published here") for writer in extra_writers[:3]
+                ),
+                help="name it in `from` of the input, or publish it on a topic of its own",
+                element=reader.component,
+            )
+
+
+def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A node uses a topic or service that no component's interface accounts for.
+
+    Why: Data flows on the robot that the design does not show, or a name is misspelt and nothing flows. A topic that a
+    reader writes must be one of its sources'. A topic in `internal` connects the nodes of one component; what comes from
+    another component is an input. Topics that all nodes share (`/tf`, `ros: {shared_topics: [...]}`) are left out.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+              mapper: {inputs: {scan: scanner.scan}}
+        nodes:
+          scan_driver: {implements: scanner, publishes: {scan: /scan}}
+          mapper: {implements: mapper, subscribes: {scan: /scan_front}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+              mapper: {inputs: {scan: scanner.scan}}
+        nodes:
+          scan_driver: {implements: scanner, publishes: {scan: /scan}}
+          mapper: {implements: mapper, subscribes: {scan: /scan}}
+    """
+    topic_users = _collect_topic_users(architecture)
+    for reader in topic_users.readers:
+        if not architecture.nodes[reader.node].implements:
+            continue  # `unjustified-node` reports the node as a whole
+        finding = (
+            _judge_internal_reader(architecture, topic_users, reader)
+            if reader.internal
+            else _judge_written_topic(architecture, topic_users, reader)
+        )
+        if finding:
+            yield finding
+
+
+def _judge_internal_reader(architecture: Architecture, topic_users: _TopicUsers, reader: Endpoint) -> Diagnostic | None:
+    """Return a finding if an internal topic or service is not provided by a node of the reader's own component."""
+    writers = topic_users.writers.get((reader.name, reader.flow), [])
+    own_components = set(architecture.nodes[reader.node].implements)
+    foreign_writers = [w for w in writers if own_components.isdisjoint(architecture.nodes[w.node].implements)]
+    flow_noun = "topic" if reader.flow == "topic" else reader.flow
+    if foreign_writers:
+        foreign_writer = foreign_writers[0]
+        message = f"the internal {flow_noun} `{reader.name}` comes from `{foreign_writer.node}`, which is no node of `{min(own_components)}`"
+        cure = (
+            f"name `{foreign_writer.port}` in an input"
+            if foreign_writer.port
+            else "make it an output there and an input here"
+        )
+        return _report_unaccounted(architecture, reader, message, cure, foreign_writers)
+    if writers or (reader.flow == "service" and _STANDARD_SERVICES.fullmatch(reader.name)):
+        return None
+    verb = "publishes" if reader.flow == "topic" else "serves"
+    message = f"`{reader.node}` uses the internal {flow_noun} `{reader.name}`, and no node of its component {verb} it"
+    return _report_unaccounted(
+        architecture, reader, message, "what comes from another component or from outside is an input", []
+    )
+
+
+def _judge_written_topic(architecture: Architecture, topic_users: _TopicUsers, reader: Endpoint) -> Diagnostic | None:
+    """Return a finding if the topic that a node names for an input is none of its sources' topics."""
+    if not reader.name_written or reader.port is None or architecture.inputs[reader.port].external:
+        return None
+    expected_names = sorted(
+        {name for output in topic_users.outputs_by_input[reader.port] for name in topic_users.topics_by_output[output]}
+    )
+    writers = topic_users.writers.get((reader.name, reader.flow), [])
+    if not expected_names or reader.name in expected_names or any(w.port for w in writers):
+        return None  # nothing to compare with, correct, or another output's topic, which `unnamed-source` reports
+    source_ids = {
+        name for output in topic_users.outputs_by_input[reader.port] for name in (output, output.rpartition(".")[0])
+    }
+    if not architecture.suspected_ids.isdisjoint(source_ids):
+        return None  # the node of a source names its topic in an entry that could not be resolved: reported already
+    entry = architecture.inputs[reader.port]
+    expected_list = " and ".join(f"`{name}`" for name in expected_names)
+    message = f"no source of `{entry.name}` publishes on `{reader.name}`: they use {expected_list}"
+    cure = f"write `{expected_names[0]}`, or leave the topic out" if len(expected_names) == 1 else "leave the topic out"
+    return _report_unaccounted(architecture, reader, message, cure, writers)
+
+
+def _report_unaccounted(
+    architecture: Architecture, reader: Endpoint, message: str, cure: str, writers: list[Endpoint]
+) -> Diagnostic:
+    labels = tuple(Label(_endpoint_span(architecture, w), "published here") for w in writers[:3])
+    return Diagnostic(
+        "unaccounted-topic",
+        message,
+        _endpoint_span(architecture, reader),
+        labels=labels,
+        help=cure,
+        element=reader.node,
+    )
+
+
+def _endpoint_span(architecture: Architecture, endpoint: Endpoint) -> Span:
+    """Return the span of an endpoint, else of its port, else of its node."""
+    if endpoint.at != NO_SPAN:
+        return endpoint.at
+    port = architecture.inputs.get(endpoint.port or "") or architecture.outputs.get(endpoint.port or "")
+    return port.at if port else architecture.nodes[endpoint.node].at
+
+
+RULES = (
+    (unnamed_source, Severity.WARNING),
+    (unaccounted_topic, Severity.WARNING),
+)

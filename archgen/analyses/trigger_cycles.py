@@ -1,0 +1,151 @@
+"""Do triggers form cycles that never end, or that never begin?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.model.architecture import Architecture
+    from archgen.timing.analysis import Analysis
+
+
+def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Elements fire one another in a ring: an event that enters it circulates for ever.
+
+    Why: Each element of the ring runs whenever the one before it has published, and publishes in turn. The first event never
+    comes to rest; each further one is added, until a processor or a queue is full. One of the elements must run by a timer,
+    or only sample what comes back (`trigger`). Where nobody has written yet what fires an element, it is a warning.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {behaviour: event}}
+          motor: {implements: motor, timing: {behaviour: event}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {behaviour: event, trigger: [wish]}}
+          motor: {implements: motor, timing: {behaviour: event}}
+    """
+    for ring in analysis.endless:
+        members = [analysis.system.activities[name] for name in ring]
+        # It is an error only if the behaviour of every member is written: an inferred one may be wrong. The finding is
+        # placed at a member whose behaviour is written, if there is one.
+        inferred_members = [activity for activity in members if activity.behaviour_inferred]
+        first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
+        is_certain = not inferred_members
+        yield Diagnostic(
+            "endless-trigger",
+            f"{_join_quoted(ring)} fire {'one another' if len(ring) > 1 else 'itself'} without an end"
+            if len(ring) > 1
+            else f"`{ring[0]}` fires itself without an end",
+            first.places.get("trigger", first.at),
+            severity=None if is_certain else Severity.WARNING,
+            labels=tuple(
+                Label(member.at, "in the ring") for member in members if member is not first and member.at != NO_SPAN
+            ),
+            help="let one of them run by a timer (`period`), or only sample what comes back: name its other inputs in `trigger`",
+            element=first.id,
+        )
+
+
+def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Elements wait for all of several inputs, one of which never comes: they never run.
+
+    Why: An element with `trigger: all` runs when each of its inputs has something new. Where one of them only comes after it
+    has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {trigger: all}}
+          motor: {implements: motor, timing: {behaviour: event}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
+              limiter:
+                inputs: {wish: remote.wish, state: motor.state}
+                outputs: {speed: geometry_msgs/msg/Twist}
+              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
+        nodes:
+          remote: {implements: remote, timing: {rate: 20 Hz}}
+          limiter: {implements: limiter, timing: {trigger: {all: [wish]}}}
+          motor: {implements: motor, timing: {behaviour: event}}
+    """
+    arriving_keys = _find_arriving_keys(analysis)
+    for ring in analysis.deadlocked:
+        members = [analysis.system.activities[name] for name in ring]
+        # Only an activity that waits for all of its inputs can start a deadlock; the other members wait for its output.
+        first = next(activity for activity in members if activity.mode == "all")
+        missing_keys = [key for key in first.triggers if key not in arriving_keys[first.id]]
+        reason = (
+            f"nothing feeds {_join_quoted(missing_keys)}"
+            if missing_keys
+            else f"{_join_quoted(ring)} wait for one another"
+        )
+        yield Diagnostic(
+            "deadlocked-trigger",
+            f"`{first.id}` never runs: it waits for all of its triggers, and {reason}",
+            first.places.get("trigger", first.at),
+            labels=tuple(
+                Label(member.at, "waits, too") for member in members if member is not first and member.at != NO_SPAN
+            ),
+            help="name in `trigger: {all: [...]}` only the inputs that it has to wait for",
+            element=first.id,
+        )
+
+
+def _find_arriving_keys(analysis: Analysis) -> dict[str, set[str]]:
+    """Return the input keys at which something arrives, from other activities or from outside, by activity id."""
+    arriving_keys = defaultdict[str, set[str]](set)
+    for arc in analysis.system.arcs:
+        arriving_keys[arc.target].add(arc.input)
+    for name, keys in analysis.system.external_inputs.items():
+        arriving_keys[name].update(keys)
+    return arriving_keys
+
+
+def _join_quoted(names: tuple[str, ...] | list[str]) -> str:
+    """Join names in backticks as in "`a`, `b` and `c`"."""
+    quoted_names = [f"`{name}`" for name in names]
+    return quoted_names[0] if len(quoted_names) == 1 else f"{', '.join(quoted_names[:-1])} and {quoted_names[-1]}"
+
+
+RULES = (
+    (endless_trigger, Severity.ERROR),
+    (deadlocked_trigger, Severity.ERROR),
+)

@@ -1,0 +1,83 @@
+"""Stamp the program itself: what decides an output's bytes beside its inputs. Every cache has this in its keys."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import zlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib import metadata, util
+from pathlib import Path
+
+from archgen import resources
+
+_LIBRARY_NAMES = ("jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "pyyaml")
+_EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
+
+
+@cache
+def stamp_writers() -> str:
+    """Stamp what writes and draws: the emitters with their fonts, the backends that ship, and all libraries."""
+    return f"{digest_files((_EMIT_FOLDER, resources.resource_path('backends')))} {_describe_libraries()}"
+
+
+@cache
+def stamp_program() -> str:
+    """Stamp all of archgen: its code and data, what ships beside it, and all libraries."""
+    shipped_data = (resources.resource_path(name) for name in ("backends", "schemas", "ros_type_mapper.yaml"))
+    return f"{digest_files((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}"
+
+
+def digest_files(tops: Iterable[Path]) -> str:
+    """Digest files and folders: names and contents, but for what Python leaves there (`__pycache__`)."""
+    checksum = hashlib.sha256()
+    for top in tops:
+        for file in sorted(_walk_files(top)):
+            data = file.read_bytes()
+            # Relative, so that two installations of the same archgen share what they keep.
+            name = file.relative_to(top.parent).as_posix()
+            checksum.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
+    return checksum.hexdigest()
+
+
+def _walk_files(top: Path) -> Iterator[Path]:
+    if top.is_file():
+        yield top
+    for folder, subfolders, names in os.walk(top):
+        # In place: os.walk goes on with this list. `_data` holds copies that a wheel forces in; `resources.path` reads
+        # them.
+        subfolders[:] = [name for name in subfolders if name not in {"__pycache__", "_data"}]
+        yield from (Path(folder, name) for name in names)
+
+
+@cache
+def _describe_libraries() -> str:
+    """Describe the libraries: their versions, and for Graphviz's shared objects their sizes and dates."""
+    versions = [f"{name} {_library_version(name)}" for name in _LIBRARY_NAMES]
+    # zlib decides the bytes of all that Python compresses, docx files above all.
+    return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_describe_graphviz())}"
+
+
+def _library_version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def _describe_graphviz() -> Iterator[str]:
+    """Yield name, size and date of pygraphviz's shared libraries.
+
+    One that was built again may hold another Graphviz under the same version of pygraphviz.
+    """
+    module_spec = util.find_spec("pygraphviz")
+    if module_spec is None or module_spec.origin is None:
+        return
+    package = Path(module_spec.origin).parent
+    for folder in (package, package.with_name("pygraphviz.libs")):
+        for file in folder.glob("*") if folder.is_dir() else ():
+            if ".so" in file.suffixes or file.suffix in {".pyd", ".dll", ".dylib"}:
+                status = file.stat()
+                yield f"{file.name} {status.st_size} {status.st_mtime_ns}"

@@ -1,0 +1,75 @@
+"""`archgen build`: make everything."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.views.pages.report_outline import DetailLevel
+
+
+@click.command("build")
+@shared_options.project_argument
+@shared_options.output_option("The folder", "")
+@click.option(
+    "--backend",
+    metavar="NAME",
+    multiple=True,
+    help="Make this backend's output too (`wiki`, or one in the project's backends/); may be given several times.",
+)
+@click.option(
+    "--template",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A .docx or .dotx for the report.",
+)
+@shared_options.select_option
+@shared_options.level_option
+@shared_options.revision_option
+@shared_options.history_option
+@shared_options.keep_going_option
+@click.option(
+    "--trust",
+    metavar="REV",
+    help="Run the project's own backends only if `review.backends` of its files at this git revision names them.",
+)
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    output: Path | None,
+    backend: tuple[str, ...],
+    template: Path | None,
+    select: str | None,
+    level: DetailLevel | None,
+    revision: str | None,
+    history: bool,
+    keep_going: bool,
+    trust: str | None,
+) -> None:
+    """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
+    from archgen.products import project_outputs
+    from archgen.products.full_build import build_outputs
+
+    checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    allowed_backends = command_support.read_allowed_backends(project, trust)
+    output_options = project_outputs.OutputOptions(
+        command_support.evaluate_selector(checked_project, select),
+        select or "",
+        level,
+        revision,
+        command_support.make_progress_printer(),
+        command_support.print_warning,
+        history,
+        allowed_backends,
+    )
+    target = output or checked_project.output_folder
+    with command_support.explain_write_errors():
+        for path in build_outputs(checked_project, output_options, target, template, backend):
+            command_support.print_written(path)
+    counts = command_support.count_findings(checked_project.findings)
+    click.echo(f"archgen check tells more: {counts}" if counts else "no findings")
+    command_support.exit_by_findings(checked_project)

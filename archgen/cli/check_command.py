@@ -1,0 +1,190 @@
+"""`archgen check`: find mistakes in the architecture."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from archgen.cli import command_support, finding_documents, shared_options
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.products.check_findings import ReportedFindings
+
+_MAX_CURED_LINES = 20
+"""This many lines for cured findings; the rest is counted."""
+
+
+@click.command("check")
+@shared_options.project_argument
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
+    default="text",
+    show_default=True,
+)
+@shared_options.strict_option
+@click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and nothing else.")
+@click.option(
+    "--baseline", metavar="FILE", type=click.Path(path_type=Path), help="Keep the findings that FILE knows quiet."
+)
+@click.option("--update-baseline", is_flag=True, help="Write a baseline that knows all findings of now.")
+@click.option(
+    "--changed-since",
+    metavar="REV",
+    help="Show only findings that were not there at a git revision; `main...` is where the branch left main.",
+)
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    form: str,
+    strict: bool,
+    quiet: bool,
+    baseline: Path | None,
+    update_baseline: bool,
+    changed_since: str | None,
+) -> None:
+    """Find mistakes in the architecture of PROJECT.
+
+    PROJECT is a folder or a single file; left out, it is the project around the current folder. The exit status is 0
+    without errors, 1 with errors (with --strict also with warnings, and with findings of the baseline that are cured),
+    2 for wrong usage. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
+    """
+    if update_baseline:
+        if form != "text" or changed_since is not None:
+            msg = (
+                "--update-baseline takes in all findings of now and says what it wrote: no --format, no --changed-since"
+            )
+            raise click.UsageError(msg)
+        _update_baseline(command_support.check_project(project), baseline)
+    if baseline is not None and not os.path.lexists(baseline):
+        msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
+        raise click.UsageError(msg)
+    checked_project = command_support.check_project(project)
+    earlier_project = None if changed_since is None else _check_at_revision(project, changed_since)
+    from archgen.products import check_findings
+
+    reported = check_findings.report_findings(checked_project, baseline, earlier_project)
+    lowest_severity = "warning" if strict else "error"
+    shown_findings = [d for d in reported.findings if not quiet or d.severity in {lowest_severity, "error"}]
+    if form != "text":
+        _print_findings(form, replace(reported, findings=tuple(shown_findings)), checked_project, strict=strict)
+    elif shown_findings:
+        command_support.print_findings(shown_findings, checked_project, sys.stdout)
+    elif not quiet:
+        click.echo("no new findings" if reported.known_findings or reported.earlier_findings else "no findings")
+    if not quiet:
+        _print_known(reported, baseline)
+        _print_earlier(reported, changed_since)
+    # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
+    sys.exit(
+        command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
+    )
+
+
+def _check_at_revision(project: Path | None, revision: str) -> CheckedProject | None:
+    """Check the project at a revision. Return None, with a warning, where it cannot be read there: then everything
+    counts.
+    """
+    from archgen.git import GitError
+    from archgen.products import check_findings
+    from archgen.project import NotAtRevisionError
+
+    try:
+        checked_project = check_findings.check_earlier(project, revision)
+    except NotAtRevisionError as error:
+        command_support.print_warning(f"{error}: all findings are shown")
+        return None
+    except GitError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+    unreadable = check_findings.find_reading_error(checked_project.findings)
+    if unreadable is not None:
+        reason = f"{unreadable.span}: {unreadable.message}" if unreadable.span.file else unreadable.message
+        command_support.print_warning(
+            f"at `{revision}` the project could not be read whole ({reason}): all findings are shown"
+        )
+        return None
+    return checked_project
+
+
+def _print_findings(
+    format_name: str, reported_findings: ReportedFindings, checked_project: CheckedProject, *, strict: bool
+) -> None:
+    from archgen.emit.data import sarif_document
+
+    document = finding_documents.render_findings(format_name, reported_findings, checked_project, strict=strict)
+    if format_name == "github":  # in what everything else is in that a workflow prints
+        sys.stdout.write(document)
+    else:
+        click.echo(document.encode(), nl=False)  # UTF-8 whatever the terminal has: so it says of itself
+    for limit in (
+        sarif_document.check_github_limits(document, len(reported_findings.findings)) if format_name == "sarif" else ()
+    ):
+        command_support.print_warning(limit)
+
+
+def _print_known(reported_findings: ReportedFindings, baseline: Path | None) -> None:
+    """Print on the error stream what a baseline did: standard output has findings only."""
+    if reported_findings.known_findings:
+        click.echo(
+            make_visible(
+                f"not shown: {command_support.count_findings(reported_findings.known_findings)} that {baseline} knows"
+            ),
+            err=True,
+        )
+    cured_lines = [
+        f"{entry.rule}: {entry.message}{f' ({entry.occurrences} times)' * (entry.occurrences > 1)}"
+        for entry in reported_findings.cured_entries
+    ]
+    count = sum(entry.occurrences for entry in reported_findings.cured_entries)
+    _print_cured(cured_lines, count, "the baseline", f": run `archgen check --update-baseline --baseline {baseline}`")
+
+
+def _print_earlier(reported_findings: ReportedFindings, revision: str | None) -> None:
+    """Print what a comparison with a revision left out, and what the change cured."""
+    if reported_findings.earlier_findings:
+        click.echo(
+            make_visible(
+                f"not shown: {command_support.count_findings(reported_findings.earlier_findings)} that {revision} had already"
+            ),
+            err=True,
+        )
+    cured_lines = [f"{finding.rule}: {finding.message}" for finding in reported_findings.healed_findings]
+    _print_cured(cured_lines, len(cured_lines), str(revision), "")
+
+
+def _print_cured(cured_lines: list[str], count: int, origin: str, what_to_do: str) -> None:
+    if cured_lines:
+        sentence = f"1 finding of {origin} is" if count == 1 else f"{count} findings of {origin} are"
+        click.echo(make_visible(f"{sentence} cured{what_to_do}"), err=True)
+        for line in cured_lines[:_MAX_CURED_LINES]:
+            click.echo(make_visible(f"  {line}"), err=True)
+        if len(cured_lines) > _MAX_CURED_LINES:
+            click.echo(f"  and {len(cured_lines) - _MAX_CURED_LINES} more", err=True)
+
+
+def _update_baseline(checked_project: CheckedProject, baseline: Path | None) -> NoReturn:
+    """Write the baseline. Errors of reading come first, since what they hide would be missing in it."""
+    from archgen.products import check_findings
+
+    if check_findings.find_reading_error(checked_project.findings) is not None:
+        command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+        click.echo("No baseline was written: nobody knows what is behind errors of reading. Mend them first.", err=True)
+        sys.exit(1)
+    with command_support.explain_write_errors():
+        update_result = check_findings.update_baseline(
+            checked_project, baseline or checked_project.root / check_findings.BASELINE_FILE
+        )
+    command_support.print_written(
+        update_result.path,
+        f"{update_result.known_count} known: {update_result.added_count} added, {update_result.cured_count} cured",
+    )
+    sys.exit(0)

@@ -1,0 +1,198 @@
+"""What commands have in common: check a project, print findings and written files, show progress, end with a status."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, TextIO
+
+import click
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from archgen.diagnostics.source_span import SourceTexts
+    from archgen.model.selector_evaluation import Selection
+    from archgen.pipeline import CheckedProject
+
+ERROR = Severity.ERROR
+
+
+def check_project(project: Path | None) -> CheckedProject:
+    """Check a project. It is wrong usage if there is none."""
+    from archgen import pipeline
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        return pipeline.check_project(project)
+    except ProjectNotFoundError as error:
+        raise click.UsageError(str(error)) from None
+
+
+def read_allowed_backends(project: Path | None, revision: str | None) -> tuple[str, ...] | None:
+    """Return the project's own backends that a revision allows to run in a review; None if no revision is given: all
+    may.
+    """
+    from archgen import git, pipeline
+    from archgen.project import NotAtRevisionError
+
+    if not revision:
+        return None
+    try:
+        # The main line decides: the branch under review must not allow its own templates to run.
+        return pipeline.check_at_revision(project, revision).architecture.review.backends
+    # A project that is new in this branch: nothing is allowed yet.
+    except NotAtRevisionError:
+        return ()
+    except git.GitError as error:
+        raise click.UsageError(str(error)) from None
+
+
+def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Severity = Severity.WARNING) -> None:
+    """Print findings from a severity on, and their count, to the error stream."""
+    order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
+    # A finding without a severity counts as severe enough: it must not vanish.
+    shown_findings = [
+        d
+        for d in checked_project.findings
+        if order.index(d.severity or lowest_severity) >= order.index(lowest_severity)
+    ]
+    if shown_findings:
+        print_findings(shown_findings, checked_project, sys.stderr)
+
+
+def print_findings(findings: Sequence[Diagnostic], checked_project: CheckedProject, stream: TextIO) -> None:
+    """Print a project's findings for people, as wide as the terminal."""
+    print_excerpts(findings, checked_project.sources, stream)
+
+
+def print_excerpts(findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO) -> None:
+    """Print findings with the lines of these sources."""
+    from archgen.emit.terminal import findings_text
+
+    colour = findings_text.wants_colour(stream, os.environ)
+    width = shutil.get_terminal_size().columns if stream.isatty() else findings_text.DEFAULT_WIDTH
+    stream.writelines(
+        f"{line}\n" for line in findings_text.render_findings_text(findings, sources, colour=colour, width=width)
+    )
+
+
+def exit_status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
+    """Return the exit status for findings: 1 with errors (`strict`: or warnings), else 0."""
+    failing_severities = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
+    return 1 if any(finding.severity in failing_severities for finding in findings) else 0
+
+
+def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedProject:
+    """Check a project before something is written. Errors are printed and, without --keep-going, end the run."""
+    checked_project = check_project(project)
+    print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    if exit_status(checked_project.findings) and not keep_going:
+        click.echo("Nothing was written. With --keep-going outputs are made of what is sound.", err=True)
+        sys.exit(1)
+    return checked_project
+
+
+def evaluate_selector(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
+    """Evaluate a selector from the command line. What names nothing is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.products import project_outputs
+
+    if selector_text is None:
+        return None
+    selection, problems = project_outputs.select_elements(checked_project, selector_text)
+    for problem in problems:
+        click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
+        if problem.help:
+            click.echo(make_visible(f"  = help: {problem.help}"), err=True)
+    if any(problem.severity == "error" for problem in problems):
+        msg = f"the selector '{make_visible(selector_text)}' cannot be used"
+        raise click.UsageError(msg)
+    return selection
+
+
+def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -> NoReturn:
+    """End with the status that the findings ask for."""
+    sys.exit(exit_status(checked_project.findings, strict=strict))
+
+
+@contextmanager
+def explain_write_errors() -> Iterator[None]:
+    """Turn what can go wrong while writing into one line for the user."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.emit.file_tree import OutputError
+
+    try:
+        yield
+    except OutputError as error:
+        message = f"{error.message}; {error.help}" if error.help else error.message
+        raise click.ClickException(make_visible(message)) from None
+    except OSError as error:
+        raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
+
+
+def read_input(path: Path, max_bytes: int) -> bytes:
+    """Read a file, or the standard input for `-`. At most one byte more than `max_bytes`, so the caller sees what is
+    too long.
+    """
+    try:
+        if str(path) == "-":
+            return sys.stdin.buffer.read(max_bytes + 1)
+        with path.open("rb") as stream:
+            return stream.read(max_bytes + 1)
+    except OSError as error:
+        msg = f"cannot read {path}: {error.strerror or error}"
+        raise click.ClickException(msg) from None
+
+
+def count_findings(findings: Sequence[Diagnostic]) -> str:
+    """Count findings in words; empty where there are none."""
+    from archgen.emit.terminal.findings_text import format_summary
+
+    return format_summary(findings) if findings else ""
+
+
+def print_warning(text: str) -> None:
+    """Print a warning, such as what an output could not show as asked."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    click.echo(f"warning: {make_visible(text)}", err=True)
+
+
+def print_written(path: Path, detail: str = "") -> None:
+    """Print what was written, relative to the current folder where that is shorter."""
+    click.echo(f"wrote {shorten_path(path)}{f' ({detail})' if detail else ''}")
+
+
+def shorten_path(path: Path) -> Path:
+    """Return a path relative to the current folder if it is below it."""
+    try:
+        return path.resolve().relative_to(Path.cwd())
+    except ValueError:
+        return path
+
+
+def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] | None:
+    """Return a function that shows progress on a terminal, as done of total; None where the error stream is not a
+    terminal.
+    """
+    if not sys.stderr.isatty():
+        return None
+    # A list, so that the inner function can change it.
+    last_shown = [0.0]
+
+    def show_progress(done: int, total: int) -> None:
+        now = time.monotonic()
+        if done < total and now - last_shown[0] < 0.1:  # noqa: PLR2004 - ten times a second is enough for the eye
+            return
+        last_shown[0] = now
+        end = "\r\x1b[K" if done >= total else ""
+        sys.stderr.write(f"\r\x1b[K{label}: {done} of {total}{end}")
+        sys.stderr.flush()
+
+    return show_progress

@@ -1,0 +1,37 @@
+"""`archgen comment`: put a text on the pull request that a CI job runs for."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+
+@click.command("comment")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--key", default="diff", show_default=True, help="Which of archgen's comments this is.")
+def command(file: Path, key: str) -> None:
+    """Put the Markdown in FILE on the pull request as one comment, which later runs change instead of adding more.
+
+    It runs in a job of GitHub Actions (GITHUB_TOKEN, permission pull-requests: write) or GitLab CI (ARCHGEN_TOKEN). A token
+    that may not write, as in a pull request from a fork, is no failure: the text goes to the job's summary instead.
+    """
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.forge import ForgeError, post_comment
+
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        msg = f"{make_visible(str(file))} cannot be read as UTF-8 text"
+        raise click.ClickException(msg) from None
+    try:
+        click.echo(f"comment {post_comment(text, key)}")
+    except ForgeError as error:
+        summary = os.environ.get("GITHUB_STEP_SUMMARY")
+        # What a forge answers to a token that may not write: GitHub says 404 where the token may not even read.
+        if error.status not in {401, 403, 404} or not summary:
+            raise click.ClickException(make_visible(str(error))) from None
+        with Path(summary).open("a", encoding="utf-8") as stream:
+            stream.write(f"{text.strip()}\n")
+        click.echo(make_visible(f"warning: {error}; the text is in the job's summary instead"), err=True)

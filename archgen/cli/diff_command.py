@@ -1,0 +1,192 @@
+"""`archgen diff`: compare two versions of an architecture."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.compare import Comparison
+    from archgen.products.compared_versions import ProjectVersion
+    from archgen.products.project_outputs import OutputOptions
+
+ComparisonWriter = Callable[["Comparison", "ProjectVersion", "ProjectVersion"], str | bytes]
+
+
+def _read_versions(
+    before: str | None, after: str | None, project: Path | None
+) -> tuple[ProjectVersion, ProjectVersion]:
+    """Read both versions. What cannot be found is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.git import GitError
+    from archgen.products.compared_versions import read_versions
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        return read_versions(before, after, project)
+    except (GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
+def _select_changes(
+    comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, selector: str | None
+) -> Comparison:
+    """Keep what touches the selected part of either version. What only one version has is selected there alone."""
+    from archgen.compare.select_changes import select_changes
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.model.selector_evaluation import Selection
+    from archgen.products import project_outputs
+
+    if selector is None:
+        return comparison
+    (old_selection, old_problems), (new_selection, new_problems) = (
+        project_outputs.select_elements(side.checked_project, selector) for side in (old_version, new_version)
+    )
+    # A word that names nothing in one version may name something in the other: only what is wrong in both is wrong.
+    common_problems = [
+        problem for problem in new_problems if problem.message in {each.message for each in old_problems}
+    ]
+    for problem in common_problems:
+        click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
+        if problem.help:
+            click.echo(make_visible(f"  = help: {problem.help}"), err=True)
+    if any(problem.severity == "error" for problem in common_problems):
+        msg = f"the selector '{make_visible(selector)}' cannot be used"
+        raise click.UsageError(msg)
+    return select_changes(comparison, old_selection or Selection(), new_selection or Selection())
+
+
+def _write_text(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+    from archgen.emit.terminal import comparison_text
+    from archgen.emit.terminal.findings_text import wants_colour
+
+    colour = wants_colour(sys.stdout, os.environ)
+    lines = [
+        *_list_unsound(old_version),
+        *_list_unsound(new_version),
+        *comparison_text.write_comparison_lines(comparison, colour=colour),
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _list_unsound(version: ProjectVersion) -> list[str]:
+    """Return lines that say what of a version could not be read."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.emit.terminal import findings_text
+
+    errors = version.checked_project.structural_errors
+    if not errors:
+        return []
+    colour = findings_text.wants_colour(sys.stdout, os.environ)
+    heading = make_visible(f"{version.name} is not sound; what could not be read there is left out of the comparison:")
+    return [
+        heading,
+        "",
+        *findings_text.render_findings_text(errors, version.checked_project.sources, colour=colour),
+        "",
+    ]
+
+
+def _write_json(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+    from archgen.emit.data import comparison_json
+
+    return comparison_json.write_comparison_json(
+        comparison, (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors)
+    )
+
+
+def _write_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+    from archgen.products import comparison_documents
+
+    return comparison_documents.render_comparison_markdown(comparison, old_version, new_version)
+
+
+def _write_html(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> bytes:
+    from archgen.products import comparison_documents
+
+    return comparison_documents.render_comparison_html(comparison, old_version, new_version, _make_output_options())
+
+
+def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_version: ProjectVersion) -> bytes:
+    from archgen.products import comparison_documents
+
+    return comparison_documents.render_comparison_svg(comparison, _make_output_options())
+
+
+def _make_output_options() -> OutputOptions:
+    from archgen.products import project_outputs
+
+    return project_outputs.OutputOptions(warn=command_support.print_warning)
+
+
+COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
+    "text": _write_text,
+    "json": _write_json,
+    "markdown": _write_markdown,
+    "html": _write_html,
+    "svg": _write_svg,
+}
+"""The functions that write a comparison, by the name of the format."""
+
+
+def _write_output(document: str | bytes, output: Path | None) -> None:
+    """Write a document to a file, all of it or nothing, or to standard output."""
+    from archgen.emit import file_tree
+
+    if output is not None:
+        # Colours depend on the terminal, and belong into no file.
+        file_tree.write_file(output, document if isinstance(document, bytes) else click.unstyle(document).encode())
+        command_support.print_written(output)
+    elif isinstance(document, bytes):
+        sys.stdout.buffer.write(document)
+    else:
+        sys.stdout.write(document)
+
+
+@click.command("diff")
+@click.argument("before", required=False, metavar="[A]")
+@click.argument("after", required=False, metavar="[B]")
+@click.option("--format", "form", type=click.Choice(list(COMPARISON_WRITERS)), default="text", show_default=True)
+@click.option(
+    "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
+)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: standard output]")
+@click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
+@shared_options.select_option
+@shared_options.project_option
+def command(  # noqa: PLR0913 - the options of the verb, each by its name
+    before: str | None,
+    after: str | None,
+    form: str,
+    *,
+    breaking: bool,
+    output: Path | None,
+    exit_code: bool,
+    select: str | None,
+    project: Path | None,
+) -> None:
+    """Compare two versions of the architecture: models, not lines.
+
+    A and B are revisions of git (`main`, `v1.2`, `HEAD~3`), folders, or single or packed files. B left out is the working
+    tree; A left out is the commit at which the branch left its main line. `A..B` and `A...B` mean what they mean to git.
+    Order, comments, formatting and moves between files are no changes.
+    """
+    from archgen.compare.breaking_changes import keep_breaking_only
+    from archgen.products import compared_versions
+
+    old_version, new_version = _read_versions(before, after, project)
+    comparison = _select_changes(
+        compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select
+    )
+    if breaking:
+        comparison = keep_breaking_only(comparison)
+    with command_support.explain_write_errors():
+        _write_output(COMPARISON_WRITERS[form](comparison, old_version, new_version), output)
+    sys.exit(1 if (exit_code and not comparison.is_empty) or (breaking and comparison.is_refused) else 0)

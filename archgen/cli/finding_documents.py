@@ -1,0 +1,55 @@
+"""Render the findings of a check in the formats that programs and servers read."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from archgen import __version__
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.products.check_findings import ReportedFindings
+
+DOCUMENT_FORMATS = ("json", "github", "sarif", "junit")
+
+
+def render_findings(
+    format_name: str, reported_findings: ReportedFindings, checked_project: CheckedProject, *, strict: bool = False
+) -> str:
+    """Render findings as json, GitHub's commands, sarif or junit. With `strict`, warnings are failures too."""
+    from archgen.emit.data import findings_json, github_commands, junit_results, sarif_document
+    from archgen.products.check_findings import RULES_BY_NAME
+    from archgen.project import PROJECT_FILE
+
+    folder = folder_in_repository(checked_project.root)
+    if format_name == "json":
+        return findings_json.format_findings_json(reported_findings.findings)
+    if format_name == "github":
+        return "".join(
+            f"{line}\n" for line in github_commands.format_github_commands(reported_findings.findings, folder=folder)
+        )
+    if format_name == "junit":
+        lines = junit_results.format_junit(
+            reported_findings.findings, checked_project.sources, checked_project.input_files, strict=strict
+        )
+        return "".join(f"{line}\n" for line in lines)
+    file = checked_project.yaml_files[0] if checked_project.yaml_files else PROJECT_FILE
+    sarif_scan = sarif_document.SarifScan(
+        checked_project.architecture.project.id, file, folder, __version__, is_compared=reported_findings.was_compared
+    )
+    return sarif_document.format_sarif(reported_findings.findings, RULES_BY_NAME, sarif_scan)
+
+
+def folder_in_repository(root: Path) -> str:
+    """Return a project's folder relative to the repository's root, from which servers name files.
+
+    On GitHub that is the workspace; elsewhere the folder that has `.git`, or else the current one. Outside of it: "".
+    """
+    resolved = root.resolve()
+    workspace = os.environ.get("GITHUB_WORKSPACE")
+    # lexists: in a worktree or submodule `.git` is a file.
+    repository_folders = (folder for folder in (resolved, *resolved.parents) if os.path.lexists(folder / ".git"))
+    repository_root = Path(workspace).resolve() if workspace else next(repository_folders, Path.cwd().resolve())
+    return resolved.relative_to(repository_root).as_posix() if resolved.is_relative_to(repository_root) else ""

@@ -1,0 +1,181 @@
+"""`archgen init`: start a project, from answers or from a spreadsheet."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from archgen.cli import command_support
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from archgen.importers import ImportResult
+    from archgen.pipeline import CheckedProject
+    from archgen.start.start_answers import StartAnswers
+    from archgen.start.start_plan import StartPlan
+
+ROS_DISTROS = ("jazzy", "kilted", "humble", "rolling", "noetic")
+
+
+@click.command("init")
+@click.argument("folder", required=False, type=click.Path(file_okay=False, path_type=Path))
+@click.option("--title", metavar="TEXT", help="The project's title.  [default: made from the folder's name]")
+@click.option(
+    "--partner",
+    "partners",
+    metavar="ID=TITLE",
+    multiple=True,
+    help="A partner, optionally with `@handle` behind; may be repeated.",
+)
+@click.option(
+    "--group",
+    "groups",
+    metavar="ID=OWNER",
+    multiple=True,
+    help="A first group and its owner; may be repeated.  [default: sensing, driving]",
+)
+@click.option("--distro", type=click.Choice(ROS_DISTROS), help="The ROS distribution.  [default: jazzy]")
+@click.option(
+    "--ci", type=click.Choice(["github", "gitlab", "none"]), help="Whose workflow to write.  [default: github]"
+)
+@click.option(
+    "--from",
+    "tables",
+    metavar="FILE.csv",
+    multiple=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Start from tables of components and connections, as spreadsheets export them; `-` is the standard input.",
+)
+@click.option("-y", "--yes", is_flag=True, help="Ask nothing: take the defaults for what no flag says.")
+def command(  # noqa: PLR0913, PLR0917 - one for each option
+    folder: Path | None,
+    title: str | None,
+    partners: tuple[str, ...],
+    groups: tuple[str, ...],
+    distro: str | None,
+    ci: str | None,
+    tables: tuple[Path, ...],
+    *,
+    yes: bool,
+) -> None:
+    """Start a project in FOLDER (the current one if left out): a small robot that checks clean, to be changed.
+
+    On a terminal it asks for what no flag says. With the project come the JSON Schema for editors, settings of Visual
+    Studio Code, a workflow, CODEOWNERS, .gitattributes, .gitignore and a README. Files that are there are kept, and
+    everything is written or nothing. In a git repository that begins above FOLDER, workflow and CODEOWNERS go to its top,
+    since nobody reads them elsewhere.
+    """
+    from archgen.start.start_answers import add_partners
+
+    target = folder or Path()
+    _refuse_existing_project(target)
+    if tables and groups:
+        msg = "--from takes the groups from the table: leave out --group"
+        raise click.UsageError(msg)
+    answers = _gather_answers(
+        target, title=title, partners=partners, groups=groups, distro=distro, forge=ci or "github"
+    )
+    # What a flag or the tables answer is not asked. The keys are those that `questions` knows.
+    flag_values = {"title": title, "partner": partners or tables, "group": groups or tables, "distro": distro, "ci": ci}
+    if not yes and sys.stdin.isatty() and sys.stdout.isatty():
+        from archgen.cli import init_questions
+
+        answers = init_questions.ask_questions(
+            answers, frozenset(key for key, value in flag_values.items() if value), ROS_DISTROS
+        )
+    imported = _import_tables(tables, answers.distro) if tables else None
+    if imported:
+        answers = add_partners(answers, imported.data.get("partners", {}))
+    _write_project(target, answers, imported)
+
+
+def _refuse_existing_project(target: Path) -> None:
+    """Refuse a folder that has a project already."""
+    from archgen.project import PROJECT_FILE
+
+    if os.path.lexists(target / PROJECT_FILE):
+        msg = f"{target / PROJECT_FILE} is there already; nothing was written"
+        raise click.ClickException(msg)
+
+
+def _gather_answers(target: Path, **flags: Any) -> StartAnswers:  # noqa: ANN401 - as `gathered` takes them
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.start import start_answers
+
+    try:
+        return start_answers.collect_answers(target.resolve().name, **flags)
+    except ValueError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
+def _import_tables(tables: tuple[Path, ...], distro: str) -> ImportResult:
+    """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
+    from archgen import importers
+    from archgen.importers import MAX_BYTES
+
+    imported = importers.import_tables(
+        [(str(path), command_support.read_input(path, MAX_BYTES)) for path in tables], distro
+    )
+    if imported.diagnostics:
+        command_support.print_excerpts(imported.diagnostics, imported.sources, sys.stderr)
+    if not imported.data:
+        click.echo("Nothing was written.", err=True)
+        sys.exit(1)
+    return imported
+
+
+def _write_project(target: Path, answers: StartAnswers, imported: ImportResult | None) -> None:
+    from archgen.emit import new_files
+    from archgen.start import start_plan, starter_slices
+
+    other_files = start_plan.has_other_yaml(target)
+    files = (
+        starter_slices.imported_files(answers, imported.data, other_files)
+        if imported
+        else starter_slices.example_files(answers, other_files)
+    )
+    checked_project = start_plan.judge_files(files, answers.id)
+    project_plan = start_plan.plan_files(target, answers, files, checked_project)
+    _refuse_replacing_slices(project_plan, target, files)
+    with command_support.explain_write_errors():
+        new_files.write_new_files(project_plan.files, project_plan.repository_folder)
+    for path in project_plan.files:
+        command_support.print_written(path)
+    for path in project_plan.existing_files:
+        click.echo(f"kept {command_support.shorten_path(path)}: it is there already")
+    _print_outcome(target, checked_project, project_plan)
+
+
+def _refuse_replacing_slices(project_plan: StartPlan, target: Path, files: Mapping[str, bytes]) -> None:
+    existing_slices = [
+        path for path in project_plan.existing_files if path in {target.resolve() / name for name in files}
+    ]
+    if existing_slices:
+        msg = f"{', '.join(map(str, existing_slices))} would have to be replaced; nothing was written"
+        raise click.ClickException(msg)
+
+
+def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: StartPlan) -> None:
+    """Print what there is now, and what comes next."""
+    from archgen.emit.terminal.findings_text import format_summary
+
+    size = (
+        f"{len(checked_project.architecture.groups)} groups, {len(checked_project.architecture.components)} components"
+    )
+    click.echo(
+        f"\n{checked_project.architecture.project.title}: {size}; archgen check says: {format_summary(checked_project.findings)}."
+    )
+    if project_plan.repository_folder != target.resolve():
+        click.echo(f"The repository begins at {project_plan.repository_folder}: what the forge reads stands there.")
+    if project_plan.reviewers_missing:
+        click.echo(
+            "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"
+        )
+    change_folder = "" if target.resolve() == Path.cwd() else f"cd {shlex.quote(str(target))}; "
+    click.echo(f"Now: {change_folder}archgen check, then archgen build. README.md says how to go on.")

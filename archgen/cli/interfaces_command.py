@@ -1,0 +1,105 @@
+"""`archgen interfaces`: write what flows between two partners, as a document that both can sign."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.products.agreement_documents import AgreementFormat
+    from archgen.products.compared_versions import ProjectVersion
+
+_AGREEMENT_FORMATS = ("markdown", "html", "docx")
+
+
+@click.command("interfaces")
+@shared_options.project_argument
+@click.option(
+    "--between", "pair", nargs=2, metavar="PARTNER PARTNER", required=True, help="The ids of the two partners."
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The file to write; its ending (.docx, .md, .html) says the format.  [default: Markdown to the terminal, else "
+    "archgen-out/interfaces/ in the project]",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(_AGREEMENT_FORMATS),
+    help="The format, where the file's ending does not say it.",
+)
+@click.option("--since", metavar="REV", help="Mark what changed since a git revision (or a folder or packed file).")
+@shared_options.revision_option
+@shared_options.keep_going_option
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    pair: tuple[str, str],
+    output: Path | None,
+    form: AgreementFormat | None,
+    since: str | None,
+    revision: str | None,
+    keep_going: bool,
+) -> None:
+    """Write the interface agreement of two partners of PROJECT: what flows between them, both ways.
+
+    Each topic, service and action with its message, rate, size, quality of service, chains, requirements, open points,
+    and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
+    """
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.products import agreement_documents, project_outputs
+
+    form = _choose_format(form, output)
+    checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    earlier_version = _read_earlier(since, project) if since else None
+    try:
+        agreement = agreement_documents.make_project_agreement(checked_project, *pair, earlier_version, revision)
+    except agreement_documents.PartnersError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+    output_options = project_outputs.OutputOptions(
+        progress=command_support.make_progress_printer(), warn=command_support.print_warning
+    )
+    with command_support.explain_write_errors():
+        if form == "markdown" and output is None:
+            sys.stdout.write(agreement_documents.render_agreement_markdown(agreement))
+            command_support.exit_by_findings(checked_project)
+        endings = {"markdown": "md", "html": "html", "docx": "docx"}
+        target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
+        agreement_documents.write_agreement(agreement, form, target, output_options)
+    command_support.print_written(
+        target, f"{agreement.interface_count} interfaces" if agreement.interface_count != 1 else "1 interface"
+    )
+    command_support.exit_by_findings(checked_project)
+
+
+def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> AgreementFormat:
+    """Return the format that was asked for, else that of the file's ending; Markdown if neither says it."""
+    from archgen.products.agreement_documents import FORMAT_BY_ENDING
+
+    if format_name or output is None:
+        return format_name or "markdown"
+    format_of_ending = FORMAT_BY_ENDING.get(output.suffix.lower())
+    if format_of_ending is None:
+        msg = f"the ending of `{output.name}` names no format: end it in .docx, .md or .html, or give --format"
+        raise click.UsageError(msg)
+    return format_of_ending
+
+
+def _read_earlier(revision: str, project: Path | None) -> ProjectVersion:
+    """Read the project as it was. A revision that cannot be read is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.git import GitError
+    from archgen.products import compared_versions
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        return compared_versions.read_version(revision, project)
+    except (GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(make_visible(f"--since: {error}")) from None

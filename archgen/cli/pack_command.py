@@ -1,0 +1,44 @@
+"""`archgen pack`: write one validated YAML file that holds the whole project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+
+@click.command("pack")
+@shared_options.project_argument
+@shared_options.output_option("The file", "packed.yaml")
+@click.option(
+    "--resolved",
+    is_flag=True,
+    help="Write what was derived too (edges, nodes, topics, messages), for other programs; by its own schema.",
+)
+@shared_options.select_option
+@shared_options.keep_going_option
+def command(project: Path | None, output: Path | None, select: str | None, *, resolved: bool, keep_going: bool) -> None:
+    """Write PROJECT as one validated YAML file, which is itself a project.
+
+    With --resolved it is a record for other programs instead (`resolved.yaml`); --select then names a part of it.
+    """
+    from archgen.products import project_outputs
+
+    if select and not resolved:
+        msg = "--select goes with --resolved: a packed project is whole"
+        raise click.UsageError(msg)
+    checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    target = output or checked_project.output_folder / ("resolved.yaml" if resolved else "packed.yaml")
+    with command_support.explain_write_errors():
+        if resolved:
+            project_outputs.write_resolved(
+                checked_project,
+                project_outputs.OutputOptions(command_support.evaluate_selector(checked_project, select), select or ""),
+                target,
+            )
+        else:
+            project_outputs.write_packed(checked_project, target)
+    command_support.print_written(target)
+    command_support.exit_by_findings(checked_project)

@@ -1,0 +1,89 @@
+"""`archgen simulate`: run the modelled architecture, and show what was seen beside the bounds."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+
+@click.command("simulate")
+@shared_options.project_argument
+@click.option("--seconds", type=click.IntRange(1, 86_400), default=60, show_default=True, help="Simulated time.")
+@click.option("--seeds", type=click.IntRange(1, 10_000), default=20, show_default=True, help="How many runs.")
+@click.option("--chain", "asked", multiple=True, metavar="ID", help="Only this chain; may be repeated.")
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ...], form: str) -> None:
+    """Simulate PROJECT: activities on their hosts, samples on their way, from random phases and execution times.
+
+    What is seen is a lower bound on the worst case; `archgen timing` gives the bounds from above. The same seeds give
+    the same figures.
+    """
+    from archgen import simulation
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.simulation import analysis_bounds, simulation_json
+    from archgen.simulation import simulation_text as words
+    from archgen.simulation.event_loop import EventFloodError
+    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.run_analysis import analyse_architecture
+
+    checked_project = command_support.check_project(project)
+    command_support.print_findings_above(checked_project, lowest_severity=command_support.ERROR)
+    architecture = checked_project.architecture
+    _require_chains(asked, tuple(architecture.chains))
+    analysis = analyse_architecture(architecture)
+    # Events that trigger one another in a ring: their simulation would not come to an end.
+    if analysis.endless:
+        raise click.ClickException(make_visible(_describe_endless(analysis.endless)))
+    chain_results = {
+        key: one for key, one in bound_all_chains(analysis, architecture).items() if not asked or key in asked
+    }
+    waypoints = {key: one.through for key, one in chain_results.items()}
+    try:
+        observations = simulation.simulate_system(
+            analysis.system, seconds, seeds, waypoints, analysis_bounds.find_publish_pauses(analysis)
+        )
+    except EventFloodError as flood:
+        raise click.ClickException(_describe_flood(flood.gave_up_at)) from None
+    if form == "json":
+        click.echo(
+            json.dumps(
+                simulation_json.simulation_to_json(observations, analysis, chain_results), ensure_ascii=False, indent=2
+            )
+        )
+    else:
+        click.echo(
+            words.format_simulation(make_visible(architecture.project.title), observations, analysis, chain_results),
+            nl=False,
+        )
+    command_support.exit_by_findings(checked_project)
+
+
+def _describe_endless(rings: tuple[tuple[str, ...], ...]) -> str:
+    ways = "; ".join(" > ".join((*ring, ring[0])) for ring in rings)
+    return f"events would go round for ever in {ways}: see `archgen explain endless-trigger`"
+
+
+def _describe_flood(time: Fraction) -> str:
+    from archgen.timing.figures.figure_wording import format_duration
+
+    return (
+        f"given up after {format_duration(time)} of simulated time: each event makes more than one other, or far more is asked for "
+        "than is ever done. `archgen timing` shows hosts and links with too much load"
+    )
+
+
+def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+    from archgen.timing.figures.figure_wording import join_first_names
+
+    for name in asked_ids:
+        if name not in chain_ids:
+            guess = did_you_mean(name, chain_ids)
+            existing = f"the chains are {join_first_names(chain_ids)}" if chain_ids else "the project has no chains"
+            raise click.UsageError(make_visible(f"there is no chain '{name}'; {guess or existing}"))

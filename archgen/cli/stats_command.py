@@ -1,0 +1,111 @@
+"""`archgen stats`: show size and progress."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
+    from archgen.history import HistoryInterval
+
+
+@click.command("stats")
+@shared_options.project_argument
+@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+@click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
+@click.option(
+    "--by",
+    type=click.Choice(["revision", "month"]),
+    help="Each revision, or the last of each month.  [default: revision]",
+)
+def command(project: Path | None, form: str, by: HistoryInterval | None, *, history: bool) -> None:
+    """Show how large PROJECT is and how far along: as a whole, for each group and for each partner.
+
+    Described: it has a functionality. Typed: each output has a type. Mapped: a node that somebody wrote implements it.
+    Timed: it or all its nodes have a timing. Traced: it names a declared requirement.
+
+    With --history: the same at each revision that changed the project, along the first parents of git's HEAD.
+    """
+    if history:
+        _print_history(project, form, by or "revision")
+        return
+    if by or form == "csv":
+        msg = "--by and --format csv belong to --history"
+        raise click.UsageError(msg)
+    _print_current(project, form)
+
+
+def _print_current(project: Path | None, form: str) -> None:
+    from archgen.analyses.size_counts import measure_progress, measure_size
+    from archgen.diagnostics.diagnostic import Severity
+    from archgen.diagnostics.safe_text import format_json
+
+    checked_project = command_support.check_project(project)
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    project_size, rows = measure_size(checked_project.architecture), measure_progress(checked_project.architecture)
+    if form == "json":
+        plain = {key: float(v) if isinstance(v, Fraction) else v for key, v in asdict(project_size).items()}
+        data = {
+            "version": 1,
+            **plain,
+            "files": len(checked_project.yaml_files),
+            "progress": [asdict(row) for row in rows],
+        }
+        click.echo(format_json(data), nl=False)
+    else:
+        click.echo(
+            _format_statistics(
+                checked_project.architecture.project.title, project_size, rows, len(checked_project.yaml_files)
+            ),
+            nl=False,
+        )
+    command_support.exit_by_findings(checked_project)
+
+
+def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None:
+    from archgen import git
+    from archgen.diagnostics.safe_text import format_json
+    from archgen.emit.terminal import history_text
+    from archgen.history import count_history
+    from archgen.products import report_cache
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        project_history = count_history(
+            project, by, cache=report_cache.cache_folder(), progress=command_support.make_progress_printer("reading")
+        )
+    except (git.GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(str(error)) from None
+    if form == "json":
+        click.echo(format_json(history_text.history_to_json(project_history)), nl=False)
+    elif form == "csv":
+        click.echo(history_text.history_to_csv(project_history), nl=False)
+    else:
+        click.echo(history_text.format_history(project_history), nl=False)
+
+
+def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[ProgressCounts, ...], files: int) -> str:
+    from archgen.diagnostics.safe_text import defuse_command, make_visible
+    from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
+
+    lines = [make_visible(title), ""]
+    lines += [f"  {label:42}{value:>8}" for _, label, value in format_figures(project_size)]
+    lines += [f"  {'Files':42}{files:>8}", ""]
+    populated_rows = [row for row in rows if row.components]
+    if populated_rows:
+        lines.append(f"  {'Progress':32}{'components':>11}" + "".join(f"{step:>11}" for step in PROGRESS_STEPS))
+    for row in populated_rows:
+        counts = "".join(f"{_format_share(getattr(row, step), row.components):>11}" for step in PROGRESS_STEPS)
+        lines.append(f"  {make_visible(row.title)[:31]:32}{row.components:>11}{counts}")
+    return "\n".join(map(defuse_command, lines)) + "\n"
+
+
+def _format_share(count: int, total: int) -> str:
+    return f"{count} ({100 * count // total}%)"

@@ -1,0 +1,286 @@
+"""`archgen timing`: rates, latency, load; why, what if, what decides."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from archgen.cli import command_support, shared_options
+from archgen.frozen import dataclass
+
+if TYPE_CHECKING:
+    from archgen.diagnostics.diagnostic import Diagnostic
+    from archgen.model.architecture import Architecture
+    from archgen.pipeline import CheckedProject
+    from archgen.timing.analysis import Analysis, ChainResult
+
+
+@dataclass(frozen=True, slots=True)
+class TimingRequest:
+    """What one call asks for."""
+
+    checked_project: CheckedProject
+    architecture: Architecture
+    """The architecture with the figures of `--set`."""
+    as_json: bool
+    overrides: tuple[str, ...] = ()
+
+
+@click.command("timing")
+@shared_options.project_argument
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@click.option("--chain", metavar="ID", help="Show a chain term by term.")
+@click.option(
+    "--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link."
+)
+@click.option("--from", "source", metavar="ID", help="With --to: the worst and the best ways between two elements.")
+@click.option("--to", "target", metavar="ID", help="See --from.")
+@click.option(
+    "--worst", "most", metavar="K", type=click.IntRange(1, 10_000), default=1, show_default=True, help="How many ways."
+)
+@click.option(
+    "--set",
+    "written",
+    metavar="ELEMENT.timing.KEY=VALUE",
+    multiple=True,
+    help="What if: show the effect, touch no file.",
+)
+@click.option(
+    "--sensitivity", metavar="CHAIN", help="Rank the figures that decide a chain, and those to measure first."
+)
+@click.option(
+    "--measured",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Hold observed figures (YAML, CSV) against the design.",
+)
+def command(  # noqa: PLR0913, PLR0917 - one for each option
+    project: Path | None,
+    form: str,
+    chain: str | None,
+    why: str | None,
+    source: str | None,
+    target: str | None,
+    most: int,
+    written: tuple[str, ...],
+    sensitivity: str | None,
+    measured: Path | None,
+) -> None:
+    """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
+
+    All bounds are safe; what is not known is said, and never taken for zero.
+    """
+    if (source is None) != (target is None):
+        msg = "--from and --to belong together"
+        raise click.UsageError(msg)
+    questions = [q for q in (chain, why, source, sensitivity, measured) if q is not None]
+    if len(questions) > 1:
+        msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
+        raise click.UsageError(msg)
+    checked_project = command_support.check_project(project)
+    from archgen.diagnostics.diagnostic import Severity
+
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    request = TimingRequest(
+        checked_project, _apply_overrides(checked_project.architecture, written), form == "json", written
+    )
+    if chain is not None:
+        _print_chain(request, chain)
+    elif why is not None:
+        _print_reasons(request, why)
+    elif source is not None and target is not None:
+        _print_paths(request, source, target, most)
+    elif sensitivity is not None:
+        _print_sensitivity(request, sensitivity)
+    elif measured is not None:
+        _print_measured(request, measured)
+    else:
+        _print_summary(request)
+    command_support.exit_by_findings(checked_project)
+
+
+def _print_summary(request: TimingRequest) -> None:
+    from archgen.emit.data import timing_json
+    from archgen.emit.terminal import timing_answers, timing_text
+    from archgen.timing.chains.cost_network import CostNetwork
+    from archgen.timing.chains.loop_rounds import find_loop_rounds
+
+    present = _analyse_chains(request.checked_project.architecture)
+    if not request.overrides:
+        if request.as_json:
+            _print_json(timing_json.timing_to_json(*present))
+        else:
+            _print_lines(timing_text.format_timing(*present, find_loop_rounds(CostNetwork.of_analysis(present[0]))))
+        return
+    changed = _analyse_chains(request.architecture)
+    if request.as_json:
+        documents = {"present": timing_json.timing_to_json(*present), "changed": timing_json.timing_to_json(*changed)}
+        _print_json({"version": timing_json.VERSION, "set": list(request.overrides), **documents})
+    else:
+        _print_lines(timing_answers.format_timing_changes(present, changed, request.overrides))
+
+
+def _print_chain(request: TimingRequest, chain_id: str) -> None:
+    from archgen.emit.data import timing_json
+    from archgen.emit.terminal import timing_text
+    from archgen.timing.chains import chain_bounds as chains_of
+    from archgen.timing.chains import duerr_bounds
+    from archgen.timing.chains.cost_network import CostNetwork
+
+    analysis, chains = _analyse_chains(request.architecture)
+    result = _find_chain(chains, chain_id)
+    published = duerr_bounds.bound_periodic_chain(analysis, result.through)
+    if request.as_json:
+        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
+    else:
+        age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
+        _print_lines(timing_text.format_chain(result, age, published))
+
+
+def _print_reasons(request: TimingRequest, word: str) -> None:
+    from archgen.emit.terminal import timing_answers
+    from archgen.timing.chains import word_resolution
+    from archgen.timing.chains.figure_explanations import explain_word
+
+    analysis, chains = _analyse_chains(request.architecture)
+    names = [word]
+    # Chains, hosts and links explain themselves; a node or component stands for its activities.
+    if not explain_word(analysis, chains, word):
+        try:
+            names = list(word_resolution.resolve_activities(request.architecture, analysis.system, word))
+        except word_resolution.UnknownNameError as error:
+            _raise_usage_error(str(error))
+    steps = [line for name in names for line in explain_word(analysis, chains, name)]
+    if request.as_json:
+        _print_json(timing_answers.reasoning_to_json(word, steps))
+    else:
+        _print_lines(timing_answers.format_reasoning(steps))
+
+
+def _print_paths(request: TimingRequest, source: str, target: str, path_count: int) -> None:
+    from archgen.emit.data import timing_json
+    from archgen.emit.terminal import timing_text
+    from archgen.timing.chains import chain_bounds, word_resolution
+    from archgen.timing.chains.cost_network import CostNetwork
+    from archgen.timing.run_analysis import analyse_architecture
+
+    analysis = analyse_architecture(request.architecture)
+    network = CostNetwork.of_analysis(analysis)
+    try:
+        start, end = (
+            word_resolution.resolve_waypoint(request.architecture, analysis.system, word) for word in (source, target)
+        )
+    except word_resolution.UnknownNameError as error:
+        _raise_usage_error(str(error))
+    worst = chain_bounds.find_paths_between(network, request.architecture, start, end)
+    best = chain_bounds.find_paths_between(network, request.architecture, start, end, "best")
+    listed_paths = [
+        tuple(chain_bounds.list_bounded_paths(network, w, k)) if w else () for w, k in ((worst, path_count), (best, 1))
+    ]
+    count = worst.path_count if worst else 0
+    if request.as_json:
+        _print_json(timing_json.ways_to_json(start.id, end.id, count, *listed_paths))
+    else:
+        _print_lines(timing_text.format_ways(start.id, end.id, count, *listed_paths))
+
+
+def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
+    from archgen.emit.terminal import timing_answers
+    from archgen.timing.chains.chain_sensitivity import find_sensitivity
+    from archgen.timing.run_analysis import analyse_for_chains
+
+    _, chains = _analyse_chains(request.architecture)
+    result = _find_chain(chains, chain_id)
+    ranking = find_sensitivity(request.architecture, request.architecture.chains[chain_id], analyse_for_chains, chains)
+    if request.as_json:
+        _print_json(timing_answers.sensitivity_to_json(result, ranking))
+    else:
+        _print_lines(timing_answers.format_sensitivity(result, ranking))
+
+
+def _print_measured(request: TimingRequest, file: Path) -> None:
+    from archgen.emit.terminal import timing_answers
+    from archgen.project import observation_reading as reading
+    from archgen.timing.chains import measured_comparison
+    from archgen.timing.run_analysis import analyse_architecture
+
+    with command_support.explain_write_errors():
+        try:
+            text = file.read_bytes().decode("utf-8-sig")
+        except UnicodeDecodeError:
+            _raise_usage_error(f"{file} is not UTF-8 text")
+    # So that excerpts below can show the lines of this file too.
+    request.checked_project.sources.add_text(str(file), text)
+    observed, unread = reading.read_observations(str(file), text)
+    compared, unknown = measured_comparison.compare_measured(analyse_architecture(request.architecture), observed)
+    problems = _settle_problems((*unread, *unknown))
+    if problems:
+        command_support.print_findings(problems, request.checked_project, sys.stderr)
+    if request.as_json:
+        _print_json(timing_answers.measured_to_json(compared))
+    else:
+        _print_lines(timing_answers.format_measured(compared))
+    if problems:
+        raise click.exceptions.Exit(1)
+
+
+def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+    from archgen.diagnostics.diagnostic import settle_diagnostics
+    from archgen.findings.rule_table import index_rules
+    from archgen.pipeline import ALL_RULES
+
+    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
+
+
+def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
+    from archgen.link.timing_overrides import OverrideError, apply_overrides
+
+    try:
+        return apply_overrides(architecture, overrides) if overrides else architecture
+    except OverrideError as error:
+        _raise_usage_error(str(error))
+
+
+def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResult]]:
+    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.run_analysis import analyse_architecture
+
+    analysis = analyse_architecture(architecture)
+    return analysis, bound_all_chains(analysis, architecture)
+
+
+def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainResult:
+    from archgen.diagnostics.suggestions import did_you_mean
+    from archgen.timing.figures.figure_wording import join_first_names
+
+    if chain_id not in chain_results:
+        existing = (
+            f"there are: {join_first_names(tuple(chain_results), 12)}"
+            if chain_results
+            else "the project has none: write it under `chains`"
+        )
+        _raise_usage_error(f"there is no chain `{chain_id}`; {did_you_mean(chain_id, chain_results) or existing}")
+    return chain_results[chain_id]
+
+
+def _raise_usage_error(text: str) -> NoReturn:
+    from archgen.diagnostics.safe_text import make_visible
+
+    raise click.UsageError(make_visible(text))
+
+
+def _print_json(document: object) -> None:
+    from archgen.diagnostics.safe_text import format_json
+
+    click.echo(format_json(document), nl=False)
+
+
+def _print_lines(lines: Iterable[str]) -> None:
+    from archgen.diagnostics.safe_text import make_visible
+
+    for line in lines:
+        click.echo(make_visible(line))

@@ -1,0 +1,28 @@
+"""One version of an architecture as a comparison sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+
+
+@dataclass(frozen=True, slots=True)
+class ArchitectureVersion:
+    """One version. `rule_settings` are the project's settings of rules, `chapters` its texts by path, in the report's
+    `chapter_order`.
+
+    `unnamed_keys` are `id` and `title` if the project does not write them: then they come from the name of a folder or
+    file.
+    """
+
+    architecture: Architecture
+    findings: tuple[Diagnostic, ...] = ()
+    rule_settings: Mapping[str, str] = field(default_factory=dict)
+    chapters: Mapping[str, str] = field(default_factory=dict)
+    chapter_order: tuple[str, ...] = ()
+    silenced_findings: tuple[Diagnostic, ...] = ()
+    """Findings that a comment or a setting hides."""
+    unnamed_keys: frozenset[str] = frozenset()

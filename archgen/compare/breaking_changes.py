@@ -1,0 +1,112 @@
+"""Decide which changes break another partner, whom and why, and which of them the project accepts."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
+from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
+from archgen.compare.losses.lost_connections import find_lost_connections
+from archgen.compare.losses.missed_deadlines import find_late_chains
+from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
+from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.timing_causes import TimingCauses
+from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_qos import find_weakened_publishers
+from archgen.compare.timing_pair import TimingPair
+from archgen.diagnostics.diagnostic import Severity
+from archgen.model.review_settings import AcceptedChange, ReviewSettings
+
+_LOSS_FINDERS = (
+    find_lost_connections,
+    find_retyped_outputs,
+    find_redefined_messages,
+    find_renamed_topics,
+    find_weakened_publishers,
+    find_unserved_requirements,
+)
+_SEVERITY_ORDER = (Severity.OFF, Severity.NOTE, Severity.WARNING, Severity.ERROR)
+
+
+def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> Severity:
+    """Return the stricter policy of both versions, so that no branch weakens the policy it is judged by."""
+    return max((review.breaking or Severity.WARNING for review in (old_review, new_review)), key=_SEVERITY_ORDER.index)
+
+
+def mark_breaking_changes(
+    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
+) -> tuple[Change, ...]:
+    """Add to each change whom it breaks and whether that is accepted; breaking changes come first, accepted ones after
+    the rest of them.
+    """
+    if not context.changes or not (context.before.partners or context.after.partners):
+        return tuple(context.changes)
+    # An inner dict instead of a list: two finders may report the same loss of the same partner, and the order must
+    # stay.
+    breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
+    for loss in _find_losses(context, chains, timing_pair):
+        breaks_by_index[loss.change_index][PartnerBreak(loss.partner, loss.reason)] = None
+    # Only the second version's agreements count, although the stricter policy of both does: an acceptance belongs into
+    # the branch that it is about (docs/decisions/0007-breaking-changes.md).
+    accepted_entries = context.after.review.accepted
+    marked_changes = [
+        replace(
+            change,
+            breaks=tuple(breaks_by_index[index]),
+            acceptance_reason=_acceptance_reason(change, accepted_entries.get(change.element_id)),
+        )
+        if index in breaks_by_index
+        else change
+        for index, change in enumerate(context.changes)
+    ]
+    # The sort is stable: within each class the order of `change_order` remains.
+    return tuple(sorted(marked_changes, key=lambda change: (not change.breaks, change.acceptance_reason is not None)))
+
+
+def _find_losses(
+    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
+) -> Iterator[PartnerLoss]:
+    for find_losses in _LOSS_FINDERS:
+        yield from find_losses(context)
+    if timing_pair:
+        causes = TimingCauses(context, timing_pair)
+        yield from find_late_chains(context, chains, causes)
+        yield from find_overloaded_cores(context, causes)
+        yield from find_saturated_links(context, causes)
+
+
+def _acceptance_reason(change: Change, entry: AcceptedChange | None) -> str | None:
+    return entry.reason if entry and entry.key in {None, change.key} else None
+
+
+def find_idle_acceptances(changes: Sequence[Change], review: ReviewSettings) -> tuple[AcceptedChange, ...]:
+    """Return the accepted entries that name no breaking change."""
+    entries = review.accepted.values()
+    return tuple(
+        entry
+        for entry in entries
+        if not any(
+            change.breaks and change.element_id == entry.element and _acceptance_reason(change, entry)
+            for change in changes
+        )
+    )
+
+
+def keep_breaking_only(comparison: Comparison) -> Comparison:
+    """Keep only the changes that break somebody, without other changes, chains and findings."""
+    changes = tuple(change for change in comparison.changes if change.breaks)
+    concerned_owners = find_concerned_owners(changes, comparison.versions)
+    return replace(
+        comparison,
+        changes=changes,
+        new_findings=(),
+        cured_findings=(),
+        silenced_findings=(),
+        chains=(),
+        concerned_owners=concerned_owners,
+        only_breaking=True,
+    )

@@ -1,0 +1,46 @@
+"""Find the chains whose bound or deadline changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from archgen.compare.comparison import ChainChange
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.timing_pair import TimingPair
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains import chain_bounds as timing_chains
+
+
+def compare_chains(
+    before: Architecture, after: Architecture, matched_ids: MatchedIds, timing_pair: TimingPair | None
+) -> tuple[ChainChange, ...]:
+    """Return the chains that were added or removed, or have another bound or deadline, in the order of the second
+    version.
+    """
+    if timing_pair is None:
+        return ()
+    new_results, old_results = _chain_results(after, timing_pair.after), _chain_results(before, timing_pair.before)
+    kept_pairs = [(matched_ids.old_ids.get("chain", {}).get(name), name) for name in new_results]
+    removed_pairs = [(name, None) for name in old_results if matched_ids.find_new_id("chain", name) is None]
+    result_pairs = (
+        (old_results.get(old_result) if old_result else None, new_results[new_result] if new_result else None)
+        for old_result, new_result in (*kept_pairs, *removed_pairs)
+    )
+    return tuple(
+        ChainChange(chain_result.id, old_result, new_result)
+        for old_result, new_result in result_pairs
+        if (chain_result := new_result or old_result) and _results_differ(old_result, new_result)
+    )
+
+
+def _chain_results(architecture: Architecture, analysis: Analysis) -> Mapping[str, ChainResult]:
+    return timing_chains.bound_all_chains(analysis, architecture) if architecture.chains else {}
+
+
+def _results_differ(old_result: ChainResult | None, new_result: ChainResult | None) -> bool:
+    if old_result is None or new_result is None:
+        return True
+    # The words of a bound (what it lacks, where it is from) may change without the figure: they are left out.
+    bounds = [(result.bound.value, result.bound.complete, result.bound.side) for result in (old_result, new_result)]
+    return bounds[0] != bounds[1] or old_result.deadline != new_result.deadline

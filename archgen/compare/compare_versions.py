@@ -1,0 +1,93 @@
+"""Compare two versions as a whole: changes, findings, chains and the owners concerned."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
+from archgen.compare.chain_changes import compare_chains
+from archgen.compare.compared_elements import ComparedElement, ElementKey, list_elements
+from archgen.compare.comparison import Comparison
+from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.connection_maps import map_connections
+from archgen.compare.difference_finder import DifferenceFinder
+from archgen.compare.finding_changes import judge_findings
+from archgen.compare.losses.change_context import ChangeContext
+from archgen.compare.match_elements import match_elements
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.timing_pair import analyse_timing
+from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.diagnostic import Severity
+from archgen.model.architecture import Architecture
+from archgen.model.review_settings import AcceptedChange
+
+
+def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) -> Comparison:
+    """Compare two versions of an architecture."""
+    # Matching comes first: everything below lists the first version under the ids of the second.
+    matched_ids = match_elements(before.architecture, after.architecture)
+    elements = list_elements(before, after, matched_ids)
+    old_connections, new_connections = (
+        map_connections(before.architecture, matched_ids),
+        map_connections(after.architecture, MatchedIds()),
+    )
+    lost_keys = before.architecture.unread_keys, after.architecture.unread_keys
+    version_pair = VersionPair(
+        old_connections,
+        new_connections,
+        *elements,
+        (_components_by_requirement(elements[0]), _components_by_requirement(elements[1])),
+        lost_keys,
+        _find_unnamed_outputs(after.architecture),
+    )
+    changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
+    judged_findings = judge_findings(before, after, matched_ids)
+    timing_pair = analyse_timing(before.architecture, after.architecture, changes)
+    # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
+    chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
+    breaking_severity = stricter_policy(before.architecture.review, after.architecture.review)
+    idle_acceptances: tuple[AcceptedChange, ...] = ()
+    if breaking_severity is not Severity.OFF:
+        changes = mark_breaking_changes(
+            ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes),
+            chain_changes,
+            timing_pair,
+        )
+        idle_acceptances = find_idle_acceptances(changes, after.architecture.review)
+    return Comparison(
+        before,
+        after,
+        matched_ids,
+        version_pair,
+        changes,
+        judged_findings.new_findings,
+        judged_findings.cured_findings,
+        chain_changes,
+        find_concerned_owners(changes, version_pair),
+        judged_findings.silenced_findings,
+        breaking_severity=breaking_severity,
+        idle_acceptances=idle_acceptances,
+    )
+
+
+def _find_unnamed_outputs(architecture: Architecture) -> frozenset[str]:
+    """Return the outputs of written nodes whose topic, service or action has no written name."""
+    written_nodes = {node.id for node in architecture.nodes.values() if node.written}
+    offered_endpoints = (
+        endpoint
+        for endpoint in architecture.endpoints
+        if endpoint.node in written_nodes and endpoint.use in {"publishes", "serves"}
+    )
+    return frozenset(endpoint.port for endpoint in offered_endpoints if endpoint.port and not endpoint.name_written)
+
+
+def _components_by_requirement(elements: Mapping[ElementKey, ComparedElement]) -> Mapping[str, frozenset[str]]:
+    """Return for each requirement the components that name it."""
+    components: dict[str, set[str]] = defaultdict(set)
+    for (kind, component_id), element in elements.items():
+        requirements = element.values.get("requirements") if kind == "component" else None
+        for requirement in requirements if isinstance(requirements, frozenset) else ():
+            components[requirement].add(component_id)
+    return {requirement: frozenset(component_ids) for requirement, component_ids in components.items()}

@@ -1,0 +1,109 @@
+"""The data of a comparison: changes, chain changes, and the comparison as a whole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.model.review_settings import AcceptedChange
+from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.timing_values import TimingValue
+
+ChangeKind = Literal["added", "removed", "changed", "renamed", "moved"]
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerBreak:
+    """What a partner loses by a change. `reason` completes a sentence after the change: "takes `a.b.c` from sssa, who
+    ...".
+    """
+
+    partner: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change. `element_id` is the complete id in the second version, or in the first one for what was removed.
+
+    `old_id` is the id before a rename or a move. `key` is what changed of an element, `before` and `after` are its
+    values as plain data (None: not written). `confidence` is below 1 where a rename or a move was only recognised by
+    likeness. `breaks` are the losses of partners other than the owner, those of the parts included; `acceptance_reason`
+    is why the project accepts them (None: it does not). `parts` are what came or went with an element, and what follows
+    from the change.
+    """
+
+    kind: ChangeKind
+    element_kind: str
+    element_id: str
+    old_id: str | None = None
+    key: str | None = None
+    before: object = None
+    after: object = None
+    confidence: float = 1.0
+    breaks: tuple[PartnerBreak, ...] = ()
+    acceptance_reason: str | None = None
+    text: str = ""
+    parts: tuple[Change, ...] = ()
+
+    @property
+    def broken_partners(self) -> tuple[str, ...]:
+        """Return the partners who lose something, sorted."""
+        return tuple(sorted({partner_break.partner for partner_break in self.breaks}))
+
+
+@dataclass(frozen=True, slots=True)
+class ChainChange:
+    """A chain whose bound or deadline changed, by its id (the old one if it was removed). None: not in that version."""
+
+    id: str
+    before: ChainResult | None
+    after: ChainResult | None
+
+    @property
+    def deadline(self) -> TimingValue | None:
+        """Return the deadline of the second version, or of the first one if the chain was removed."""
+        chain_result = self.after or self.before
+        return chain_result.deadline if chain_result else None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Everything that differs. `cured_findings` and `silenced_findings` belong to the first version, `new_findings` to
+    the second.
+
+    A silenced finding is not cured: a comment or a setting hides it now. `breaking_severity` is how serious it is to
+    break a partner: the stricter policy of both versions. `idle_acceptances` are the accepted entries of the second
+    version that name no breaking change.
+    """
+
+    before: ArchitectureVersion
+    after: ArchitectureVersion
+    matched_ids: MatchedIds
+    versions: VersionPair
+    changes: tuple[Change, ...]
+    new_findings: tuple[Diagnostic, ...]
+    cured_findings: tuple[Diagnostic, ...]
+    chains: tuple[ChainChange, ...]
+    concerned_owners: tuple[str, ...]
+    silenced_findings: tuple[Diagnostic, ...] = ()
+    breaking_severity: Severity = Severity.WARNING
+    idle_acceptances: tuple[AcceptedChange, ...] = ()
+    only_breaking: bool = False
+    """Whether only the changes that break a partner were kept."""
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the project's policy refuses this comparison: a partner is broken, and nobody accepted it."""
+        return self.breaking_severity is Severity.ERROR and any(
+            change.breaks and change.acceptance_reason is None for change in self.changes
+        )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing differs."""
+        return not (self.changes or self.new_findings or self.cured_findings or self.silenced_findings or self.chains)

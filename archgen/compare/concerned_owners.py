@@ -1,0 +1,135 @@
+"""Find the partners who own the elements, or the other ends of connections, that a comparison touches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.compare.compared_elements import ComparedElement, ElementKey
+from archgen.compare.comparison import Change
+from archgen.compare.connection_maps import ConnectionMap
+from archgen.compare.version_pair import VersionPair
+
+
+def find_concerned_owners(changes: Sequence[Change], versions: VersionPair) -> tuple[str, ...]:
+    """Return the partners who should look at the changes, sorted: owners of what changed and of its other ends."""
+    owner_ids = set[str]()
+    # Removed elements are reported by their old id, `elements_before` has them by the common one.
+    elements_by_own_id = {
+        (old_element.kind, old_element.own_id): old_element for old_element in versions.elements_before.values()
+    }
+    for change in _walk_changes(changes):
+        # Both versions: who read the output before is concerned as much as who reads it now.
+        for elements, connections in (
+            (versions.elements_before, versions.connections_before),
+            (versions.elements_after, versions.connections_after),
+        ):
+            element = _find_element(change, elements, elements_by_own_id)
+            owner_ids.update(_owners_of_change(change, element, elements, connections))
+    return tuple(sorted(owner_ids))
+
+
+def _walk_changes(changes: Sequence[Change]) -> Iterator[Change]:
+    for change in changes:
+        yield change
+        yield from _walk_changes(change.parts)
+
+
+def _find_element(
+    change: Change,
+    elements: Mapping[ElementKey, ComparedElement],
+    elements_by_own_id: Mapping[ElementKey, ComparedElement],
+) -> ComparedElement | None:
+    kind = "input" if change.element_kind == "connection" else change.element_kind
+    element = elements.get((kind, change.element_id))
+    if (
+        element is None
+        and change.kind == "removed"
+        and (removed_element := elements_by_own_id.get((kind, change.element_id)))
+    ):
+        return elements.get((kind, removed_element.id))
+    return element
+
+
+def _owners_of_change(
+    change: Change,
+    element: ComparedElement | None,
+    elements: Mapping[ElementKey, ComparedElement],
+    connections: ConnectionMap,
+) -> Iterator[str]:
+    if element is None:
+        return
+    if element.owner:
+        yield element.owner
+    for key in _opposite_keys(change, element, elements, connections):
+        opposite = elements.get(key)
+        if opposite and opposite.owner:
+            yield opposite.owner
+
+
+def _opposite_keys(
+    change: Change, element: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
+) -> Iterator[ElementKey]:
+    """Yield the keys of what is at the other end of a changed element."""
+    match change.element_kind:
+        case "connection":
+            yield from (("output", name) for name in connections.sources_by_input.get(element.id, ()))
+        case "output" if change.key in {None, "type"}:
+            yield from (("input", name) for name in connections.readers_by_output.get(element.id, ()))
+        case "port":
+            yield from (
+                ("input", name)
+                for port in element.component_refs
+                for name in connections.readers_by_output.get(port, ())
+            )
+        case "chain":
+            yield from _chain_points(element)
+        case "host" | "container" | "link":
+            yield from _nodes_at_place(element, elements)
+        case "type" | "requirement":
+            for key in _users_of_element(element, elements):
+                yield from (key, *(("input", reader) for reader in connections.readers_by_output.get(key[1], ())))
+        case "message":
+            types = (candidate for candidate in elements.values() if candidate.kind == "type")
+            for type_element in types:
+                yield from (
+                    _users_of_element(type_element, elements)
+                    if type_element.values.get("message") == element.id
+                    else ()
+                )
+
+
+def _chain_points(chain: ComparedElement) -> Iterator[ElementKey]:
+    """Yield the components, nodes and outputs that a chain may lead through."""
+    through = chain.values.get("through")
+    for point in through if isinstance(through, tuple) else ():
+        # A point's id does not say its kind; the keys that do not exist are skipped by `_owners_of_change`.
+        yield from (("component", point), ("node", point), ("output", point))
+
+
+def _nodes_at_place(place: ComparedElement, elements: Mapping[ElementKey, ComparedElement]) -> Iterator[ElementKey]:
+    """Yield the nodes on a host, in a container, or on the hosts that a link connects."""
+    hosts = place.values.get("connects") if place.kind == "link" else frozenset({place.id})
+    if not isinstance(hosts, frozenset):
+        return
+    key = "container" if place.kind == "container" else "host"
+    container_ids = {
+        name
+        for (kind, name), candidate in elements.items()
+        if kind == "container" and candidate.values.get("host") in hosts
+    }
+    for candidate_key, candidate_node in elements.items():
+        in_container = key == "host" and candidate_node.values.get("container") in container_ids
+        if candidate_key[0] == "node" and (candidate_node.values.get(key) in hosts or in_container):
+            yield candidate_key
+
+
+def _users_of_element(element: ComparedElement, elements: Mapping[ElementKey, ComparedElement]) -> Iterator[ElementKey]:
+    """Yield the ports of a type, or the components that serve a requirement."""
+    for key, candidate in elements.items():
+        if element.kind == "type" and key[0] in {"output", "input"} and candidate.values.get("type") == element.id:
+            yield key
+        requirement_ids = (
+            candidate.values.get("requirements") if element.kind == "requirement" and key[0] == "component" else None
+        )
+        if isinstance(requirement_ids, frozenset) and element.id in requirement_ids:
+            yield key

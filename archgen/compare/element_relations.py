@@ -1,0 +1,134 @@
+"""An architecture with the reverse look-ups that describing its elements for matching needs."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Input, Output
+
+
+def project_messages(architecture: Architecture) -> list[str]:
+    """Return the sorted names of the interfaces that the project defines itself."""
+    project_packages = architecture.interfaces.project_packages
+    return (
+        sorted(name for name in architecture.interfaces.names if name.partition("/")[0] in project_packages)
+        if project_packages
+        else []
+    )
+
+
+IDS_BY_KIND: Mapping[str, Callable[[Architecture], Iterable[str]]] = {
+    "partner": lambda found: found.partners,
+    "group": lambda found: found.groups,
+    "component": lambda found: found.components,
+    "output": lambda found: found.outputs,
+    "input": lambda found: found.inputs,
+    "type": lambda found: [t.name for t in found.types.values() if t.origin == "project" and t.at.file],
+    "message": project_messages,
+    "node": lambda found: [node.id for node in found.nodes.values() if node.written],
+    "container": lambda found: found.containers,
+    "host": lambda found: found.hosts,
+    "link": lambda found: found.links,
+    "chain": lambda found: found.chains,
+    "requirement": lambda found: found.requirements,
+    "use_case": lambda found: found.use_cases,
+    "view": lambda found: found.views,
+    "policy": lambda found: found.policies,
+}
+"""For each kind of element, the ids of all that somebody wrote."""
+
+
+@dataclass
+class ElementRelations:
+    """An architecture with reverse look-ups; `find_common_id` returns the id after the comparison's matching, None if
+    unmatched.
+    """
+
+    architecture: Architecture
+    find_common_id: Callable[[str, str], str | None]
+
+    def common_ids(self, kind: str, ids: Iterable[str | None]) -> frozenset[str]:
+        """Return the common ids of those elements that are matched already."""
+        return frozenset(
+            common_id
+            for element_id in ids
+            if element_id is not None and (common_id := self.find_common_id(kind, element_id)) is not None
+        )
+
+    @cached_property
+    def readers_by_output(self) -> Mapping[str, list[str]]:
+        """Return for each output the inputs that read it."""
+        reader_ids: dict[str, list[str]] = defaultdict(list)
+        for edge in self.architecture.edges:
+            reader_ids[edge.output].append(edge.input)
+        # A defaultdict is returned on purpose: what nobody uses has an empty list.
+        return reader_ids
+
+    @cached_property
+    def outputs_by_input(self) -> Mapping[str, list[str]]:
+        """Return for each input the outputs that it reads."""
+        output_ids: dict[str, list[str]] = defaultdict(list)
+        for edge in self.architecture.edges:
+            output_ids[edge.input].append(edge.output)
+        return output_ids
+
+    @cached_property
+    def nodes_by_place(self) -> Mapping[str, list[str]]:
+        """Return the written nodes of components (`component:ID`), hosts (`host:ID`) and containers."""
+        nodes: dict[str, list[str]] = defaultdict(list)
+        for node in self.architecture.nodes.values():
+            if node.written:
+                for place in (
+                    *(f"component:{component_id}" for component_id in node.implements),
+                    f"host:{node.host}",
+                    f"container:{node.container}",
+                ):
+                    nodes[place].append(node.id)
+        return nodes
+
+    @cached_property
+    def topics_by_port(self) -> Mapping[str, list[str]]:
+        """Return for each port the topics on which nodes carry it, as written."""
+        topic_names: dict[str, list[str]] = defaultdict(list)
+        for node in self.architecture.nodes.values():
+            for use in node.uses:
+                if use.port:
+                    topic_names[use.port] += use.topics
+        return topic_names
+
+    @cached_property
+    def users_by_element(self) -> Mapping[str, list[str]]:
+        """Return the users of types (`type:ID`: ports), requirements (components) and use cases (requirements)."""
+        user_ids: dict[str, list[str]] = defaultdict(list)
+        for component in self.architecture.components.values():
+            for port in ports_of(component):
+                if port.type:
+                    user_ids[f"type:{port.type}"].append(port.id)
+            for use in component.requirements:
+                user_ids[f"requirement:{use.text}"].append(component.id)
+        for requirement in self.architecture.requirements.values():
+            for case in requirement.use_cases:
+                user_ids[f"use_case:{case}"].append(requirement.id)
+        return user_ids
+
+    @cached_property
+    def elements_by_owner(self) -> Mapping[str, list[str]]:
+        """Return for each partner the groups and components that it owns."""
+        element_ids: dict[str, list[str]] = defaultdict(list)
+        for group in self.architecture.groups.values():
+            if group.owner:
+                element_ids[group.owner].append(group.id)
+        for component in self.architecture.components.values():
+            if component.owner:
+                element_ids[component.owner].append(component.id)
+        return element_ids
+
+
+def ports_of(component: Component) -> Iterator[Input | Output]:
+    """Yield all ports of a component, inputs first."""
+    yield from component.inputs.values()
+    yield from component.outputs.values()

@@ -1,0 +1,201 @@
+"""Both versions with the changes between them: who changed what, and who owns it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from archgen.compare.compared_elements import ElementKey
+from archgen.compare.comparison import Change
+from archgen.compare.key_phrases import join_words, shorten_text
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import VersionPair
+from archgen.model.architecture import Architecture
+from archgen.model.node import Endpoint
+
+_MAX_NAMES = 4
+"""Maximal number of elements named in one sentence; the rest is counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerLoss:
+    """What a partner loses by the change at an index of `ChangeContext.changes`. `reason` is that of `PartnerBreak`."""
+
+    change_index: int
+    partner: str
+    reason: str
+
+
+@dataclass
+class ChangeContext:
+    """Both versions with their changes. Elements have their common ids; changes are known by their index at the top
+    level.
+    """
+
+    before: Architecture
+    after: Architecture
+    matched_ids: MatchedIds
+    versions: VersionPair
+    changes: Sequence[Change]
+    _changes_by_key: dict[ElementKey, list[tuple[int, Change]]] = field(default_factory=lambda: defaultdict(list))
+
+    def __post_init__(self) -> None:
+        for index, change in enumerate(self.changes):
+            for inner_change in self.walk_change(change):
+                common_id = self.common_id(inner_change)
+                self._changes_by_key[inner_change.element_kind, common_id].append((index, inner_change))
+                if inner_change.element_kind == "port":
+                    # A pseudo kind: what is said of the ports of a node is looked up by the node.
+                    self._changes_by_key["ports of", common_id.partition(".")[0]].append((index, inner_change))
+
+    def walk_change(self, change: Change) -> Iterator[Change]:
+        """Yield a change and all its parts, at any depth."""
+        yield change
+        for part in change.parts:
+            yield from self.walk_change(part)
+
+    def common_id(self, change: Change) -> str:
+        """Return the common id of the changed element, as `versions` has it."""
+        if change.kind != "removed":
+            return change.element_id
+        return self.matched_ids.common_id(
+            "input" if change.element_kind == "connection" else change.element_kind, change.element_id
+        )
+
+    def find_changes(self, kind: str, name: str) -> Sequence[tuple[int, Change]]:
+        """Return the changes of an element, each with the index of the top-level change that contains it."""
+        return self._changes_by_key.get((kind, name), ())
+
+    def change_indices(self, kind: str, name: str, *keys: str) -> list[int]:
+        """Return the indices of an element's changes: of the given keys, or all."""
+        indexed_changes = self._changes_by_key.get((kind, name), ())
+        return list(
+            dict.fromkeys(index for index, found_change in indexed_changes if not keys or found_change.key in keys)
+        )
+
+    def indices_by_change_kind(self, kind: str, name: str, *change_kinds: str) -> list[int]:
+        """Return the indices of an element's changes of certain kinds ("removed", "renamed")."""
+        return list(
+            dict.fromkeys(
+                index
+                for index, found_change in self._changes_by_key.get((kind, name), ())
+                if found_change.kind in change_kinds
+            )
+        )
+
+    def owners_of_change(self, change_index: int) -> frozenset[str]:
+        """Return the partner who owns what changed, nobody if nobody owns it."""
+        change = self.changes[change_index]
+        return self.lasting_owners(
+            "input" if change.element_kind == "connection" else change.element_kind, self.common_id(change)
+        )
+
+    def lasting_owners(self, kind: str, name: str) -> frozenset[str]:
+        """Return the partner who owns an element in all versions that have it.
+
+        An element that changes hands is nobody's: otherwise naming a new owner would be enough to change it quietly.
+        """
+        element_versions = (
+            elements.get((kind, name)) for elements in (self.versions.elements_before, self.versions.elements_after)
+        )
+        owner_ids = {element.owner for element in element_versions if element}
+        return frozenset(owner for owner in owner_ids if owner and len(owner_ids) == 1)
+
+    def shared_losses(
+        self, indices: Iterable[int], parts_by_partner: Mapping[str, Sequence[str]], reason_template: str, verb: str
+    ) -> Iterator[PartnerLoss]:
+        """Yield one loss for each partner who does not own a change; `{}` in `why` becomes their parts and `verb`."""
+        for change_index in indices:
+            other_parts = {
+                partner: parts_by_partner[partner]
+                for partner in sorted(parts_by_partner)
+                if partner not in self.owners_of_change(change_index)
+            }
+            part_phrases = [f"{tick_names(part_names)} of {partner}" for partner, part_names in other_parts.items()]
+            has_many = sum(map(len, other_parts.values())) != 1
+            reason_text = reason_template.replace(
+                "{}", f"{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}"
+            )
+            yield from (PartnerLoss(change_index, partner, reason_text) for partner in other_parts)
+
+    def losses_of_partner(self, indices: Iterable[int], partner: str, reason_text: str) -> Iterator[PartnerLoss]:
+        """Yield a loss of a partner for each change that is not its own."""
+        yield from (
+            PartnerLoss(change_index, partner, reason_text)
+            for change_index in indices
+            if partner not in self.owners_of_change(change_index)
+        )
+
+    def owner_before(self, kind: str, name: str) -> str | None:
+        """Return the partner who owned an element before the change; for a new element, who owns it."""
+        # The first version decides: who loses something is who had it.
+        element = self.versions.elements_before.get((kind, name)) or self.versions.elements_after.get((kind, name))
+        return element.owner if element else None
+
+    def needs_source(self, input_id: str) -> bool:
+        """Whether an input still exists and is not optional."""
+        element = self.versions.elements_after.get(("input", input_id))
+        return element is not None and not element.values.get("optional")
+
+    def old_id(self, kind: str, name: str) -> str:
+        """Return the id that an element had before the change."""
+        element = self.versions.elements_before.get((kind, name))
+        return element.own_id if element else name
+
+    @cached_property
+    def offered_endpoints(
+        self,
+    ) -> tuple[Mapping[tuple[str, str], list[Endpoint]], Mapping[tuple[str, str], list[Endpoint]]]:
+        """Return what written nodes publish and serve, before and after, by common node and port ("" for internal
+        ones).
+        """
+        return self._collect_offered(self.before, self.matched_ids), self._collect_offered(self.after, MatchedIds())
+
+    def _collect_offered(
+        self, architecture: Architecture, matched_ids: MatchedIds
+    ) -> Mapping[tuple[str, str], list[Endpoint]]:
+        endpoints: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
+        for endpoint in architecture.endpoints:
+            if endpoint.use in {"publishes", "serves"} and architecture.nodes[endpoint.node].written:
+                port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
+                endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
+        return endpoints
+
+    def port_change_indices(self, node_id: str, port_id: str, *keys: str) -> list[int]:
+        """Return the indices of changes of what a node says of a component's port, or of its internal ones if `port` is
+        empty.
+        """
+        indices: list[int] = []
+        for index, change in self.find_changes("ports of", node_id):
+            name = self.common_id(change)
+            element = self.versions.elements_after.get(("port", name)) or self.versions.elements_before.get(
+                ("port", name)
+            )
+            component_refs = element.component_refs if element else ()
+            is_asked_port = port_id in component_refs if port_id else name.startswith(f"{node_id}.internal.")
+            if is_asked_port and (not keys or change.key in keys or change.kind != "changed"):
+                indices.append(index)
+        return list(dict.fromkeys(indices))
+
+
+def tick_name(name: object) -> str:
+    """Return a name in backticks, whatever it contains."""
+    return f"`{shorten_text(str(name))}`"
+
+
+def tick_names(names: Iterable[str]) -> str:
+    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`."""
+    ticked_names = [tick_name(name) for name in sorted(names)]
+    return join_words(
+        ticked_names
+        if len(ticked_names) <= _MAX_NAMES
+        else [*ticked_names[: _MAX_NAMES - 1], f"{len(ticked_names) - _MAX_NAMES + 1} more"]
+    )
+
+
+def _plural_verb(verb: str, *, plural: bool) -> str:
+    if not plural:
+        return verb
+    return "are" if verb == "is" else verb.removesuffix("s")

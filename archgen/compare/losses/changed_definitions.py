@@ -1,0 +1,210 @@
+"""What a partner reads is something else now: another type, another message, or a message with other fields."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.compare.matched_ids import MatchedIds
+from archgen.model.architecture import Architecture
+from archgen.model.known_interfaces import Interface
+
+_INNER_TYPE_KEYS = ("request", "response", "feedback")
+
+
+def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find outputs that another partner reads and that have another conceptual type or message."""
+    old_messages, new_messages = (
+        _messages_by_output(context.before, context.matched_ids),
+        _messages_by_output(context.after, MatchedIds()),
+    )
+    for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
+        element_pair = (
+            context.versions.elements_before.get(("output", output)),
+            context.versions.elements_after.get(("output", output)),
+        )
+        if element_pair[0] is None or element_pair[1] is None:
+            continue
+        types = [element.values.get("type") for element in element_pair if element]
+        messages_before, messages_after = old_messages.get(output, frozenset()), new_messages.get(output, frozenset())
+        indices, change = _type_change(context, output, (types[0], types[1]), (messages_before, messages_after))
+        staying_readers = [
+            reader
+            for reader in readers & context.versions.connections_after.readers_by_output.get(output, frozenset())
+            if context.needs_source(reader)
+        ]
+        lost_inputs = (
+            _readers_by_partner(context, staying_readers, context.lasting_owners("output", output)) if change else {}
+        )
+        for partner, inputs in sorted(lost_inputs.items()):
+            name = context.old_id("output", output)
+            reason_text = f"gives {partner}, who reads `{name}` as {tick_names(inputs)}, {change}"
+            yield from context.losses_of_partner(indices, partner, reason_text)
+
+
+def _type_change(
+    context: ChangeContext,
+    output_id: str,
+    type_pair: tuple[object, object],
+    message_pair: tuple[frozenset[str], frozenset[str]],
+) -> tuple[list[int], str]:
+    """Return the indices of changes that retyped an output, and what it gives now; ([], "") if nothing changed."""
+    (old_type, new_type), (messages_before, messages_after) = type_pair, message_pair
+    if old_type is not None and old_type != new_type:
+        message_note = (
+            f" (the message stays {tick_names(messages_after)})"
+            if messages_before and messages_before == messages_after
+            else ""
+        )
+        replacement = f"{tick_name(new_type) if new_type else 'no type any more'} instead of {tick_name(old_type)}"
+        return context.change_indices("output", output_id, "type"), replacement + message_note
+    if not messages_before or messages_before == messages_after:
+        return [], ""
+    node_ids = [node for node, port in context.offered_endpoints[1] if port == output_id]
+    indices = [place for node in node_ids for place in context.port_change_indices(node, output_id, "message")]
+    replacement = f"{tick_names(messages_after) or 'no message any more'} instead of {tick_names(messages_before)}"
+    return indices or (context.change_indices("type", str(new_type), "message") if new_type else []), replacement
+
+
+def _messages_by_output(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[str, frozenset[str]]:
+    """Return the messages of each output: those of the nodes that write it, else that of its type."""
+    messages_by_port: dict[str, set[str]] = defaultdict(set)
+    for endpoint in architecture.endpoints:
+        if endpoint.use in {"publishes", "serves"} and endpoint.port and endpoint.message:
+            messages_by_port[endpoint.port].add(endpoint.message)
+    for output in architecture.outputs.values():
+        message = architecture.message_of(output)
+        if message and output.id not in messages_by_port:
+            messages_by_port[output.id].add(message)
+    return {
+        matched_ids.common_id("output", port): frozenset(
+            matched_ids.common_id("message", message_name) for message_name in message_names
+        )
+        for port, message_names in messages_by_port.items()
+    }
+
+
+def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find changed message definitions and inner types, and the partners that are built against them."""
+    users_by_element = _users_by_element(context)
+    for index, change in enumerate(context.changes):
+        if change.kind not in {"changed", "removed"}:
+            continue
+        if change.element_kind == "message":
+            common_id = context.common_id(change)
+            partners = _other_partners(
+                [
+                    user
+                    for message in _messages_containing(context, common_id)
+                    for user in users_by_element.get(("message", message), ())
+                ]
+            )
+            for partner in sorted(partners):
+                yield from context.losses_of_partner([index], partner, _rebuild_reason(context, common_id, partner))
+        elif change.element_kind == "type" and change.key in _INNER_TYPE_KEYS and change.before is not None:
+            partners = _other_partners(users_by_element.get(("type", change.element_id), ()))
+            for partner in sorted(partners):
+                reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {partner} uses"
+                yield from context.losses_of_partner([index], partner, reason_text)
+
+
+def _users_by_element(context: ChangeContext) -> Mapping[tuple[str, str], list[tuple[bool, str]]]:
+    """Return for each message and type of the first version its users: whether they write it, and their partner."""
+    user_ids: dict[tuple[str, str], list[tuple[bool, str]]] = defaultdict(list)
+    for endpoint in context.before.endpoints:
+        node = context.before.nodes[endpoint.node]
+        component = context.before.components.get(endpoint.component or "")
+        partner = (component.owner if component else None) or node.owner
+        if not partner:
+            continue
+        writer_and_partner = endpoint.use in {"publishes", "serves"}, context.matched_ids.common_id("partner", partner)
+        if endpoint.message:
+            user_ids["message", context.matched_ids.common_id("message", endpoint.message)].append(writer_and_partner)
+        if endpoint.type:
+            user_ids["type", context.matched_ids.common_id("type", endpoint.type)].append(writer_and_partner)
+    return user_ids
+
+
+def _other_partners(users: Iterable[tuple[bool, str]]) -> frozenset[str]:
+    """Return the partners who are broken: all users but the one who alone writes what is defined, if there is one."""
+    all_users = list(users)
+    writers = {partner for is_writer, partner in all_users if is_writer}
+    return frozenset(partner for _, partner in all_users) - (writers if len(writers) == 1 else frozenset())
+
+
+def _messages_containing(context: ChangeContext, message_name: str) -> list[str]:
+    """Return a message of the second version and all that contain it, at any depth."""
+    packages = context.after.interfaces.project_packages
+    project_messages = [
+        interface_name
+        for interface_name in context.after.interfaces.names
+        if interface_name.partition("/")[0] in packages
+    ]
+    containers_by_type: dict[str, list[str]] = defaultdict(list)
+    for container_name in sorted(project_messages):
+        definition = context.after.interfaces.definitions.get(container_name)
+        for part in definition.parts if definition else ():
+            for field in part:
+                containers_by_type[field.type].append(container_name)
+    message_names = {message_name: None}
+    # The list grows while it is iterated: a breadth-first search.
+    for inner_name in (waiting := [message_name]):
+        for container_name in containers_by_type.get(inner_name, ()):
+            if container_name not in message_names:
+                message_names[container_name] = None
+                waiting.append(container_name)
+    return list(message_names)
+
+
+def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> str:
+    """Describe what is different for a partner that was built against a message definition."""
+    old_definition = context.before.interfaces.definitions.get(
+        context.matched_ids.old_ids.get("message", {}).get(message_name, message_name)
+    )
+    new_definition = context.after.interfaces.definitions.get(message_name)
+    ticked_name = tick_name(message_name)
+    if new_definition is None or old_definition is None:
+        return f"takes the definition of {ticked_name} from {partner}, who uses it"
+    removed, added, retyped_fields = _compare_fields(old_definition, new_definition)
+    clauses = [f"removes {tick_names(removed)}"] if removed else []
+    clauses += [f"changes the type of {tick_names(retyped_fields)}"] if retyped_fields else []
+    clauses += [f"adds {tick_names(added)}"] if added else []
+    difference = " and ".join(clauses) or "puts fields in another order"
+    # The wire format of ROS has no optional fields; ROS 1 compares checksums and ROS 2 type hashes
+    # (docs/decisions/0007-breaking-changes.md).
+    addition_note = (
+        "even a field more makes another message to ROS: " if added and not (removed or retyped_fields) else ""
+    )
+    return f"{difference} in {ticked_name}, which {partner} uses; {addition_note}what was built before cannot talk to what is built after"
+
+
+def _compare_fields(old_definition: Interface, new_definition: Interface) -> tuple[set[str], set[str], set[str]]:
+    """Return the names of the removed, added and changed fields."""
+    old_fields = {
+        (part_number, field.name): field for part_number, part in enumerate(old_definition.parts) for field in part
+    }
+    new_fields = {
+        (part_number, field.name): field for part_number, part in enumerate(new_definition.parts) for field in part
+    }
+    changed = {
+        name
+        for (part_number, name), field in old_fields.items()
+        if (part_number, name) in new_fields and field != new_fields[part_number, name]
+    }
+    return (
+        {name for _, name in old_fields.keys() - new_fields.keys()},
+        {name for _, name in new_fields.keys() - old_fields.keys()},
+        changed,
+    )
+
+
+def _readers_by_partner(
+    context: ChangeContext, readers: Iterable[str], lasting_owners: frozenset[str]
+) -> Mapping[str, list[str]]:
+    readers_of_partner: dict[str, list[str]] = defaultdict(list)
+    for reader in readers:
+        partner = context.owner_before("input", reader)
+        if partner and partner not in lasting_owners:
+            readers_of_partner[partner].append(reader)
+    return readers_of_partner

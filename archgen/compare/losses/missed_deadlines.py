@@ -1,0 +1,102 @@
+"""Chains that no longer meet their deadlines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from archgen.compare.comparison import ChainChange
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.overloaded_resources import find_link_causes
+from archgen.compare.losses.timing_causes import TimingCauses
+from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.figures.timing_values import TimingValue
+
+
+def find_late_chains(
+    context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
+) -> Iterator[PartnerLoss]:
+    """Find chains that met their deadline and may no longer do so, or that were late and are later now."""
+    for chain_change in chains:
+        old_result, new_result = chain_change.before, chain_change.after
+        if (
+            old_result is None
+            or new_result is None
+            or new_result.deadline is None
+            or not (reason_text := _lateness_reason(old_result, new_result))
+        ):
+            continue
+        # A bound without terms means that the chain is cut: there is no sum to compare, only what took its steps away.
+        if new_result.terms:
+            worse_activities = _grown_activities(causes, old_result.terms, new_result.terms)
+            indices = causes.find_causes(worse_activities) + _link_causes(context, worse_activities, causes)
+            activities_of_owners = causes.activities_by_owner(term.activity for term in new_result.terms)
+        else:
+            indices, cut_off_activities = causes.find_cuts([term.activity for term in old_result.terms])
+            activities_of_owners = causes.old_activities_by_owner(cut_off_activities)
+        indices += context.change_indices("chain", chain_change.id, "deadline")
+        indices = (
+            indices or context.change_indices("chain", chain_change.id, "through") or causes.all_worsening_changes()
+        )
+        reason_text += "; {} on it"
+        yield from context.shared_losses(dict.fromkeys(indices), activities_of_owners, reason_text, "is")
+
+
+def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
+    """Describe how much worse a chain is; empty if it is no worse than before."""
+    limit, chain_name = f"its deadline of {_format_bound(new_result.deadline)}", f"the chain `{new_result.id}`"
+    if old_result.verdict == "met" and new_result.verdict == "missed":
+        growth = (
+            f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
+            if old_result.bound != new_result.bound
+            else f"it takes {_format_bound(new_result.bound)}"
+        )
+        return f"makes {chain_name} miss {limit} ({growth})"
+    if old_result.verdict == "met" and new_result.verdict == "open":
+        met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
+        return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
+    old_bound, new_bound = old_result.bound.value, new_result.bound.value
+    if (
+        old_result.verdict == new_result.verdict == "missed"
+        and old_bound is not None
+        and (new_bound is None or new_bound > old_bound)
+    ):
+        return f"makes {chain_name} miss {limit} by still more ({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
+    return ""
+
+
+def _format_bound(value: TimingValue | None) -> str:
+    if value is None or value.value is None:
+        return "no bound"
+    return ("" if value.complete else "at least ") + format_duration(value.value)
+
+
+def _grown_activities(
+    causes: TimingCauses, old_terms: Iterable[ChainTerm], new_terms: Iterable[ChainTerm]
+) -> list[str]:
+    """Return the activities whose terms grew."""
+    terms_by_activity = {term.activity: term for term in old_terms}
+    activity_ids = []
+    for term in new_terms:
+        old_term = terms_by_activity.get(causes.old_activity(term.activity) or "")
+        # The three summands of a `ChainResult` term.
+        pairs = ((getattr(old_term, key), getattr(term, key)) for key in ("sampling", "response", "link"))
+        if old_term is None or any(_bound_has_grown(old_value, new_value) for old_value, new_value in pairs):
+            activity_ids.append(term.activity)
+    return activity_ids
+
+
+def _bound_has_grown(old_value: TimingValue, new_value: TimingValue) -> bool:
+    if old_value.value is None or new_value.value is None:
+        return old_value.value is not new_value.value
+    return new_value.value > old_value.value or (old_value.complete and not new_value.complete)
+
+
+def _link_causes(context: ChangeContext, activity_ids: Iterable[str], causes: TimingCauses) -> list[int]:
+    """Return the indices of changes of links, and of what is sent, in front of the activities whose terms grew."""
+    indices = dict[int, None]()
+    for activity_id in activity_ids:
+        for arc in causes.timing_pair.after.system.arcs_into.get(activity_id, ()):
+            if arc.link is not None:
+                indices.update(dict.fromkeys(find_link_causes(context, arc.link, [arc.topic], causes)))
+    return list(indices)

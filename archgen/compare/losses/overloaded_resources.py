@@ -1,0 +1,105 @@
+"""Hosts and links that are asked for more than they have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.timing_causes import TimingCauses
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.timing_pair import is_overloaded
+from archgen.timing.analysis import Analysis
+from archgen.timing.figures.figure_wording import format_share
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.core_placement import ProcessingResource, find_resources
+
+
+def find_overloaded_cores(context: ChangeContext, causes: TimingCauses) -> Iterator[PartnerLoss]:
+    """Find cores that are overloaded now and were not before, and whose activities run there in both versions."""
+    before, after = causes.timing_pair.before, causes.timing_pair.after
+    if not any(map(is_overloaded, after.hosts.values())):
+        return
+    overloaded_before = {
+        core_key: load >= resource.cores for core_key, resource, load in _shared_cores(before, context.matched_ids)
+    }
+    old_hosts = {
+        core_name: core_key[0]
+        for core_key, resource, _ in _shared_cores(before, context.matched_ids)
+        for core_name in resource.members
+    }
+    for core_key, resource, load in _shared_cores(after, MatchedIds()):
+        host = core_key[0]
+        if load < resource.cores or overloaded_before.get(core_key):
+            continue
+        staying_activities = [
+            core_name for core_name in resource.members if old_hosts.get(causes.old_activity(core_name) or "") == host
+        ]
+        heavier_ids = causes.heavier_activities(resource.members)
+        indices = dict.fromkeys(
+            [*context.change_indices("host", host, "cores"), *causes.find_causes(heavier_ids)]
+            or causes.all_worsening_changes()
+        )
+        core_phrase = "its core" if resource.cores == 1 else f"its {resource.cores} cores"
+        core_name = f"`{resource.id}`" if core_key[1] else f"the host `{host}`"
+        reason_text = f"overloads {core_name} ({format_share(load / resource.cores)} of {core_phrase}), where {{}}"
+        yield from context.shared_losses(indices, causes.activities_by_owner(staying_activities), reason_text, "runs")
+
+
+def _shared_cores(
+    analysis: Analysis, matched_ids: MatchedIds
+) -> Iterator[tuple[tuple[str, str], ProcessingResource, Fraction]]:
+    """Yield the cores that some activities share, by host and rest of their id, with their load in cores."""
+    for resource in find_resources(analysis.system):
+        if resource.host is None:  # threads of a container, each with a core that nobody named
+            continue
+        activity_loads = dict(analysis.hosts[resource.host].activity_shares)
+        load = sum((activity_loads[name].value or Fraction(0) for name in resource.members), Fraction(0))
+        yield (matched_ids.common_id("host", resource.host), resource.id.removeprefix(resource.host)), resource, load
+
+
+def find_saturated_links(context: ChangeContext, causes: TimingCauses) -> Iterator[PartnerLoss]:
+    """Find links that are saturated now and were not before, and who sent or received something over them."""
+    for link_id, load in causes.timing_pair.after.links.items():
+        old_load = causes.timing_pair.before.links.get(
+            context.matched_ids.old_ids.get("link", {}).get(link_id, link_id)
+        )
+        if old_load is None or is_overloaded(old_load) or not is_overloaded(load):
+            continue
+        old_parts = dict(old_load.topic_traffic)
+        grown_topics = [
+            topic
+            for topic, topic_load in load.topic_traffic
+            if topic not in old_parts or _has_grown(old_parts[topic], topic_load)
+        ]
+        crossing_arcs = [
+            arc for arc in causes.timing_pair.after.system.arcs if arc.link == link_id and arc.role == "data"
+        ]
+        arc_ends = [
+            arc_end for arc in crossing_arcs if arc.topic in grown_topics for arc_end in (arc.source, arc.target)
+        ]
+        indices = dict.fromkeys(
+            [*find_link_causes(context, link_id, grown_topics, causes)]
+            or causes.find_causes(arc_ends)
+            or causes.all_worsening_changes()
+        )
+        users = {arc_end for arc in crossing_arcs if arc.topic in old_parts for arc_end in (arc.source, arc.target)}
+        used_share = format_share(load.share.value) if load.share.value is not None else ""
+        reason_text = f"asks the link `{link_id}` for {used_share} of its bandwidth; {{}} it"
+        yield from context.shared_losses(indices, causes.activities_by_owner(users), reason_text, "uses")
+
+
+def _has_grown(old_value: TimingValue, new_value: TimingValue) -> bool:
+    return new_value.value is not None and (old_value.value is None or new_value.value > old_value.value)
+
+
+def find_link_causes(
+    context: ChangeContext, link_id: str, topics: Iterable[str], causes: TimingCauses
+) -> Iterator[int]:
+    """Yield the indices of changes of a link, and of the types and messages that are sent over it."""
+    element_keys = [("link", link_id)]
+    for sent_topic in filter(None, map(context.after.topics.get, topics)):
+        element_keys += [("type", element_id) for element_id in sent_topic.types]
+        element_keys += [("message", element_id) for element_id in sent_topic.messages]
+    for kind, element_id in element_keys:
+        yield from (index for index, change in context.find_changes(kind, element_id) if causes.can_worsen(change))

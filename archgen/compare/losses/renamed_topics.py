@@ -1,0 +1,99 @@
+"""Topics, services and actions that another partner's node uses under a name that no longer exists."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.model.node import Endpoint, FlowKind
+
+TopicKey = tuple[str, FlowKind]
+
+
+def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find names that disappeared while other partners' nodes use them: their programs do not follow the files."""
+    old_endpoints, new_endpoints = context.offered_endpoints
+    topics_by_port: dict[str, set[TopicKey]] = defaultdict(set)
+    for (_, port), ends in new_endpoints.items():
+        topics_by_port[port].update((endpoint.name, endpoint.flow) for endpoint in ends)
+    readers = _readers_by_topic(context)
+    for node, port in sorted(old_endpoints):
+        if port and ("output", port) not in context.versions.elements_after:
+            continue  # the connection itself is gone
+        old_topics = {(endpoint.name, endpoint.flow) for endpoint in old_endpoints[node, port]}
+        new_topics = topics_by_port[port]
+        indices = _find_causes(context, node, port) if old_topics - new_topics else []
+        for name, flow in sorted(old_topics - new_topics):
+            own_topics = {(endpoint.name, endpoint.flow) for endpoint in new_endpoints.get((node, port), ())}
+            replacements = sorted(
+                new_name for new_name, new_flow in (new_topics if port else own_topics) - old_topics if new_flow == flow
+            )
+            users = [
+                endpoint
+                for endpoint in readers.get((name, flow), ())
+                if not port or not endpoint.sources or _reads_output(context, endpoint, port)
+            ]
+            for partner, nodes in _users_by_partner(context, users).items():
+                yield from context.losses_of_partner(
+                    indices, partner, _loss_reason((name, flow), partner, nodes, replacements)
+                )
+
+
+def _readers_by_topic(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
+    """Return the readers of each name in the first version that can be broken: real nodes that remain."""
+    readers: dict[TopicKey, list[Endpoint]] = defaultdict(list)
+    for endpoint in context.before.endpoints:
+        node = context.before.nodes[endpoint.node]
+        if endpoint.use in {"publishes", "serves"} or not node.written or node.status == "planned":
+            continue
+        node_stays = ("node", context.matched_ids.common_id("node", endpoint.node)) in context.versions.elements_after
+        if node_stays and (
+            endpoint.port is None or context.needs_source(context.matched_ids.common_id("input", endpoint.port))
+        ):
+            readers[endpoint.name, endpoint.flow].append(endpoint)
+    return readers
+
+
+def _reads_output(context: ChangeContext, endpoint: Endpoint, output_id: str) -> bool:
+    return output_id in {context.matched_ids.common_id("output", source) for source in endpoint.sources}
+
+
+def _users_by_partner(context: ChangeContext, users: Iterable[Endpoint]) -> Mapping[str, set[str]]:
+    nodes_by_partner: dict[str, set[str]] = defaultdict(set)
+    for endpoint in users:
+        node = context.before.nodes[endpoint.node]
+        if node.owner:
+            nodes_by_partner[context.matched_ids.common_id("partner", node.owner)].add(
+                context.matched_ids.common_id("node", endpoint.node)
+            )
+    return dict(sorted(nodes_by_partner.items()))
+
+
+def _find_causes(context: ChangeContext, node_id: str, port_id: str) -> list[int]:
+    """Return the indices of the change that renamed a topic: at the port, the node, or the elements its name is made
+    of.
+    """
+    component_id = port_id.rpartition(".")[0]
+    group_id = component_id.partition(".")[0]
+    # From the most specific cause to the most general; the first that changed at all is blamed.
+    candidate_indices = (
+        context.port_change_indices(node_id, port_id, "topic"),
+        context.change_indices("node", node_id, "name", "namespace"),
+        context.indices_by_change_kind("node", node_id, "renamed", "removed"),
+        context.indices_by_change_kind("output", port_id, "renamed"),
+        context.indices_by_change_kind("component", component_id, "renamed", "moved"),
+        context.indices_by_change_kind("group", group_id, "renamed"),
+        context.change_indices("node", node_id),
+        context.change_indices("output", port_id),
+    )
+    return next((indices for indices in candidate_indices if indices), [])
+
+
+def _loss_reason(topic_key: TopicKey, partner: str, node_ids: Iterable[str], replacements: list[str]) -> str:
+    name, flow = topic_key
+    verb = "subscribes to" if flow == "topic" else "calls"
+    new_name_note = (
+        f"it is {tick_names(replacements)} now" if replacements else "nobody offers it under that name any more"
+    )
+    return f"takes the {flow} {tick_name(name)} from {partner}, whose {tick_names(node_ids)} {verb} it; {new_name_note}"

@@ -1,0 +1,59 @@
+"""Analyse the timing of both versions, only if a change can affect it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from archgen.compare.comparison import Change
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
+from archgen.timing.run_analysis import analyse_architecture
+
+_UNTIMED_KINDS = frozenset({"partner", "use_case", "requirement", "chapter", "view", "policy", "project"})
+_UNTIMED_KEYS = frozenset(
+    {
+        *("title", "description", "functionality", "comment", "owner", "tags", "layout", "role", "requirements"),
+        *("external", "optional", "executable", "package", "plugin", "status", "parameter_files"),
+    }
+)
+_UNTIMED_PREFIXES = ("urls.", "performance.", "parameters.")
+
+
+@dataclass(frozen=True, slots=True)
+class TimingPair:
+    """The timing analyses of both versions."""
+
+    before: Analysis
+    after: Analysis
+
+
+def analyse_timing(before: Architecture, after: Architecture, changes: Sequence[Change]) -> TimingPair | None:
+    """Analyse both versions if there are chains to compare, or an overloaded host or link; else return None."""
+    if before.unread_keys or after.unread_keys:  # of what could not be read nobody knows how long it takes
+        return None
+    has_chains = before.chains or after.chains
+    if not (has_chains or after.hosts or after.links) or not any(map(can_affect_timing, changes)):
+        return None
+    new_analysis = analyse_architecture(after, judging=True)  # the analysis of the version judged last is still at hand
+    loads: list[HostLoad | LinkLoad] = [*new_analysis.hosts.values(), *new_analysis.links.values()]
+    if not has_chains and not any(map(is_overloaded, loads)):
+        return None
+    return TimingPair(analyse_architecture(before, judging=True), new_analysis)
+
+
+def can_affect_timing(change: Change) -> bool:
+    """Whether a change can affect a figure of timing."""
+    if change.element_kind in _UNTIMED_KINDS:
+        return False
+    if change.kind == "changed" and change.key:
+        return change.key not in _UNTIMED_KEYS and not change.key.startswith(_UNTIMED_PREFIXES)
+    # Renames and moves change no figure.
+    return change.kind in {"added", "removed", "changed"}
+
+
+def is_overloaded(load: HostLoad | LinkLoad) -> bool:
+    """Whether a host or a link is asked for more than it has."""
+    if isinstance(load, LinkLoad):
+        return load.share.value is not None and load.share.value >= 1
+    return any(used_cores.value is not None and used_cores.value >= cores for _, cores, used_cores in load.core_loads)

@@ -1,0 +1,79 @@
+"""What describing and judging changes needs to look up in both versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from archgen.compare.compared_elements import ComparedElement, ElementKey
+from archgen.compare.connection_maps import ConnectionMap
+
+
+@dataclass(frozen=True, slots=True)
+class VersionPair:
+    """Elements and connections of both versions by common ids (those of the second version for all that is in both)."""
+
+    connections_before: ConnectionMap
+    connections_after: ConnectionMap
+    elements_before: Mapping[ElementKey, ComparedElement]
+    elements_after: Mapping[ElementKey, ComparedElement]
+    serving_components: tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]
+    """For each requirement the components that name it, before and after."""
+
+    lost_keys: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """Keys of what could not be read, before and after: whether that was added or removed is unknown."""
+
+    unnamed_outputs: frozenset[str] = frozenset()
+    """Outputs whose topic, service or action is called after them, since no node names it otherwise."""
+
+    def may_be_unread(self, key: ElementKey) -> bool:
+        """Whether an element that is missing in one version may be in a part of it that could not be read."""
+        # The version in which it is missing: the first one for an added element, the second one for a removed element.
+        lost_words = self.lost_keys[0 if key in self.elements_after else 1]
+        # Any part of the path may be the lost key; ports of nodes have ids with a use in them.
+        return bool(lost_words) and not lost_words.isdisjoint(
+            word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
+        )
+
+    def value_may_be_unread(self, key: ElementKey, before: object, after: object) -> bool:
+        """Whether a value missing in one version may be in a part of it that could not be read."""
+        if isinstance(before, list) or isinstance(after, list):
+            return any(self.lost_keys) and self._only_unread_references(before, after)
+        lost_words = self.lost_keys[0] if before is None else self.lost_keys[1] if after is None else frozenset()
+        present_value = after if before is None else before
+        referred_words = (
+            present_value.split(".") if isinstance(present_value, str) else []
+        )  # what a reference names may be what is not there
+        return bool(lost_words) and (
+            key[0] in {"project", "group"} or not lost_words.isdisjoint([*key[1].split("."), *referred_words])
+        )
+
+    def _only_unread_references(self, before: object, after: object) -> bool:
+        """Whether all that a list gained and lost are references to what could not be read."""
+        old_items, new_items = (value if isinstance(value, list) else [] for value in (before, after))
+        sides = (new_items, old_items, self.lost_keys[0]), (old_items, new_items, self.lost_keys[1])
+        differing_items = [
+            (item, lost_words)
+            for own_items, other_items, lost_words in sides
+            for item in own_items
+            if item not in other_items
+        ]
+        return bool(differing_items) and all(
+            not lost_words.isdisjoint(str(item).split(".")) for item, lost_words in differing_items
+        )
+
+    def find_elements_with(self, element_kind: str, key: str, value: str) -> list[str]:
+        """Return the sorted ids of the elements of the second version that have a value at a key."""
+        return sorted(
+            name
+            for (kind, name), element in self.elements_after.items()
+            if kind == element_kind and element.values.get(key) == value
+        )
+
+    def is_removed(self, kind: str, name: str) -> bool:
+        """Whether an element was removed."""
+        return (kind, name) in self.elements_before and (kind, name) not in self.elements_after
+
+    def is_added(self, kind: str, name: str) -> bool:
+        """Whether an element was added."""
+        return (kind, name) in self.elements_after and (kind, name) not in self.elements_before

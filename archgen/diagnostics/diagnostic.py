@@ -1,0 +1,92 @@
+"""Diagnostics, their severities, and the rules that they belong to."""
+
+from __future__ import annotations
+
+import enum
+import inspect
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+
+class Severity(enum.StrEnum):
+    """How serious a finding is. `off` occurs only in settings, never on a diagnostic."""
+
+    # From the least to the most serious: the order of definition is used to compare severities.
+
+    OFF = "off"
+    NOTE = "note"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+class Label(NamedTuple):
+    """A secondary span that helps to understand a diagnostic."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A finding.
+
+    `severity` None means the rule's default, which `settle_diagnostics` fills in. `element` is the id of the element
+    that the finding is about (`group.component`, a node's id, a type's name, ...), if any.
+    """
+
+    rule: str
+    message: str
+    span: Span
+    severity: Severity | None = None
+    labels: tuple[Label, ...] = ()
+    help: str | None = None
+    element: str | None = None
+
+    @property
+    def sort_key(self) -> tuple[str, int, int, str, str]:
+        """The sort key: file, line, column, rule, message."""
+        return (self.span.file, self.span.line, self.span.column, self.rule, self.message)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A kind of finding: its name, its default severity, its page.
+
+    `doc` is Markdown: a summary sentence, then the sections `Why`, `Bad` and `Good` (see CONTRIBUTING.md). `fixed`
+    rules (reading and linking) cannot be ignored or switched off: all later stages rely on them.
+    """
+
+    name: str
+    severity: Severity
+    doc: str
+    fixed: bool = False
+
+    @classmethod
+    def from_function(cls, function: Callable[..., object], severity: Severity) -> Rule:
+        """Make a rule from the function that implements it: its name and page are the function's name and docstring."""
+        return cls(function.__name__.replace("_", "-"), severity, inspect.cleandoc(function.__doc__ or ""))
+
+
+def settle_diagnostics(
+    diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], settings: Mapping[str, Severity]
+) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics with their effective severities, without duplicates and those switched off, sorted.
+
+    The severity is the project's setting for the rule (ignored for fixed rules), else the diagnostic's own, else the
+    rule's default.
+    """
+    settled_diagnostics = set[Diagnostic]()
+    for diagnostic in diagnostics:
+        rule = rules[diagnostic.rule]
+        severity = diagnostic.severity or rule.severity
+        if not rule.fixed:
+            severity = settings.get(diagnostic.rule, severity)
+        if severity is not Severity.OFF:
+            settled_diagnostics.add(replace(diagnostic, severity=severity))
+    return tuple(sorted(settled_diagnostics, key=lambda d: d.sort_key))

@@ -1,0 +1,109 @@
+"""Find where a new element belongs: the file that holds similar elements."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from archgen.edit.edit_proof import first_file_of
+from archgen.pipeline import CheckedProject
+from archgen.project import PROJECT_FILE
+from archgen.syntax import file_patterns
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
+
+
+class ElementPlace(NamedTuple):
+    """A file and the path of the mapping in it that takes the element; `is_new_file`: it does not exist yet."""
+
+    file: str
+    path: tuple[str, ...]
+    is_new_file: bool = False
+
+
+class NoPlaceError(Exception):
+    """No file of the project can take the element. The message says what to do."""
+
+
+def place_for_group(checked_project: CheckedProject, name: str) -> ElementPlace:
+    """Return a new file in the folder of the groups, or the file that holds all of them. Raise NoPlaceError."""
+    group_counts = {file: len(table.entries) for file, table in _section_tables(checked_project, "groups")}
+    folders = Counter(os.path.dirname(file) for file in group_counts if file != first_file_of(checked_project))  # noqa: PTH120 - text, with `/`
+    if not folders and group_counts:
+        return ElementPlace(first_file_of(checked_project), ("groups",))
+    if first_file_of(checked_project) != PROJECT_FILE:
+        return ElementPlace(first_file_of(checked_project), ("groups",))
+    folder = max(folders, key=lambda table: (folders[table], table)) if folders else "groups"
+    file = f"{folder}/{name}.yaml" if folder else f"{name}.yaml"
+    if not _is_source(checked_project, file):
+        msg = f"`sources` of {PROJECT_FILE} has no pattern for {file}: add `{folder or '.'}/*.yaml` there first"
+        raise NoPlaceError(msg)
+    if checked_project.loaded_project.files.has_path(file):
+        msg = f"{file} is there already, and holds no group `{name}`: write the group into it, or rename the file"
+        raise NoPlaceError(msg)
+    return ElementPlace(file, ("groups",), is_new_file=True)
+
+
+def place_for_component(checked_project: CheckedProject, group: str) -> ElementPlace:
+    """Return the file that says most about the group."""
+    path = ("groups", group, "components")
+    weights = {
+        file: _weigh_slice(table.get(group))
+        for file, table in _section_tables(checked_project, "groups")
+        if group in table.entries
+    }
+    return ElementPlace(max(weights, key=lambda file: weights[file]), path)
+
+
+def place_for_node(checked_project: CheckedProject, components: tuple[str, ...]) -> ElementPlace:
+    """Return the file with nodes of the same components, else of the same groups, else with most nodes."""
+    groups = {component.partition(".")[0] for component in components}
+    written_nodes = [node for node in checked_project.architecture.nodes.values() if node.written]
+    same_components = Counter(node.at.file for node in written_nodes if set(node.implements) & set(components))
+    same_groups = Counter(
+        node.at.file for node in written_nodes if groups & {name.partition(".")[0] for name in node.implements}
+    )
+    for node_counts in (same_components, same_groups):
+        if node_counts:
+            return ElementPlace(node_counts.most_common(1)[0][0], ("nodes",))
+    all_counts = Counter(node.at.file for node in written_nodes)
+    in_group_files = set(all_counts) <= {
+        file for file, _ in _section_tables(checked_project, "groups")
+    }  # nodes stand in the files of their groups
+    if groups and in_group_files:
+        return ElementPlace(place_for_component(checked_project, min(groups)).file, ("nodes",))
+    return ElementPlace(all_counts.most_common(1)[0][0] if all_counts else first_file_of(checked_project), ("nodes",))
+
+
+def _section_tables(checked_project: CheckedProject, section: str) -> Iterator[tuple[str, MappingNode]]:
+    for document in checked_project.loaded_project.documents:
+        table = document.root.get(section)
+        if isinstance(table, MappingNode):
+            yield document.file, table
+
+
+def _weigh_slice(group: YamlNode | None) -> tuple[int, int]:
+    """Return how much a slice says about a group: first its components' keys, then its own."""
+    components = group.get("components") if isinstance(group, MappingNode) else None
+    component_values = [entry.value for entry in components] if isinstance(components, MappingNode) else []
+    keys = sum(len(value.entries) for value in component_values if isinstance(value, MappingNode))
+    return len(component_values) + keys, len(group.entries) if isinstance(group, MappingNode) else 0
+
+
+def _is_source(checked_project: CheckedProject, file: str) -> bool:
+    """Return whether the project will read a file of this name once it exists."""
+    patterns = next(
+        (
+            document.root.get("sources")
+            for document in checked_project.loaded_project.documents
+            if document.file == PROJECT_FILE
+        ),
+        None,
+    )
+    if not isinstance(patterns, SequenceNode):
+        return True
+    return any(
+        isinstance(pattern, ScalarNode) and file_patterns.matches_pattern(pattern.text, file)
+        for pattern in patterns.items
+    )

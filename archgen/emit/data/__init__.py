@@ -1,0 +1,1 @@
+"""What programs read: findings, timing and comparisons as JSON, SARIF, JUnit and GitHub annotations."""

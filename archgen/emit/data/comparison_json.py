@@ -1,0 +1,85 @@
+"""A comparison for programs: the JSON format, version 1, as `schemas/diff.schema.json` describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from archgen.compare import ChainChange, Change, Comparison
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.safe_text import format_json
+from archgen.emit.data.findings_json import finding_to_json
+from archgen.emit.data.timing_json import duration_to_json
+from archgen.timing.analysis import ChainResult
+
+FORMAT_VERSION = 1
+ReadingErrors = tuple[Sequence[Diagnostic], Sequence[Diagnostic]]
+
+
+def write_comparison_json(comparison: Comparison, reading_errors: ReadingErrors) -> str:
+    """Return a comparison as one JSON document; `broken` are the errors of reading either version."""
+    return format_json(comparison_record(comparison, reading_errors))
+
+
+def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> dict[str, Any]:
+    """Return a comparison as plain data."""
+    return {
+        "version": FORMAT_VERSION,
+        "changes": [change_record(item) for item in comparison.changes],
+        "findings": {
+            "new": [finding_to_json(item) for item in comparison.new_findings],
+            "cured": [finding_to_json(item) for item in comparison.cured_findings],
+            "silenced": [finding_to_json(item) for item in comparison.silenced_findings],
+        },
+        "chains": [_chain_record(item) for item in comparison.chains],
+        "owners": list(comparison.concerned_owners),
+        "breaking": {
+            "severity": str(comparison.breaking_severity),
+            "fails": comparison.is_refused,
+            "idle": [
+                {"element": acceptance.element, "key": acceptance.key, "reason": acceptance.reason}
+                for acceptance in comparison.idle_acceptances
+            ],
+        },
+        "broken": {
+            "before": [finding_to_json(item) for item in reading_errors[0]],
+            "after": [finding_to_json(item) for item in reading_errors[1]],
+        },
+    }
+
+
+def change_record(architecture_change: Change) -> dict[str, Any]:
+    """Return one change with its parts as plain data."""
+    return {
+        "kind": architecture_change.kind,
+        "sort": architecture_change.element_kind,
+        "element": architecture_change.element_id,
+        "was": architecture_change.old_id,
+        "key": architecture_change.key,
+        "before": architecture_change.before,
+        "after": architecture_change.after,
+        "confidence": architecture_change.confidence,
+        # The keys are the format, not the names of attributes: they stay when those change.
+        "breaks": list(architecture_change.broken_partners),
+        "because": [
+            {"partner": partner_break.partner, "why": partner_break.reason}
+            for partner_break in architecture_change.breaks
+        ],
+        "accepted": architecture_change.acceptance_reason,
+        "text": architecture_change.text,
+        "parts": [change_record(part) for part in architecture_change.parts],
+    }
+
+
+def _chain_record(chain_change: ChainChange) -> dict[str, Any]:
+    deadline = duration_to_json(chain_change.deadline)["value"] if chain_change.deadline else None
+    return {
+        "id": chain_change.id,
+        "before": _bound_record(chain_change.before),
+        "after": _bound_record(chain_change.after),
+        "deadline": deadline,
+    }
+
+
+def _bound_record(result: ChainResult | None) -> dict[str, Any] | None:
+    return duration_to_json(result.bound) if result else None

@@ -1,0 +1,249 @@
+"""Write the files that make up an output: all of them, or none.
+
+A folder that archgen writes holds the manifest `.archgen-files` (digest and name of each file). A file that is named
+there and still has its digest is archgen's own: it may be replaced, and is removed when it is no longer written. Any
+other file belongs to somebody: archgen says so and stops.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from types import MappingProxyType
+
+from archgen.emit.safe_names import is_safe_path
+
+TREE_MANIFEST = ".archgen-files"
+_MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
+_FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
+"""What file managers leave behind. It is nobody's work, so it is no obstacle."""
+
+
+class OutputError(Exception):
+    """An output cannot be written. `message` says why, `help` what to do. The user sees both, without a traceback."""
+
+    def __init__(self, message: str, help: str | None = None) -> None:  # noqa: A002 - as in a diagnostic
+        super().__init__(message)
+        self.message = message
+        self.help = help
+
+
+@dataclass(frozen=True, slots=True)
+class FileTree:
+    """Files to write, by their path relative to the output folder (`/` between parts)."""
+
+    files: Mapping[str, bytes]
+
+    def in_folder(self, folder: str) -> FileTree:
+        """Return the same files below a folder."""
+        return make_file_tree((f"{folder}/{path}", data) for path, data in self.files.items())
+
+
+@dataclass(frozen=True, slots=True)
+class WriteResult:
+    """What writing a tree changed: files by their path."""
+
+    written: tuple[str, ...]
+    unchanged: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+def make_file_tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
+    """Make a tree of files, sorted by path.
+
+    Raise ValueError for an unsafe path and for two paths that differ in case only (`assign_safe_paths` makes good
+    ones).
+    """
+    data_by_path: dict[str, bytes] = {}
+    folded_paths: set[str] = set()
+    for path, data in files:
+        if not is_safe_path(path) or path == TREE_MANIFEST:
+            msg = f"{path!r} is no safe name for an output file"
+            raise ValueError(msg)
+        if path.casefold() in folded_paths:
+            msg = f"two output files are called {path!r}"
+            raise ValueError(msg)
+        folded_paths.add(path.casefold())
+        data_by_path[path] = data
+    return FileTree(MappingProxyType(dict(sorted(data_by_path.items()))))
+
+
+def write_tree(files: FileTree, folder: Path) -> WriteResult:
+    """Write a tree into its folder. Files that have their contents already are not touched.
+
+    Raise OutputError, before anything was changed, where the folder holds what archgen did not write.
+    """
+    # Everything is read and compared first. Only `_replace_files` changes the disk.
+    with _explain_os_errors(folder):
+        folder = folder.resolve()
+        if folder.exists() and not folder.is_dir():
+            msg = f"{folder} is a file, not a folder"
+            raise OutputError(msg, "give another folder with `-o`")
+        old_manifest = _read_tree_manifest(folder)
+        own_digests = _find_own_files(folder, old_manifest)
+        new_digests = {path: hashlib.sha256(data).hexdigest() for path, data in files.files.items()}
+        changed = {path: data for path, data in files.files.items() if own_digests.get(path) != new_digests[path]}
+        stale = tuple(path for path in own_digests if path not in new_digests)
+        if changed or stale or old_manifest != {(digest, path) for path, digest in new_digests.items()}:
+            _replace_files(folder, changed, stale, old_manifest, new_digests)
+        return WriteResult(tuple(changed), tuple(path for path in new_digests if path not in changed), stale)
+
+
+def write_file(path: Path, data: bytes) -> None:
+    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed."""
+    with _explain_os_errors(path):
+        if path.exists() and not path.is_file():
+            msg = f"{path} is not a regular file"
+            raise OutputError(msg, "give the name of a file with `-o`")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        staging_folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+        try:
+            # A file in a new folder gets the permissions that the user's umask asks for; mkstemp's own files have 0600.
+            (staging_folder / path.name).write_bytes(data)
+            os.replace(staging_folder / path.name, path)  # noqa: PTH105 - says what it does on every system
+        finally:
+            shutil.rmtree(staging_folder, ignore_errors=True)
+
+
+def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
+    """Digest the manifest of a folder that holds exactly what archgen wrote. Return None for any other folder.
+
+    With `just_written` the caller has just written the folder, and its files are not read again.
+    """
+    if not just_written:
+        manifest, own_digests = _read_tree_manifest(folder), dict[str, str]()
+        if (
+            any(_find_foreign_files(folder, manifest, own_digests))
+            or {(digest, path) for path, digest in own_digests.items()} != manifest
+        ):
+            return None
+    manifest_path = folder / TREE_MANIFEST
+    return hashlib.sha256(manifest_path.read_bytes()).hexdigest() if manifest_path.is_file() else None
+
+
+def _replace_files(
+    folder: Path,
+    changed: Mapping[str, bytes],
+    stale: Iterable[str],
+    old_manifest: set[tuple[str, str]],
+    new_digests: Mapping[str, str],
+) -> None:
+    """Write what changed beside the folder, then move it in.
+
+    While files are moved, the manifest names the old and the new digests, so a run that was cut off is no obstacle.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    staging_folder = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    final_manifest = {(digest, path) for path, digest in new_digests.items()}
+    try:
+        for path, data in changed.items():
+            _write_bytes(staging_folder / path, data)
+        # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
+        # known.
+        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))
+        folder.mkdir(exist_ok=True)
+        os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
+        for path in stale:
+            _remove_file(folder, path)
+        for path in changed:
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(staging_folder / path, folder / path)  # noqa: PTH105
+        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest))
+        os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
+    finally:
+        shutil.rmtree(staging_folder, ignore_errors=True)
+
+
+def _write_bytes(path: Path, data: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+
+
+def _remove_file(folder: Path, path: str) -> None:
+    """Remove one of archgen's files, and the folders that are empty without it."""
+    (folder / path).unlink(missing_ok=True)
+    for parent in (folder / path).parents:
+        if parent == folder or any(parent.iterdir()):
+            return
+        parent.rmdir()
+
+
+def _find_own_files(folder: Path, manifest: set[tuple[str, str]]) -> dict[str, str]:
+    """Return archgen's own files in the folder with their digests. Raise OutputError where there are others."""
+    own_digests: dict[str, str] = {}
+    foreign = list(islice(_find_foreign_files(folder, manifest, own_digests), 4))
+    if not foreign:
+        return own_digests
+    # Four were asked for, three are named: the fourth only tells that there are more.
+    names = ", ".join(f"`{name}`" for name in foreign[:3]) + (" and others" if len(foreign) > 3 else "")  # noqa: PLR2004
+    manifest_paths = {path for _, path in manifest}
+    if all(name in manifest_paths for name in foreign):
+        msg = f"{folder} holds files that were changed after archgen wrote them: {names}"
+        raise OutputError(msg, "move your changes away and remove these files, or give another folder with `-o`")
+    msg = f"{folder} holds files that archgen did not write: {names}"
+    raise OutputError(msg, "nothing was changed; give an empty or new folder with `-o`, or move these files away")
+
+
+def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digests: dict[str, str]) -> Iterator[str]:
+    """Yield the paths of files that are not archgen's, in order, and fill `own_digests` with those that are.
+
+    `own_digests` is complete only when the generator is exhausted. Links are never followed.
+    """
+    manifest_paths = {path for _, path in manifest}
+    for path in _walk_folder(folder, ""):
+        full_path = folder / path
+        # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
+        if path in manifest_paths and stat.S_ISREG(full_path.lstat().st_mode):
+            digest = hashlib.sha256(full_path.read_bytes()).hexdigest()
+            if (digest, path) in manifest:
+                own_digests[path] = digest
+                continue
+        if path != TREE_MANIFEST and full_path.name not in _FILE_MANAGER_DEBRIS:
+            yield path
+
+
+def _walk_folder(folder: Path, prefix: str) -> Iterator[str]:
+    """Yield everything below that is not a folder, as relative paths in order. A link counts as a file."""
+    if not folder.is_dir():
+        return
+    with os.scandir(folder) as entries:
+        sorted_entries = sorted(entries, key=lambda entry: entry.name)
+    for entry in sorted_entries:
+        if entry.is_dir(follow_symlinks=False):
+            yield from _walk_folder(folder / entry.name, f"{prefix}{entry.name}/")
+        else:
+            yield prefix + entry.name
+
+
+def _read_tree_manifest(folder: Path) -> set[tuple[str, str]]:
+    """Read the (digest, path) pairs of a manifest. Lines that are none are skipped: what they claim is then foreign."""
+    manifest_path = folder / TREE_MANIFEST
+    if manifest_path.is_symlink() or not manifest_path.is_file():
+        return set()
+    lines = manifest_path.read_text("utf-8", "replace").splitlines()
+    pairs = (line.partition("  ") for line in lines if not line.startswith("#"))
+    # A manifest can be edited: a path such as `../x` would let the next run remove files outside of the folder.
+    return {(digest, path) for digest, _, path in pairs if path and is_safe_path(path)}
+
+
+def _format_manifest(pairs: Iterable[tuple[str, str]]) -> bytes:
+    lines = (f"{digest}  {path}" for digest, path in sorted(pairs, key=lambda pair: (pair[1], pair[0])))
+    return "\n".join((_MANIFEST_HEADER, *lines, "")).encode()
+
+
+@contextlib.contextmanager
+def _explain_os_errors(path: Path) -> Iterator[None]:
+    """Turn an error of the operating system into an OutputError in words."""
+    try:
+        yield
+    except OSError as error:
+        msg = f"cannot write {path}: {error.strerror or error}"
+        raise OutputError(msg) from error

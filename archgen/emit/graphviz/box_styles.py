@@ -1,0 +1,206 @@
+"""Style boxes. Never colour alone: shape, words or place say the same.
+
+| style | form |
+|---|---|
+| component | rounded box; source: heavy bar at the right, sink: at the left; reactive: octagon |
+| group, fold | box with bold title; fold: double frame (it stands for several) |
+| node, topic | ellipse, note-coloured box |
+| service, action | hexagon, action with double frame |
+| external, physical, partner | dashed box |
+| host, container, link | plain box, rounded box with list, small plain text |
+
+Where two versions are drawn, what is added has a thick frame, what is removed a dashed one, what changed a double one,
+and what was renamed or moved a dotted one. A sign in the title says the same.
+
+Planned things have dashed frames, adapted ones dotted frames, neighbours are grey, the subject has a thick frame. A box
+that is filled by its period has a dashed frame where the period is unknown, dotted on demand, double once, and sharp
+corners where it runs on events of unknown rate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from archgen.emit.graphviz import palette
+from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
+from archgen.views.shapes import Box
+
+DotAttributes = dict[str, str]
+LinkResolver = Callable[[str], str | None]
+
+FONT_NAME = "DejaVu Sans"
+_BOX_SHAPES = {
+    "reactive": "octagon",
+    "node": "ellipse",
+    "service": "hexagon",
+    "action": "hexagon",
+}
+_ROUNDED_STYLES = {"component", "source", "sink", "physical", "container"}
+_DASHED_STYLES = {"external", "physical", "partner"}
+_CHANGE_PENS = {"added": "2.6", "removed": "1.4", "changed": "1", "renamed": "2"}
+_TITLE_WIDTHS = {
+    "topic": 30,
+    "service": 30,
+    "action": 30,
+    "group": 22,
+    "fold": 22,
+    "host": 26,
+    "container": 30,
+    "node": 20,
+}
+
+
+def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
+    """Return the DOT attributes of a box."""
+    if box.ports_in or box.ports_out:
+        return {**_common_attributes(box, resolve_link), "shape": "plain", "label": _port_table(box)}
+    frame, fill = box_colours(box)
+    styles = [
+        "filled",
+        *(["rounded"] if box.style in _ROUNDED_STYLES and box.fill != "event" else []),
+        *_dash_styles(box),
+    ]
+    return {
+        **_common_attributes(box, resolve_link),
+        "shape": _BOX_SHAPES.get(box.style, "box"),
+        "style": f'"{",".join(styles)}"',
+        "color": f'"{frame}"',
+        "fillcolor": f'"{fill}"',
+        "penwidth": _pen_width(box),
+        "peripheries": "2" if _has_double_frame(box) else "1",
+        "margin": _box_margin(box),
+        "width": "0.3",
+        "height": "0.22",
+        "label": f"<{_label_html(box)}>",
+    }
+
+
+def _has_double_frame(box: Box) -> bool:
+    if box.change is not None:
+        return box.change == "changed"
+    return box.style in {"action", "fold"} or box.fill == "once"
+
+
+def box_colours(box: Box) -> tuple[str, str]:
+    """Return the colours of a box's frame and fill."""
+    if box.change is not None:
+        return palette.CHANGES[box.change], palette.mix_tint(palette.CHANGES[box.change])
+    if box.fill is not None:
+        fill = palette.PERIODS[box.fill]
+        rim = (
+            palette.FRAME if box.fill == "once" else palette.rim_colour_on(fill)
+        )  # its outer frame stands on the paper
+        return palette.SUBJECT if box.emphasis == "subject" else rim, fill
+    if box.emphasis == "neighbour":
+        return palette.NEIGHBOUR_FRAME, palette.NEIGHBOUR_FILL
+    frame = {"topic": palette.TOPIC_FRAME, "service": palette.SERVICE_FRAME, "action": palette.SERVICE_FRAME}.get(
+        box.style, palette.hue_colour(box.colour)
+    )
+    fill = {"topic": palette.TOPIC_FILL, "service": palette.SERVICE_FILL, "action": palette.SERVICE_FILL}.get(
+        box.style, palette.PAPER
+    )
+    if box.style in {"group", "fold"} and box.colour is not None:
+        fill = palette.mix_tint(palette.hue_colour(box.colour))
+    return (palette.SUBJECT if box.emphasis == "subject" else frame), fill
+
+
+def _box_margin(box: Box) -> str:
+    if box.style in _BOX_SHAPES:
+        return '"0.03,0.02"'
+    return '"0.13,0.04"' if box.style in {"source", "sink", "topic"} else '"0.08,0.04"'
+
+
+def _pen_width(box: Box) -> str:
+    if box.change is not None:
+        return _CHANGE_PENS[box.change]
+    if box.emphasis == "subject":
+        return "2"
+    if box.fill in {"unknown", "on_demand", "event"}:
+        return "1.2"
+    return "1.2" if box.colour is not None and box.emphasis == "normal" else "0.8"
+
+
+def _dash_styles(box: Box) -> list[str]:
+    if box.change is not None:
+        return {"removed": ["dashed"], "renamed": ["dotted"]}.get(box.change, [])
+    if box.fill is not None:
+        return {"unknown": ["dashed"], "on_demand": ["dotted"]}.get(box.fill, [])
+    if box.style in _DASHED_STYLES or box.status == "planned":
+        return ["dashed"]
+    return ["dotted"] if box.status == "adapted" else []
+
+
+def _common_attributes(box: Box, resolve_link: LinkResolver) -> DotAttributes:
+    classes = ["box", box.style, box.emphasis]
+    classes += [box.status] if box.status else []
+    classes += [f"change-{box.change}"] if box.change else []
+    classes += [f"hue{box.colour}"] if box.colour is not None else []
+    classes += [f"pace-{box.fill.replace('_', '-')}"] if box.fill else []
+    return {
+        "class": f'"{" ".join(classes)}"',
+        **link_attributes(box.ref, box.tooltip or "\n".join((box.title, *box.lines)), resolve_link),
+    }
+
+
+def link_attributes(ref: str | None, tooltip: str, resolve_link: LinkResolver) -> DotAttributes:
+    """Return the tooltip, and the address where the target is part of the output."""
+    href = safe_address(resolve_link(ref) or "") if ref else ""
+    attributes = {"tooltip": quote_value(tooltip)}
+    # `_top`: an SVG may be shown in a frame, and its links lead to whole pages.
+    return {**attributes, "URL": quote_value(href), "target": '"_top"'} if href else attributes
+
+
+def _label_html(box: Box) -> str:
+    _, fill = box_colours(box)
+    text_colour = palette.text_colour_on(fill)
+    detail_colour = palette.MUTED if text_colour == palette.TEXT else text_colour
+    width = _TITLE_WIDTHS.get(box.style, 18)
+    bold = box.emphasis == "subject" or box.style in {"group", "fold", "host"}
+    title = "<BR/>".join(
+        f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)
+    )
+    rows = [f'<FONT COLOR="{text_colour}">{title}</FONT>']
+    rows += [
+        f'<FONT POINT-SIZE="7.5" COLOR="{detail_colour}">{small_text}</FONT>' for small_text in _detail_rows(box, width)
+    ]
+    return "<BR/>".join(rows)
+
+
+def _detail_rows(box: Box, width: int) -> list[str]:
+    return [escape_label(row) for line in box.lines for row in wrap_text(line, width + width // 3)]
+
+
+def _port_table(box: Box) -> str:
+    """Return the html-like label of a box with its ports as rows: inputs at the left, outputs at the right."""
+    frame, fill = box_colours(box)
+    style = "ROUNDED,DASHED" if box.status == "planned" else "ROUNDED"
+    # The BORDER of a table is a whole number of points: the first digit of the pen's width, at least 1.
+    head = (
+        f'<TABLE STYLE="{style}" BORDER="{_pen_width(box)[0].replace("0", "1")}" COLOR="{frame}" BGCOLOR="{fill}" '
+        'CELLBORDER="0" CELLSPACING="0" CELLPADDING="3">'
+        f'<TR><TD COLSPAN="2" CELLPADDING="5">{_write_table_title(box)}</TD></TR><HR/>'
+    )
+    rows = max(len(box.ports_in), len(box.ports_out))
+    return f"<{head}{''.join(_write_port_row(box, at) for at in range(rows))}</TABLE>>"
+
+
+def _write_table_title(box: Box) -> str:
+    title = "<BR/>".join(escape_label(row) for row in wrap_text(box.title, 28))
+    detail_rows = "".join(
+        f'<BR/><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">{row}</FONT>' for row in _detail_rows(box, 34)
+    )
+    return f'<FONT POINT-SIZE="11" COLOR="{palette.TEXT}"><B>{title}</B></FONT>{detail_rows}'
+
+
+def _write_port_row(box: Box, index: int) -> str:
+    input_cell = _write_port_cell(box.ports_in[index][1], "▸ ", "") if index < len(box.ports_in) else "\u00a0"
+    output_cell = _write_port_cell(box.ports_out[index][1], "", " ▸") if index < len(box.ports_out) else "\u00a0"
+    return f'<TR><TD ALIGN="LEFT" PORT="i{index}">{input_cell}</TD><TD ALIGN="RIGHT" PORT="o{index}">{output_cell}</TD></TR>'
+
+
+def _write_port_cell(text: str, before: str, after: str) -> str:
+    rows = wrap_text(text, 26, 3)
+    side = "LEFT" if before else "RIGHT"
+    return f'<BR ALIGN="{side}"/>'.join(
+        before * (not at) + escape_label(row) + after * (not at) for at, row in enumerate(rows)
+    )

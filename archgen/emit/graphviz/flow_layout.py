@@ -1,0 +1,139 @@
+"""The layouts `flow` and `group`: one run of dot, neighbours in the outer ranks, at most one frame."""
+
+from __future__ import annotations
+
+import math
+
+from archgen.emit.graphviz import layout_engine
+from archgen.emit.graphviz.label_places import declutter_labels, sample_line
+from archgen.emit.graphviz.layout_engine import format_attributes
+from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, ScenePart
+from archgen.emit.graphviz.styled_graph import (
+    StyledGraph,
+    frame_attributes,
+    measure_nodes,
+    place_labels_on_lines,
+    read_layout,
+    title_attributes,
+    write_dot,
+)
+from archgen.views.shapes import Box, Cluster
+
+_FRAME_MARGIN = 12.0
+
+
+def lay_out_flow(styled_graph: StyledGraph) -> Scene:
+    """Lay out boxes and labelled arrows in one run, without frames."""
+    graph = styled_graph.graph
+    statements = [styled_graph.write_node(item) for item in graph.boxes] + _rank_statements(styled_graph)
+    statements += [styled_graph.write_edge(at, item) for at, item in enumerate(graph.arrows)]
+    scene = read_layout(
+        styled_graph, layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, 0.25), statements))
+    )
+    return declutter_labels(place_labels_on_lines(styled_graph, scene))
+
+
+def lay_out_group(styled_graph: StyledGraph) -> Scene:
+    """Lay out one frame in the middle, with the neighbours that feed it at the left and its readers at the right.
+
+    The frame is drawn round its boxes after the layout. As a cluster of dot's it would keep out every line that has not
+    arrived yet: such lines would run round the frame and enter it from above.
+    """
+    graph = styled_graph.graph
+    cluster = graph.clusters[0]
+    inside_boxes = [item for item in graph.boxes if item.cluster == cluster.id]
+    statements = (
+        [styled_graph.write_node(item) for item in graph.boxes]
+        + _rank_statements(styled_graph)
+        + _hold_neighbours_outside(styled_graph, inside_boxes)
+    )
+    statements += [styled_graph.write_edge(at, item) for at, item in enumerate(graph.arrows)]
+    scene = read_layout(
+        styled_graph, layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, 0.16), statements))
+    )
+    framed_scene = _draw_frame(styled_graph, cluster, scene, {styled_graph.dot_names[item.id] for item in inside_boxes})
+    return declutter_labels(place_labels_on_lines(styled_graph, framed_scene))
+
+
+def _layout_settings(styled_graph: StyledGraph, nodesep: float) -> str:
+    # The more arrows end at one box, the steeper they get: the ranks move apart, up to one inch.
+    most_arrows_in = max(
+        (sum(item.head == box.id for item in styled_graph.graph.arrows) for box in styled_graph.graph.boxes), default=0
+    )
+    labels = bool(styled_graph.label_attributes)
+    ranksep = min(0.45 + 0.02 * most_arrows_in + 0.01 * len(styled_graph.graph.arrows), 1.0) if labels else 0.6
+    direction = "LR" if styled_graph.graph.direction == "left-right" else "TB"
+    return f'rankdir="{direction}" nodesep="{nodesep}" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'
+
+
+def _rank_statements(styled_graph: StyledGraph) -> list[str]:
+    """Return statements that keep neighbours in the first and the last rank."""
+    ranks = []
+    for side, rank in (("left", "source"), ("right", "sink")):
+        names = [styled_graph.dot_names[item.id] for item in styled_graph.graph.boxes if item.side == side]
+        if names:
+            ranks.append(f"{{ rank={rank}; {'; '.join(names)}; }}")
+    return ranks
+
+
+def _hold_neighbours_outside(styled_graph: StyledGraph, inside_boxes: list[Box]) -> list[str]:
+    """Return invisible edges that keep the neighbours out of the ranks of the frame."""
+    names = styled_graph.dot_names
+    left = next((item for item in styled_graph.graph.boxes if item.side == "left"), None)
+    right = next((item for item in styled_graph.graph.boxes if item.side == "right"), None)
+    # One neighbour of each side is enough, since `rank=source` and `rank=sink` hold the others beside it.
+    statements = [
+        f'{names[item.id]} -> {names[right.id]} [style="invis" weight="0"];' for item in inside_boxes if right
+    ]
+    return statements + [
+        f'{names[left.id]} -> {names[item.id]} [style="invis" weight="0"];' for item in inside_boxes if left
+    ]
+
+
+def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, inside_names: set[str]) -> Scene:
+    """Add the frame round its boxes and all lines that pass between them, with the title above."""
+    boxes = [title_part.rectangle for title_part in scene.parts if title_part.name in inside_names]
+    heading = title_attributes(cluster)
+    ((width, height),) = measure_nodes([heading])
+    left, right = min((box[0] for box in boxes), default=0.0), max((box[2] for box in boxes), default=width)
+    # A line may swing out above its boxes. Only what is between the frame's sides counts: neighbours are outside.
+    y_values = [y for line in scene.lines for x, y in sample_line(line) if left <= x <= right]
+    y_values += [
+        title_part.y + side * title_part.height / 2
+        for title_part in scene.parts
+        if left <= title_part.x <= right
+        for side in (-1, 1)
+    ]
+    # Neighbours are above and below here, so lines to them would stretch the frame over them.
+    if styled_graph.graph.direction == "top-bottom":
+        y_values = [y for box in boxes for y in (box[1], box[3])]
+    bottom, top = min(y_values, default=0.0) - _FRAME_MARGIN, max(y_values, default=0.0) + _FRAME_MARGIN + height
+    spare = max(width + 2 * _FRAME_MARGIN - (right - left), 2 * _FRAME_MARGIN) / 2
+    cluster_frame = SceneFrame(
+        "c0", frame_attributes(cluster, styled_graph.resolve_link), (left - spare, bottom, right + spare, top)
+    )
+    title_part = ScenePart(
+        "t0", heading, left - spare + 8 + width / 2, top - 5 - height / 2, width, height, kind="title"
+    )
+    return scene.joined(Scene(frames=(cluster_frame,), parts=(title_part,)))
+
+
+def lay_out_simply(styled_graph: StyledGraph) -> Scene:
+    """Lay out boxes and arrows, nothing else: the last resort when the graph's own layout failed or took too long."""
+    graph = styled_graph.graph
+    statements = [
+        f"{styled_graph.dot_names[item.id]} [{format_attributes(styled_graph.box_attributes[styled_graph.dot_names[item.id]])}];"
+        for item in graph.boxes
+    ]
+    box_ids = set(styled_graph.dot_names)
+    statements += [
+        f'{styled_graph.dot_names[item.tail]} -> {styled_graph.dot_names[item.head]} [id="e{at}"];'
+        for at, item in enumerate(graph.arrows)
+        if item.tail in box_ids and item.head in box_ids
+    ]
+    columns = max(1, math.isqrt(len(graph.boxes)))
+    pack = f'pack="12" packmode="array_u{columns}" ' if not graph.arrows else ""
+    return read_layout(
+        styled_graph,
+        layout_engine.lay_out_dot(write_dot(f'{pack}rankdir="LR" nodesep="0.2" ranksep="0.6"', statements)),
+    )

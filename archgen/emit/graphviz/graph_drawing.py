@@ -1,0 +1,108 @@
+"""Draw one graph: choose its layout, check that every arrow is there, render it. Runs in a worker process."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from archgen.emit.graphviz import chart_layout, flow_layout, framed_layout, layout_engine, two_step_layout
+from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.drawn_legend import add_graph_legend
+from archgen.emit.graphviz.placed_scene import Scene
+from archgen.emit.graphviz.png_writer import render_png
+from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
+from archgen.emit.graphviz.svg_cleanup import clean_svg, find_drawn_edges, number_surfaces
+from archgen.emit.picture import Picture
+from archgen.views.chart_shapes import Chart, Drawing
+from archgen.views.shapes import Graph
+
+_LAYOUT_FUNCTIONS = {
+    "flow": flow_layout.lay_out_flow,
+    "group": flow_layout.lay_out_group,
+    "two-step": two_step_layout.lay_out_two_step,
+    "overview": two_step_layout.lay_out_two_step,
+    "framed": framed_layout.lay_out_framed,
+}
+_RENDER_FORMATS = {"svg_outlines": "svg:cairo", "pdf": "pdf"}
+_GRAPH_ATTRIBUTES = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
+
+
+def lay_out_graph(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tuple[StyledGraph, Scene]:
+    """Lay out a graph with its decorations, legend and notes.
+
+    Raise LayoutError where the layout lost an arrow. `simple` takes the layout without frames and labels.
+    """
+    styled_graph = style_graph(graph, links.get, merged=graph.layout in {"two-step", "overview"})
+    scene = flow_layout.lay_out_simply(styled_graph) if simple else _LAYOUT_FUNCTIONS[graph.layout](styled_graph)
+    drawn_arrows = {line.arrow for line in scene.lines}
+    wanted_arrows = {arrow.id for arrow in graph.arrows}
+    if wanted_arrows - drawn_arrows:
+        message = f"{len(wanted_arrows - drawn_arrows)} of {len(wanted_arrows)} arrows were lost"
+        raise layout_engine.LayoutError(message)
+    boxes = {styled_graph.dot_names[box.id]: box for box in graph.boxes}
+    return styled_graph, add_graph_legend(add_decorations(scene, boxes), _note_lost_labels(styled_graph, scene))
+
+
+def _note_lost_labels(styled_graph: StyledGraph, scene: Scene) -> Graph:
+    """Add a note to the graph that says how many texts beside arrows found no place."""
+    lost_count = len(styled_graph.label_attributes) - sum(part.kind == "label" for part in scene.parts)
+    if not lost_count:
+        return styled_graph.graph
+    note = f"{lost_count} of the texts beside arrows had no place here; the tables have them all."
+    return replace(styled_graph.graph, notes=(*styled_graph.graph.notes, note))
+
+
+_FEW_HUES = 2
+
+
+def _count_hues(graph: Graph) -> int:
+    hues = {box.colour for box in graph.boxes if box.emphasis != "neighbour"} | {arrow.colour for arrow in graph.arrows}
+    fills = {box.fill for box in graph.boxes} - {None}
+    return len(fills) + len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
+
+
+def draw_picture(
+    drawing: Drawing,
+    links: Mapping[str, str],
+    formats: Sequence[str],
+    *,
+    simple: bool = False,
+    warning: str | None = None,
+) -> Picture:
+    """Draw a graph or a chart in these formats (names of Picture's fields)."""
+    if isinstance(drawing, Chart):
+        return render_picture(
+            drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=False, warning=warning
+        )
+    _, scene = lay_out_graph(drawing, links, simple=simple)
+    return render_picture(drawing, scene, formats, quick=_count_hues(drawing) <= _FEW_HUES, warning=warning)
+
+
+def render_picture(
+    drawing: Drawing, scene: Scene, formats: Sequence[str], *, quick: bool, warning: str | None = None
+) -> Picture:
+    """Render a placed scene. Raise LayoutError where a line of it is missing in the svg."""
+    left, bottom, right, top = scene.bounds()
+    dot = scene.to_dot(drawing.id, {**_GRAPH_ATTRIBUTES, "tooltip": '" "'})
+    # svg is always rendered, asked for or not: it is what the lost arrows are looked for in.
+    vector_formats = [form for form in _RENDER_FORMATS if form in formats]
+    svg, *vector_data = layout_engine.render_dot(dot, ["svg", *(_RENDER_FORMATS[form] for form in vector_formats)])
+    text = svg.decode()
+    # Only lines with an arrow id: samples in the legend have none.
+    lost_edges = {line.edge for line in scene.lines if line.arrow} - {edge[1:] for edge in find_drawn_edges(text)}
+    if lost_edges:
+        message = f"{len(lost_edges)} arrows were not drawn"
+        raise layout_engine.LayoutError(message)
+    return Picture(
+        drawing.id,
+        right - left,
+        top - bottom,
+        svg=clean_svg(text, drawing) if "svg" in formats else None,
+        png=render_png(scene, drawing.id, _GRAPH_ATTRIBUTES, quick=quick) if "png" in formats else None,
+        dot=dot,
+        warning=warning,
+        **{
+            form: number_surfaces(data) if form == "svg_outlines" else data
+            for form, data in zip(vector_formats, vector_data, strict=True)
+        },
+    )

@@ -1,0 +1,99 @@
+"""Order groups so that little flows backwards, and fold that order into rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+FlowWeights = Mapping[tuple[str, str], int]
+GroupRows = tuple[tuple[str, ...], ...]
+_ROW_COUNTS = range(2, 8)
+_MAX_EXACT = 12
+"""Up to this many items the best order is found over all subsets (2 to this power)."""
+
+
+def order_forward(items: Sequence[str], weights: FlowWeights) -> tuple[str, ...]:
+    """Order items so that as little weight as possible runs from a later to an earlier one."""
+    if len(items) <= _MAX_EXACT:
+        return _order_exactly(items, weights)
+    return _order_greedily(items, weights)
+
+
+def _order_exactly(items: Sequence[str], weights: FlowWeights) -> tuple[str, ...]:
+    """Order items by dynamic programming over subsets: the least weight with exactly this subset placed first."""
+    count = len(items)
+    cost = [[weights.get((items[a], items[b]), 0) for b in range(count)] for a in range(count)]
+    backward_costs = [_subset_sums(row) for row in cost]
+    best: list[tuple[int, int]] = [(0, -1)] * (1 << count)
+    for chosen in range(1, 1 << count):
+        choices = []
+        for last in range(count):
+            if chosen >> last & 1:
+                before = chosen & ~(1 << last)
+                # Of equal costs `min` takes the largest index as the last item: equals keep the order of the files.
+                choices.append((best[before][0] + backward_costs[last][before], -last))
+        least, last = min(choices)
+        best[chosen] = (least, -last)
+    order, chosen = [], (1 << count) - 1
+    while chosen:
+        last = best[chosen][1]
+        order.append(items[last])
+        chosen &= ~(1 << last)
+    return tuple(reversed(order))
+
+
+def _subset_sums(costs: Sequence[int]) -> list[int]:
+    """Return the sum of each subset of costs, by the subset's bits."""
+    sums = [0]
+    for cost in costs:
+        sums += [each + cost for each in sums]
+    return sums
+
+
+def _order_greedily(items: Sequence[str], weights: FlowWeights) -> tuple[str, ...]:
+    """Take the item that feeds most more than it is fed, again and again (Eades, Lin and Smyth, 1993, in its simplest
+    form).
+    """
+    remaining, order = list(items), list[str]()
+    while remaining:
+        remaining_set = set(remaining)
+        surplus = dict.fromkeys(remaining, 0)
+        for (tail, head), weight in weights.items():
+            if tail in remaining_set and head in remaining_set:
+                surplus[tail] += weight
+                surplus[head] -= weight
+        first = max(remaining, key=lambda item: surplus[item])
+        order.append(first)
+        remaining.remove(first)
+    return tuple(order)
+
+
+def fold_order(order: Sequence[str], judge_rows: Callable[[GroupRows], float]) -> list[GroupRows]:
+    """Cut an order into two to seven rows. Return the best cut for each number of rows; long orders are cut evenly
+    only.
+    """
+    count = len(order)
+    if count > _MAX_EXACT:
+        return [_cut_evenly(order, rows) for rows in _ROW_COUNTS]
+    best: dict[int, tuple[float, GroupRows]] = {}
+    # Bit i cuts after item i: at most 2,047 ways of cutting, since longer orders went another way.
+    for cut_bits in range(1, 1 << max(count - 1, 0)):
+        rows = _cut_order(order, cut_bits)
+        if len(rows) in _ROW_COUNTS and (score := judge_rows(rows)) < best.get(len(rows), (math.inf,))[0]:
+            best[len(rows)] = (score, rows)
+    return [best[rows][1] for rows in sorted(best)]
+
+
+def _cut_order(order: Sequence[str], cut_bits: int) -> GroupRows:
+    """Cut an order after each item whose bit is set."""
+    rows: list[list[str]] = [[]]
+    for at, item in enumerate(order):
+        rows[-1].append(item)
+        if cut_bits >> at & 1:
+            rows.append([])
+    return tuple(tuple(row) for row in rows)
+
+
+def _cut_evenly(order: Sequence[str], row_count: int) -> GroupRows:
+    size = -(-len(order) // row_count)
+    return tuple(tuple(order[at : at + size]) for at in range(0, len(order), size))

@@ -1,0 +1,63 @@
+"""Call Graphviz, through pygraphviz. Only worker processes import this module: Graphviz can crash its process."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from pygraphviz import AGraph
+from pygraphviz import graphviz as library
+
+DotAttributes = dict[str, str]
+"""DOT attributes as they are written: values quoted, or html-like in angle brackets."""
+
+_GRAPHVIZ_CONTEXT = library.gvContextWithBuiltins()
+_PDF_DATE = re.compile(rb"(/CreationDate \(D:)[^)]*\)")
+
+
+class LayoutError(Exception):
+    """Graphviz refused a graph, or lost a part of it."""
+
+
+def lay_out_dot(dot: str, program: str = "dot") -> dict[str, Any]:
+    """Lay out a DOT graph. Return Graphviz's json: `objects` (nodes, clusters) and `edges`, positions in points."""
+    layout: dict[str, Any] = json.loads(render_dot(dot, ("json0",), program)[0])
+    return layout
+
+
+def render_dot(dot: str, formats: Sequence[str], program: str = "nop2") -> tuple[bytes, ...]:
+    """Render a DOT graph in several formats. `nop2` keeps the positions that it has."""
+    # Through the library's functions, not `AGraph.draw`: pygraphviz 2 ignores `args="-n2"` there and lays the graph out
+    # anew, without an error. `nop2` as the program is what keeps positions and lines.
+    graph = AGraph(string=dot)
+    try:
+        if library.gvLayout(_GRAPHVIZ_CONTEXT, graph.handle, program.encode()):
+            message = f"{program} gave up"
+            raise LayoutError(message)
+        rendered = tuple(_render_format(graph, form) for form in formats)
+        library.gvFreeLayout(_GRAPHVIZ_CONTEXT, graph.handle)
+    finally:
+        graph.close()
+    return rendered
+
+
+def _render_format(graph: AGraph, format_name: str) -> bytes:
+    failed, data = library.gvRenderData(_GRAPHVIZ_CONTEXT, graph.handle, format_name.encode())
+    if failed:
+        message = f"no {format_name} came out"
+        raise LayoutError(message)
+    data = data if isinstance(data, bytes) else str(data).encode()
+    return _PDF_DATE.sub(_blank_date, data) if format_name.startswith("pdf") else data
+
+
+def _blank_date(match: re.Match[bytes]) -> bytes:
+    """Overwrite the date in place: the file's offsets must not move, and two runs must give the same bytes."""
+    digits = re.sub(rb"[0-9]", b"0", match[0][len(match[1]) :])
+    return match[1] + digits.replace(b"00000000", b"20000101", 1)
+
+
+def format_attributes(attributes: DotAttributes) -> str:
+    """Return attributes as DOT writes them."""
+    return " ".join(f"{name}={value}" for name, value in attributes.items())

@@ -1,0 +1,223 @@
+"""Scenes: drawings whose parts have their places. Layouts make them, and they are rendered without moving anything.
+
+Edges are drawn over frames, and everything else over edges, so that a text is never crossed by a line. Coordinates are
+in points, y upwards. Labels of edges and titles of frames are parts of their own (`ScenePart.kind`), because Graphviz
+draws its own below the edges and lets them overlap.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Literal
+
+from archgen.emit.graphviz.dot_text import quote_value
+
+DotAttributes = dict[str, str]
+ScenePoint = tuple[float, float]
+Rectangle = tuple[float, float, float, float]
+"""Left, bottom, right, top; in points."""
+
+DOT_DEFAULTS = (
+    'node [fontname="DejaVu Sans" fontsize="9" fontcolor="#1b2127"]; edge [fontname="DejaVu Sans" fontsize="8"];'
+)
+_SPLINE_POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePart:
+    """Something with a middle and a size. A `mark` decorates a box and may overlap it."""
+
+    name: str
+    attributes: DotAttributes
+    x: float
+    y: float
+    width: float
+    height: float
+    kind: Literal["box", "title", "label", "mark"] = "box"
+
+    @property
+    def rectangle(self) -> Rectangle:
+        """The rectangle that the part covers."""
+        return (
+            self.x - self.width / 2,
+            self.y - self.height / 2,
+            self.x + self.width / 2,
+            self.y + self.height / 2,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SceneLine:
+    """An edge with its spline as Graphviz writes it. `edge` is its number in the graph, `arrow` the id of the graph's
+    arrow.
+    """
+
+    edge: str
+    arrow: str
+    tail: str
+    head: str
+    attributes: DotAttributes
+    spline: str
+
+    @property
+    def curve(self) -> tuple[ScenePoint, ...]:
+        """The points of the Bézier curves, without the tips of arrow heads."""
+        return tuple(point for mark, point in _read_spline(self.spline) if not mark)
+
+    @property
+    def points(self) -> tuple[ScenePoint, ...]:
+        """The points of the spline and the tips of its arrow heads, in no particular order."""
+        return tuple(point for _, point in _read_spline(self.spline))
+
+
+@lru_cache(8192)
+def _read_spline(spline: str) -> tuple[tuple[str, ScenePoint], ...]:
+    """Parse a spline: its points, with `s,` or `e,` for the tips of arrow heads. Layouts ask for the same ones
+    repeatedly.
+    """
+    return tuple((each["mark"] or "", (float(each["x"]), float(each["y"]))) for each in _SPLINE_POINT.finditer(spline))
+
+
+@dataclass(frozen=True, slots=True)
+class SceneFrame:
+    """A rectangle behind everything: a cluster's frame."""
+
+    name: str
+    attributes: DotAttributes
+    rectangle: Rectangle
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A drawing whose parts have their places."""
+
+    frames: tuple[SceneFrame, ...] = ()
+    lines: tuple[SceneLine, ...] = ()
+    parts: tuple[ScenePart, ...] = ()
+
+    def bounds(self) -> Rectangle:
+        """Return the rectangle round everything."""
+        rectangles = [frame.rectangle for frame in self.frames] + [part.rectangle for part in self.parts]
+        rectangles += [(x, y, x, y) for line in self.lines for x, y in line.points]
+        if not rectangles:
+            return (0.0, 0.0, 0.0, 0.0)
+        left, bottom, right, top = zip(*rectangles, strict=True)
+        return (min(left), min(bottom), max(right), max(top))
+
+    def moved(self, dx: float, dy: float) -> Scene:
+        """Return the scene shifted."""
+        return Scene(
+            tuple(replace(frame, rectangle=_shift_rectangle(frame.rectangle, dx, dy)) for frame in self.frames),
+            tuple(replace(line, spline=_shift_spline(line.spline, dx, dy)) for line in self.lines),
+            tuple(replace(part, x=part.x + dx, y=part.y + dy) for part in self.parts),
+        )
+
+    def joined(self, *others: Scene) -> Scene:
+        """Return this scene with others laid over it."""
+        scenes = (self, *others)
+        return Scene(
+            tuple(frame for scene in scenes for frame in scene.frames),
+            tuple(line for scene in scenes for line in scene.lines),
+            tuple(part for scene in scenes for part in scene.parts),
+        )
+
+    def to_dot(self, name: str, attributes: DotAttributes, dpi: int | None = None) -> str:
+        """Return the scene as DOT with positions (`neato -n2` draws it as well)."""
+        graph_attributes = {**attributes, **({"dpi": str(dpi)} if dpi else {})}
+        # edgesfirst: Graphviz draws edges before nodes, so a box is never crossed by a line that passes below it.
+        lines = [
+            f"digraph {quote_value(name)} {{",
+            f'graph [outputorder="edgesfirst" {_format_attributes(graph_attributes)}];',
+            DOT_DEFAULTS,
+        ]
+        lines += [
+            f'subgraph "cluster_{frame.name}" {{ graph [id="{frame.name}" {_format_attributes(frame.attributes)} bb="{_format_numbers(*frame.rectangle)}"]; }}'
+            for frame in self.frames
+        ]
+        lines += [
+            f'{quote_value(part.name)} [id="{part.name}" {_format_attributes(part.attributes)} pos="{_format_numbers(part.x, part.y)}"];'
+            for part in self.parts
+        ]
+        lines += [
+            f'{quote_value(line.tail)} -> {quote_value(line.head)} [id="e{line.edge}" {_format_attributes(line.attributes)} pos="{line.spline}"];'
+            for line in self.lines
+        ]
+        return "\n".join([*lines, "}", ""])
+
+
+def read_scene(
+    layout: dict[str, Any],
+    box_attributes: dict[str, DotAttributes],
+    arrow_attributes: dict[str, tuple[str, DotAttributes]],
+) -> Scene:
+    """Read boxes and arrows back from Graphviz's json. Nodes that are not in `box_attributes` (helpers) are left out.
+
+    `arrow_attributes` has for each edge id of the layout the arrow's id and its attributes.
+    """
+    objects = layout.get("objects", [])
+    names = {item["_gvid"]: item["name"] for item in objects}
+    parts = tuple(_read_part(item, box_attributes[item["name"]]) for item in objects if item["name"] in box_attributes)
+    lines = tuple(
+        SceneLine(
+            item["id"][1:],
+            arrow_attributes[item["id"]][0],
+            names[item["tail"]],
+            names[item["head"]],
+            arrow_attributes[item["id"]][1],
+            item["pos"],
+        )
+        for item in layout.get("edges", [])
+        if item.get("id") in arrow_attributes and "pos" in item
+    )
+    return Scene(lines=lines, parts=parts)
+
+
+def _read_part(item: dict[str, Any], attributes: DotAttributes) -> ScenePart:
+    x, y = (float(number) for number in item["pos"].split(","))
+    return ScenePart(item["name"], attributes, x, y, float(item["width"]) * 72, float(item["height"]) * 72)
+
+
+def _shift_spline(spline: str, dx: float, dy: float) -> str:
+    def shift(match: re.Match[str]) -> str:
+        return f"{match['mark'] or ''}{_format_numbers(float(match['x']) + dx, float(match['y']) + dy)}"
+
+    return _SPLINE_POINT.sub(shift, spline)
+
+
+def _shift_rectangle(rectangle: Rectangle, dx: float, dy: float) -> Rectangle:
+    left, bottom, right, top = rectangle
+    return (left + dx, bottom + dy, right + dx, top + dy)
+
+
+def _format_numbers(*values: float) -> str:
+    return ",".join(f"{value:.2f}" for value in values)
+
+
+def _format_attributes(attributes: DotAttributes) -> str:
+    return " ".join(f"{name}={value}" for name, value in attributes.items())
+
+
+def rectangles_meet(first: Rectangle, second: Rectangle, gap: float = 0.0) -> bool:
+    """Return whether two rectangles overlap, or are nearer to each other than a gap."""
+    return (
+        first[0] < second[2] + gap
+        and second[0] < first[2] + gap
+        and first[1] < second[3] + gap
+        and second[1] < first[3] + gap
+    )
+
+
+def overlapping_parts(scene: Scene) -> Iterable[tuple[str, str]]:
+    """Yield each pair of boxes, titles and labels that overlap by more than the rounding of a hairline. For tests."""
+    parts = [part for part in scene.parts if part.kind != "mark"]
+    # A sweep from left to right: nothing that begins beyond a part's right side can overlap it.
+    parts.sort(key=lambda part: part.rectangle[0])
+    for at, part in enumerate(parts):
+        for other in parts[at + 1 :]:
+            if other.rectangle[0] >= part.rectangle[2]:
+                break
+            if rectangles_meet(part.rectangle, other.rectangle, -0.5):
+                yield part.name, other.name

@@ -1,0 +1,258 @@
+"""The layouts `two-step` and `overview`: frames as boxes of fixed size in an outer graph, with their insides set into
+them.
+
+No graph that dot gets has frames and labels at once: it cannot lay these out. The outer graph is tried in several ways:
+as dot likes it, downwards and to the right, and folded into two to seven rows or columns in the order in which least
+flows backwards. The scene that reads best on a page is taken: large text, few crossings, short arrows. On an
+architecture of RAMCIP's shape (61 components, 138 connections) one run of dot with clusters gave about 340 crossings,
+two steps, with merged arrows, 3.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from archgen.emit.graphviz import layout_engine
+from archgen.emit.graphviz.frame_contents import lay_out_inside
+from archgen.emit.graphviz.group_order import GroupRows, fold_order, order_forward
+from archgen.emit.graphviz.label_places import declutter_labels
+from archgen.emit.graphviz.layout_engine import format_attributes
+from archgen.emit.graphviz.line_crossings import count_crossings, line_length
+from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart, read_scene
+from archgen.emit.graphviz.styled_graph import (
+    StyledGraph,
+    frame_attributes,
+    measure_nodes,
+    place_labels_on_lines,
+    title_attributes,
+    write_dot,
+)
+from archgen.views.shapes import Arrow
+
+_PAGE_SIZE = (1105.0, 728.0)
+"""A landscape A3 page without its margins, in points: the text size of a scene is judged on it."""
+_TURNED_PENALTY = 1.2
+_TILE_MARGIN = 12.0
+_INVISIBLE_NODE = {"style": '"invis"', "label": '""', "shape": '"point"'}
+"""Attributes of the ends of arrows between frames: lines need nodes to end at."""
+
+
+@dataclass(frozen=True, slots=True)
+class LayoutTile:
+    """What the outer graph places: a frame with its inside, or a box without a frame. The lower left corner is 0, 0."""
+
+    name: str
+    scene: Scene
+    width: float
+    height: float
+
+
+def lay_out_two_step(styled_graph: StyledGraph) -> Scene:
+    """Lay out each frame by itself, then the frames."""
+    home_frames = _find_home_frames(styled_graph)
+    numbered_arrows = list(enumerate(styled_graph.graph.arrows))
+    outer_arrows = [(at, arrow) for at, arrow in numbered_arrows if home_frames[arrow.tail] != home_frames[arrow.head]]
+    inner_arrows = [(at, arrow) for at, arrow in numbered_arrows if home_frames[arrow.tail] == home_frames[arrow.head]]
+    tiles = {tile.name: tile for tile in _make_tiles(styled_graph, home_frames, inner_arrows)}
+    # The arrows keep their numbers in the graph: ids of lines, labels and attributes are looked up by them.
+    frame_arrows = [
+        (at, replace(arrow, tail=home_frames[arrow.tail], head=home_frames[arrow.head])) for at, arrow in outer_arrows
+    ]
+    order = order_forward(tuple(tiles), _sum_weights(frame_arrows))
+    tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
+    scenes = [
+        _compose_scene(styled_graph, tiles, frame_arrows, statements)
+        for statements in _candidate_layouts(styled_graph, tiles, frame_arrows)
+    ]
+    return declutter_labels(place_labels_on_lines(styled_graph, _best_scene(scenes, frame_arrows)))
+
+
+def _sum_weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
+    weights: dict[tuple[str, str], int] = {}
+    for _, arrow in arrows:
+        weights[arrow.tail, arrow.head] = weights.get((arrow.tail, arrow.head), 0) + arrow.count
+    return weights
+
+
+def _find_home_frames(styled_graph: StyledGraph) -> dict[str, str]:
+    """Map each box and frame to the outermost frame that it is in, else to itself."""
+    parents = {cluster.id: cluster.parent for cluster in styled_graph.graph.clusters}
+
+    def outermost_frame(frame_id: str) -> str:
+        while parents.get(frame_id):
+            frame_id = str(parents[frame_id])
+        return frame_id
+
+    home_frames = {cluster.id: outermost_frame(cluster.id) for cluster in styled_graph.graph.clusters}
+    return {
+        **home_frames,
+        **{box.id: outermost_frame(box.cluster) if box.cluster else box.id for box in styled_graph.graph.boxes},
+    }
+
+
+def _make_tiles(
+    styled_graph: StyledGraph, home_frames: dict[str, str], arrows: Sequence[tuple[int, Arrow]]
+) -> Iterator[LayoutTile]:
+    graph = styled_graph.graph
+    headings = [title_attributes(cluster) for cluster in graph.clusters]
+    sizes = measure_nodes(headings)
+    for at, cluster in enumerate(graph.clusters):
+        scene = lay_out_inside(styled_graph, [box for box in graph.boxes if home_frames[box.id] == cluster.id], arrows)
+        _, _, right, top = scene.bounds()
+        heading, (width, height) = headings[at], sizes[at]
+        wide, high = max(right, width) + 2 * _TILE_MARGIN, top + height + 2.2 * _TILE_MARGIN
+        title_part = ScenePart(
+            f"t{at}", heading, _TILE_MARGIN + width / 2, high - 7 - height / 2, width, height, "title"
+        )
+        tile_frame = SceneFrame(f"c{at}", frame_attributes(cluster, styled_graph.resolve_link), (0, 0, wide, high))
+        contents = scene.moved((wide - right) / 2, _TILE_MARGIN)
+        yield LayoutTile(cluster.id, contents.joined(Scene(frames=(tile_frame,), parts=(title_part,))), wide, high)
+    for box in graph.boxes:
+        if home_frames[box.id] == box.id:
+            scene = lay_out_inside(styled_graph, [box], ())
+            _, _, right, top = scene.bounds()
+            yield LayoutTile(box.id, scene, right, top)
+
+
+def _candidate_layouts(
+    styled_graph: StyledGraph, tiles: dict[str, LayoutTile], arrows: Sequence[tuple[int, Arrow]]
+) -> Iterator[tuple[str, list[str]]]:
+    """Yield the ways to lay out the outer graph that are worth a try: settings and statements."""
+    positions = {name: at for at, name in enumerate(tiles)}
+    names = {name: f"o{at}" for at, name in enumerate(tiles)}
+    plain_edges = [
+        f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_line_attributes(styled_graph, at)}];' for at, a in arrows
+    ]
+    forward_edges = [
+        f'{names[a.tail]} -> {names[a.head]} [id="e{at}" {_line_attributes(styled_graph, at)}'
+        # An arrow against the order must not push its target behind its source, or the rows would not hold.
+        f"{' constraint=false' if positions[a.tail] > positions[a.head] else ''}];"
+        for at, a in arrows
+    ]
+    label_lines = max((item.label.count("\n") + 1 for _, item in arrows if item.label), default=0)
+    # Labels beside vertical arrows need height for their lines, beside horizontal ones width for their longest words.
+    for direction in ("TB", "LR"):
+        ranksep = 0.5 + 0.16 * label_lines if direction == "TB" else 0.5 + 0.9 * bool(label_lines)
+        settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
+        yield settings, plain_edges
+        yield settings, forward_edges
+        sizes = {name: (each.width, each.height)[:: 1 if direction == "TB" else -1] for name, each in tiles.items()}
+        ends = [(item.tail, item.head) for _, item in arrows]
+        for rows in fold_order(tuple(tiles), partial(_estimate_cost, sizes, ends, direction)):
+            yield settings, [*_row_statements(rows, names), *forward_edges]
+
+
+def _estimate_cost(
+    sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows
+) -> float:
+    """Estimate the cost of rows before they are laid out: how large it gets, and how many arrows must pass a box.
+
+    `sizes` are along and across the rows.
+    """
+    along_rows = max(sum(sizes[item][0] + 30 for item in row) for row in rows)
+    across = sum(max(sizes[item][1] for item in row) + 40 for row in rows)
+    total_width, total_height = (along_rows, across) if direction == "TB" else (across, along_rows)
+    positions = {item: (at, to) for at, row in enumerate(rows) for to, item in enumerate(row)}
+    passed_boxes = 0
+    for tail, head in ends:
+        (row, column), (other, to) = positions[tail], positions[head]
+        passed_boxes += max(abs(column - to) - 1, 0) if row == other else abs(row - other) - 1
+    return _page_overflow(total_width, total_height) * (1 + 0.05 * passed_boxes)
+
+
+def _page_overflow(width: float, height: float) -> float:
+    """Return how many times too large a scene is for a page. The page may be turned; screens like it wide."""
+    return min(
+        max(width / _PAGE_SIZE[0], height / _PAGE_SIZE[1]),
+        _TURNED_PENALTY * max(width / _PAGE_SIZE[1], height / _PAGE_SIZE[0]),
+    )
+
+
+def _row_statements(rows: Sequence[Sequence[str]], names: dict[str, str]) -> list[str]:
+    ranks = [f"{{ rank=same; {'; '.join(names[item] for item in run)}; }}" for run in rows]
+    # One invisible edge through the first of each row puts the rows in order.
+    chain = " -> ".join(names[run[0]] for run in rows)
+    return [*ranks, f'{chain} [style="invis" weight="0"];'] if len(rows) > 1 else ranks
+
+
+def _line_attributes(styled_graph: StyledGraph, index: int) -> str:
+    attributes = styled_graph.arrow_attributes[f"e{index}"][1]
+    return format_attributes(
+        {name: attributes[name] for name in ("arrowsize", "penwidth", "arrowhead") if name in attributes}
+    )
+
+
+def _compose_scene(
+    styled_graph: StyledGraph,
+    tiles: dict[str, LayoutTile],
+    arrows: Sequence[tuple[int, Arrow]],
+    candidate: tuple[str, list[str]],
+) -> Scene:
+    """Lay out the outer graph and set the insides into its boxes."""
+    settings, statements = candidate
+    tile_of_node = {f"o{at}": tile for at, tile in enumerate(tiles.values())}
+    boxes = {
+        name: {
+            "shape": '"box"',
+            "fixedsize": '"true"',
+            "label": '""',
+            "width": f"{tile.width / 72:.4f}",
+            "height": f"{tile.height / 72:.4f}",
+        }
+        for name, tile in tile_of_node.items()
+    }
+    nodes = [f"{name} [{format_attributes(each)}];" for name, each in boxes.items()]
+    edge_attributes = {f"e{at}": styled_graph.arrow_attributes[f"e{at}"] for at, _ in arrows}
+    outer_scene = read_scene(
+        layout_engine.lay_out_dot(write_dot(settings, [*nodes, *statements])), boxes, edge_attributes
+    )
+    scenes = [
+        tile_of_node[part.name].scene.moved(part.x - part.width / 2, part.y - part.height / 2)
+        for part in outer_scene.parts
+    ]
+    anchors = tuple(replace(part, attributes=_INVISIBLE_NODE, kind="mark") for part in outer_scene.parts)
+    return Scene(lines=outer_scene.lines, parts=anchors).joined(*scenes)
+
+
+def _best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) -> Scene:
+    """Return the scene that reads best. Crossings are expensive to count: only where they can still decide."""
+    edges = {f"{at}" for at, _ in arrows}
+    outer_lines = [[line for line in scene.lines if line.edge in edges] for scene in scenes]
+    costs = [_scene_cost(scene, lines, arrows) for scene, lines in zip(scenes, outer_lines, strict=True)]
+    best, least = scenes[0], math.inf
+    # From the cheapest on: once a scene's cost without crossings reaches the best total, no later one can win.
+    for at in sorted(range(len(scenes)), key=lambda each: costs[each]):
+        if costs[at] >= least:
+            break
+        left, bottom, right, top = scenes[at].bounds()
+        cost = costs[at] + 0.02 * _page_overflow(right - left, top - bottom) * count_crossings(outer_lines[at])
+        if cost < least:
+            best, least = scenes[at], cost
+    return best
+
+
+def _scene_cost(scene: Scene, outer_lines: Sequence[SceneLine], arrows: Sequence[tuple[int, Arrow]]) -> float:
+    """Return the cost of a scene without crossings: how small it gets on the page, how far arrows run, how many run
+    back.
+    """
+    left, bottom, right, top = scene.bounds()
+    relative_length = sum(line_length(line) for line in outer_lines) / (sum(_PAGE_SIZE) * max(len(outer_lines), 1))
+    missing = len(arrows) - len(outer_lines)
+    return (
+        _page_overflow(right - left, top - bottom) * (1 + 0.5 * relative_length + 0.6 * _backward_share(scene, arrows))
+        + 10 * missing
+    )
+
+
+def _backward_share(scene: Scene, arrows: Sequence[tuple[int, Arrow]]) -> float:
+    """Return the share of flows that run upwards and to the left, against the direction of reading."""
+    line_ends = {line.edge: (line.curve[0], line.curve[-1]) for line in scene.lines if line.curve}
+    total = sum(arrow.count for _, arrow in arrows) or 1
+    backward_count = 0
+    for at, arrow in arrows:
+        (x, y), (to_x, to_y) = line_ends.get(str(at), ((0.0, 0.0), (0.0, 0.0)))
+        backward_count += arrow.count * ((to_x - x) + (y - to_y) < 0)
+    return backward_count / total

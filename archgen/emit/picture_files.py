@@ -1,0 +1,43 @@
+"""Write a folder of pictures: one file per picture and format. Links in an SVG lead to the other pictures of the
+folder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.emit import file_tree
+from archgen.emit.picture import Picture
+from archgen.emit.site import page_pictures as drawing
+
+_FOLDER_BY_KIND = {"group": "groups", "component": "components", "view": "views", "chain": "chains", "host": "load"}
+"""The folder of an element's picture, by the kind of element."""
+
+
+def build_picture_tree(pictures: Mapping[str, Picture], formats: Sequence[str]) -> file_tree.FileTree:
+    """Build the files of all pictures in these formats (`svg`, `png`, `pdf`, `dot`). Formats that were not drawn are
+    left out.
+    """
+    files = (
+        (f"{name}.{form}", _picture_bytes(picture, form, pictures))
+        for name, picture in pictures.items()
+        for form in formats
+    )
+    return file_tree.make_file_tree((path, data) for path, data in files if data is not None)
+
+
+def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Picture]) -> bytes | None:
+    if format_name == "dot":
+        return picture.dot.encode()
+    # The fields of Picture are called as the formats are.
+    data: bytes | None = getattr(picture, format_name)
+    if format_name != "svg" or data is None:
+        return data
+    prefix = "../" * picture.id.count("/")
+
+    def href(anchor: str) -> str | None:
+        kind, _, name = anchor.partition(":")
+        target = f"{_FOLDER_BY_KIND.get(kind, kind)}/{name}"
+        return f"{prefix}{target}.svg" if target in pictures and target != picture.id else None
+
+    return drawing.standalone_svg(data, href)

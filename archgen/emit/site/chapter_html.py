@@ -1,0 +1,174 @@
+"""Write the project's CommonMark as HTML: no HTML of its own, no request to anywhere, pictures copied to the site."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+from archgen.emit.safe_names import make_safe_path
+from archgen.emit.site.html_text import escape_html, web_address
+from archgen.emit.site.page_links import CurrentPage
+from archgen.views.shapes import Markdown
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+    from markdown_it.token import Token
+
+ChapterFiles = Callable[[str], bytes | None]
+"""Returns a file of the project by its path (`/`, relative to the project), or None if there is none."""
+
+_PICTURE_SIGNATURES = (
+    (b"\x89PNG\r\n\x1a\n", ".png"),
+    (b"\xff\xd8\xff", ".jpg"),
+    (b"GIF8", ".gif"),
+    (b"RIFF", ".webp"),
+    (b"<svg", ".svg"),
+    (b"<?xml", ".svg"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ChapterWriter:
+    """Writes CommonMark as HTML, and gathers the pictures that it needs (`files`: path in the site -> bytes)."""
+
+    source: ChapterFiles
+    files: dict[str, bytes] = field(default_factory=dict)
+    copied_paths: dict[str, str | None] = field(default_factory=dict)
+
+    def write_html(self, block: Markdown, level: int, current_page: CurrentPage) -> str:
+        """Write a text below a heading of this level."""
+        parser = _chapter_parser()
+        tokens = parser.parse(block.text)
+        _nest_headings(tokens, level)
+        for token in tokens:
+            self._resolve_targets(token.children or (), block.folder, current_page)
+        return str(parser.renderer.render(tokens, parser.options, {}))
+
+    def _resolve_targets(self, tokens: Sequence[Token], folder: str, current_page: CurrentPage) -> None:
+        """Resolve where links and pictures lead. The render rules find the answer in the token's `meta`."""
+        open_links: list[str] = []
+        for token in tokens:
+            if token.type == "link_open":
+                open_links.append(_resolve_address(str(token.attrs.get("href", "")), folder, current_page))
+                token.meta["address"] = open_links[-1]
+            elif token.type == "link_close":
+                token.meta["address"] = open_links.pop()
+            elif token.type == "image":
+                source = str(token.attrs.get("src", ""))
+                copied_path = self._copy_picture(_project_path(folder, unquote(source)))
+                token.meta["source"] = current_page.root + copied_path if copied_path else ""
+                # A picture of the web inside of a link becomes plain words: HTML has no link in a link.
+                token.meta["address"] = "" if any(open_links) else web_address(source) or ""
+
+    def _copy_picture(self, path: str | None) -> str | None:
+        """Copy a picture into the site. Return its path there, or None where there is no such picture."""
+        if path is None:
+            return None
+        if path not in self.copied_paths:
+            data = self.source(path)
+            # By its first bytes, not by its name: a file called .png may hold HTML, which a browser would run.
+            ending = data and next(
+                (end for start, end in _PICTURE_SIGNATURES if data.lstrip()[:8].startswith(start)), None
+            )
+            self.copied_paths[path] = self._add_picture(path, data, ending) if data and ending else None
+        return self.copied_paths[path]
+
+    def _add_picture(self, path: str, data: bytes, ending: str) -> str:
+        stem = make_safe_path(f"pictures/{posixpath.splitext(path)[0]}")
+        name, number = stem + ending, 2
+        while name in self.files:
+            name, number = f"{stem}-{number}{ending}", number + 1
+        self.files[name] = data
+        return name
+
+
+def _project_path(folder: str, path: str) -> str | None:
+    """Return the path in the project that a relative address means, or None where it leaves the project."""
+    if not path or "\\" in path or ":" in path.split("/", maxsplit=1)[0]:
+        return None
+    joined = posixpath.normpath(posixpath.join("/" if path.startswith("/") else folder, path)).lstrip("/")
+    return None if joined == ".." or joined.startswith("../") else joined
+
+
+def _resolve_address(target: str, folder: str, current_page: CurrentPage) -> str:
+    """Return the address of a link: the web, a chapter's page or an element. Any other link leads nowhere: only its
+    words stay.
+    """
+    path = _project_path(folder, unquote(target.partition("#")[0]))
+    return (
+        web_address(target)
+        or (path and current_page.href(f"chapter:{path}"))
+        or current_page.href(unquote(target))
+        or ""
+    )
+
+
+def _nest_headings(tokens: Sequence[Token], level: int) -> None:
+    """Shift headings so that the largest is one level below the heading above the text, and deeper ones follow."""
+    levels = [int(token.tag[1]) for token in tokens if token.type in {"heading_open", "heading_close"}]
+    shift = level + 1 - min(levels, default=0)
+    for token in tokens:
+        if token.type in {"heading_open", "heading_close"}:
+            token.tag = f"h{min(6, int(token.tag[1]) + shift)}"
+
+
+@cache
+def _chapter_parser() -> MarkdownIt:
+    from markdown_it import MarkdownIt
+
+    # The rules below replace all that writes an address or raw text; everything else is markdown-it's own HTML.
+    parser = MarkdownIt("commonmark", {"html": False}).enable("table")
+    for name, rule in (
+        ("link_open", _render_link_open),
+        ("link_close", _render_link_close),
+        ("image", _render_image),
+        ("fence", _render_code),
+        ("code_block", _render_code),
+        ("text", _render_text),
+        ("table_open", _render_table_open),
+        ("table_close", _render_table_close),
+    ):
+        parser.add_render_rule(name, rule)
+    return parser
+
+
+def _render_link_open(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    address = tokens[index].meta["address"]
+    return f'<a href="{address}">' if address else "<span>"
+
+
+def _render_link_close(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    return "</a>" if tokens[index].meta["address"] else "</span>"
+
+
+def _render_image(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    """Render a copied picture; one from the web as a link (a page loads nothing from elsewhere), a missing one as its
+    words.
+    """
+    token = tokens[index]
+    alt = escape_html("".join(child.content for child in token.children or ()))
+    if token.meta["source"]:
+        return f'<img src="{token.meta["source"]}" alt="{alt}">'
+    if token.meta["address"]:
+        return f'<a href="{token.meta["address"]}">{alt or token.meta["address"]}</a>'
+    return f'<span class="muted">[{alt or "a picture"}: not shown]</span>'
+
+
+def _render_code(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    return f'<pre tabindex="0"><code>{escape_html(tokens[index].content)}</code></pre>\n'
+
+
+def _render_text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    return escape_html(tokens[index].content)
+
+
+def _render_table_open(*_: object) -> str:
+    return '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>\n'
+
+
+def _render_table_close(*_: object) -> str:
+    return "</table></div>\n"

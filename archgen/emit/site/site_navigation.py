@@ -1,0 +1,116 @@
+"""Write the navigation of the site: the tree at the side, and the path above the title.
+
+The tree follows the pages' crumbs: a page is below the last of its crumbs. Pages below the start page are always in the
+tree, under the heading of their kind; pages below those only where the reader is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from archgen.emit.site.html_text import escape_breakable, escape_html
+from archgen.emit.site.page_links import SiteLinks
+from archgen.views.shapes import Page
+
+MAX_LISTED = 200
+"""A longer list is not repeated on each of its pages: the page above has all of it, with a filter."""
+NEWLINE = "\n"
+
+
+@dataclass(frozen=True, slots=True)
+class SiteNavigation:
+    """The navigation of a site.
+
+    `kinds` are the headings (kind, title) in order; `children` holds each page's children by its anchor, and under
+    `kind K` those below the start page; `start` is the start page's path, `home_title` what other pages call it.
+    """
+
+    kinds: tuple[tuple[str, str], ...]
+    children: Mapping[str, Sequence[Page]]
+    parents: Mapping[str, str]
+    start: str
+    home_title: str
+    links: SiteLinks
+    cached_html: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
+
+    def write_tree(self, page: Page, root: str) -> str:
+        """Write the tree for a page. Trees that differ only in the marked page are made once."""
+        ancestry = self._ancestry_of(page.anchor)
+        # Without long lists a tree depends on the page right below the start page only, and hundreds of pages share it.
+        key = (root, ancestry if any(map(self._is_long, self._visible_lists(ancestry))) else ancestry[-1:])
+        if key not in self.cached_html:
+            self.cached_html[key] = "\n".join(
+                self._write_kind(kind, title, ancestry, root) for kind, title in self.kinds
+            )
+        address = f'href="{root}{self.links.pages[page.anchor]}"'
+        # The first hit is the page's own entry: only the start page may be linked to again, further down.
+        return self.cached_html[key].replace(address, f'{address} aria-current="page"', 1)
+
+    def page_crumbs(self, page: Page, root: str) -> list[tuple[str, str | None]]:
+        """Return the path from the start page: titles, with addresses where there is such a page."""
+        crumbs = ((title, self.links.pages.get(anchor)) for title, anchor in page.crumbs)
+        return [(title, None if path is None else root + path) for title, path in crumbs]
+
+    def _ancestry_of(self, anchor: str) -> tuple[str, ...]:
+        """Return the anchors from this page up to the one right below the start page."""
+        ancestry = [anchor]
+        # `not in way`: crumbs come from views, and a circle in them must not hang the build.
+        while (parent := self.parents.get(anchor)) and parent in self.parents and parent not in ancestry:
+            ancestry.append(anchor := parent)
+        return tuple(ancestry)
+
+    def _visible_lists(self, ancestry: tuple[str, ...]) -> tuple[str, ...]:
+        """Return the names of the lists that the tree shows to a reader here."""
+        return (*(f"kind {kind}" for kind, _ in self.kinds), ancestry[-1])
+
+    def _is_long(self, list_name: str) -> bool:
+        return len(self.children.get(list_name, ())) > MAX_LISTED
+
+    def _visible_pages(self, list_name: str, ancestry: tuple[str, ...]) -> Sequence[Page]:
+        """Return a list as the tree shows it: all of it, or if it is too long, what leads to the reader's page."""
+        pages = self.children.get(list_name, ())
+        return [page for page in pages if page.anchor in ancestry] if self._is_long(list_name) else pages
+
+    def _write_kind(self, kind: str, title: str, ancestry: tuple[str, ...], root: str) -> str:
+        list_name = f"kind {kind}"
+        items = [self._write_entry(page, ancestry, root) for page in self._visible_pages(list_name, ancestry)]
+        if self._is_long(list_name):
+            hidden_count = len(self.children[list_name]) - len(items)
+            items.append(f'<li><a href="{root}{self.start}">{hidden_count} more on the start page</a></li>')
+        heading = f"<h2>{escape_html(title)}</h2>\n" if title else ""
+        return f"{heading}<ul>\n{NEWLINE.join(items)}\n</ul>" if items else ""
+
+    def _write_entry(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
+        """Write an entry. The one that leads to the reader's page has its own list below it, others its length."""
+        child_count = len(self.children.get(page.anchor, ()))
+        count = f' <span class="count" aria-hidden="true">{child_count}</span>' if child_count else ""
+        visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
+        items = NEWLINE.join(f"<li>{self._write_link(child, root)}</li>" for child in visible_children)
+        inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
+        return f"<li>{self._write_link(page, root, count)}{inner}</li>"
+
+    def _write_link(self, page: Page, root: str, suffix: str = "") -> str:
+        path = self.links.pages[page.anchor]
+        title = self.home_title if path == self.start else page.title
+        return f'<a href="{root}{path}">{escape_breakable(title)}{suffix}</a>'
+
+
+def build_navigation(pages: Sequence[Page], links: SiteLinks, kinds: Sequence[tuple[str, str]]) -> SiteNavigation:
+    """Build the navigation of a site. Kinds that `kinds` does not name come last, under their own name."""
+    anchors = {page.anchor for page in pages}
+    start = pages[0].anchor
+    parents: dict[str, str] = {}
+    children: dict[str, list[Page]] = {}
+    kind_titles = dict(kinds)
+    for page in pages:
+        parent = page.crumbs[-1][1] if page.crumbs else start
+        if page.anchor != start:
+            parents[page.anchor] = parent if parent in anchors else start
+        if page.anchor == start or parents[page.anchor] == start:
+            kind_titles.setdefault(page.kind, page.kind.replace("_", " ").capitalize())
+            children.setdefault(f"kind {page.kind}", []).append(page)
+        else:
+            children.setdefault(parents[page.anchor], []).append(page)
+    home_title = next((title for page in pages for title, anchor in page.crumbs if anchor == start), pages[0].title)
+    return SiteNavigation(tuple(kind_titles.items()), children, parents, links.pages[start], home_title, links)

@@ -1,0 +1,126 @@
+"""Findings for people: each with the lines concerned, marked, and a summary at the end."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
+from archgen.emit.terminal.line_excerpt import ExcerptMark, quote_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from typing import TextIO
+
+    from archgen.diagnostics.diagnostic import Diagnostic, Label
+    from archgen.diagnostics.source_span import SourceTexts, Span
+
+DEFAULT_WIDTH = 120
+"""The columns of an excerpt where the terminal's width is not known."""
+_COLOUR_CODES = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
+_PLURAL_WORDS = {Severity.ERROR: "errors", Severity.WARNING: "warnings", Severity.NOTE: "notes"}
+
+
+def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
+    """Return whether to use colours: on a terminal, unless NO_COLOR is set; anywhere if FORCE_COLOR is."""
+    if environment.get("NO_COLOR"):
+        return False
+    if environment.get("FORCE_COLOR", "") not in {"", "0"}:
+        return True
+    return stream.isatty() and environment.get("TERM") != "dumb"
+
+
+def count_by_severity(diagnostics: Iterable[Diagnostic]) -> Mapping[Severity, int]:
+    """Count settled diagnostics by severity; all three are there, errors first."""
+    counts = Counter(diagnostic.severity for diagnostic in diagnostics)
+    return {severity: counts[severity] for severity in (Severity.ERROR, Severity.WARNING, Severity.NOTE)}
+
+
+def format_summary(diagnostics: Iterable[Diagnostic]) -> str:
+    """Return how many findings there are: `2 errors, 1 warning`."""
+    counts = count_by_severity(diagnostics)
+    words = [
+        f"{count} {severity if count == 1 else _PLURAL_WORDS[severity]}" for severity, count in counts.items() if count
+    ]
+    return ", ".join(words) if words else "no findings"
+
+
+def render_findings_text(
+    diagnostics: Iterable[Diagnostic], sources: SourceTexts, *, colour: bool = False, width: int = DEFAULT_WIDTH
+) -> Iterator[str]:
+    """Yield the lines of all findings (settled, in their order), a blank line after each, and the summary."""
+    diagnostics = tuple(diagnostics)
+    for diagnostic in diagnostics:
+        yield from render_finding_text(diagnostic, sources, colour=colour, width=width)
+        yield ""
+    yield format_summary(diagnostics)
+
+
+def render_finding_text(
+    diagnostic: Diagnostic, sources: SourceTexts, *, colour: bool = False, width: int = DEFAULT_WIDTH
+) -> Iterator[str]:
+    """Yield the lines of one finding."""
+    severity = diagnostic.severity or Severity.ERROR
+    severity_colour = _COLOUR_CODES[severity]
+    name = _paint_text(f"{severity}[{diagnostic.rule}]", severity_colour, colour=colour)
+    yield f"{name}: {_paint_text(make_visible(diagnostic.message), '1', colour=colour)}"
+    blocks = _group_by_line(diagnostic)
+    gutter = max((len(str(span.line)) for span, _ in blocks), default=0)
+    for number, (span, labels) in enumerate(blocks):
+        yield f"  {_paint_text('-->', '34', colour=colour)} {_format_place(span)}"
+        # Only the first block holds the primary span.
+        marks = [] if number or not diagnostic.span.file else [_mark_of(span, "^", "")]
+        marks += [_mark_of(label.span, "-", label.text) for label in labels]
+        # A finding about a whole file quotes no line of it.
+        line = None if _is_whole_file(span) else sources.line_of(span.file, span.line)
+        if line is None:
+            yield from (f"   {' ' * gutter} | {make_visible(label.text)}" for label in labels if label.text)
+            continue
+        # 6: the blanks and the bar around the line number.
+        for text, mark in quote_line(line, marks, max(width - gutter - 6, 20)):
+            margin = f"{span.line:>{gutter}}" if mark is None else " " * gutter
+            painted = (
+                text
+                if mark is None
+                else _paint_text(text, severity_colour if mark.sign == "^" else "34", colour=colour)
+            )
+            yield f"   {_paint_text(f'{margin} |', '34', colour=colour)} {painted}".rstrip()
+    if diagnostic.help:
+        yield f"   {_paint_text('=', '34', colour=colour)} {_paint_text('help:', '1', colour=colour)} {make_visible(diagnostic.help)}"
+
+
+def _group_by_line(diagnostic: Diagnostic) -> list[tuple[Span, list[Label]]]:
+    """Return the places to quote, each with the labels on its line: the primary one first, then the others."""
+    blocks: list[tuple[Span, list[Label]]] = []
+    if diagnostic.span.file:
+        blocks.append((diagnostic.span, []))
+    for label in diagnostic.labels:
+        if not label.span.file:
+            continue
+        line_key = (label.span.file, label.span.line)
+        for span, labels in blocks:
+            if (span.file, span.line) == line_key and not _is_whole_file(span):
+                labels.append(label)
+                break
+        else:
+            blocks.append((label.span, [label]))
+    return blocks
+
+
+def _mark_of(span: Span, sign: str, text: str) -> ExcerptMark:
+    """Return the mark of a span in its first line; one that continues below is marked to the line's end."""
+    end = span.end_column - 1 if span.end_line <= span.line else 10**9
+    return ExcerptMark(span.column - 1, end, sign, text)
+
+
+def _is_whole_file(span: Span) -> bool:
+    return (span.line, span.column, span.end_line, span.end_column) == (1, 1, 1, 1)
+
+
+def _format_place(span: Span) -> str:
+    return make_visible(span.file if _is_whole_file(span) else f"{span.file}:{span.line}:{span.column}")
+
+
+def _paint_text(text: str, code: str, *, colour: bool) -> str:
+    return f"\x1b[{code}m{text}\x1b[0m" if colour else text

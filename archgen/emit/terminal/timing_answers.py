@@ -1,0 +1,221 @@
+"""Answers to single questions about timing: why, what if, what decides a chain, designed against measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
+from typing import Any
+
+from archgen.diagnostics.safe_text import make_visible
+from archgen.emit.data import timing_json
+from archgen.emit.terminal.timing_text import AlignedRow, align_columns, format_figure
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_sensitivity import ChainSensitivity
+from archgen.timing.chains.figure_explanations import ReasonLine
+from archgen.timing.chains.measured_comparison import MeasuredComparison
+from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import TimingValue
+
+ChainResults = Mapping[str, ChainResult]
+AnswerJson = dict[str, Any]
+
+
+def format_reasoning(lines: Iterable[ReasonLine]) -> Iterator[str]:
+    """Yield the lines of a chain of reasoning, each step below what it supports, with its place."""
+    for line in lines:
+        place = f"   {line.at}" if line.at.file else ""
+        yield make_visible(f"{'  ' * line.depth}{line.text}{place}")
+
+
+def reasoning_to_json(element: str, lines: Iterable[ReasonLine]) -> AnswerJson:
+    """Return a chain of reasoning as plain data."""
+    steps = [{"depth": line.depth, "text": line.text, "at": str(line.at) if line.at.file else None} for line in lines]
+    return {"version": timing_json.VERSION, "why": element, "steps": steps}
+
+
+def format_timing_changes(
+    old_timing: tuple[Analysis, ChainResults], new_timing: tuple[Analysis, ChainResults], changed_figures: Iterable[str]
+) -> Iterator[str]:
+    """Yield what some changed figures would change: all chains, and the hosts and elements that differ."""
+    (old_analysis, old_chains), (new_analysis, new_chains) = old_timing, new_timing
+    yield f"With {', '.join(make_visible(text) for text in changed_figures)}:"
+    yield ""
+    rows = list(_changed_chain_rows(old_chains, new_chains))
+    if rows:
+        yield "Chains"
+        yield from align_columns(rows)
+        yield ""
+    for title, table_rows in (
+        ("Hosts", _changed_host_rows(old_analysis, new_analysis)),
+        ("Elements", _changed_element_rows(old_analysis, new_analysis)),
+    ):
+        rows = list(table_rows)
+        if rows:
+            yield f"{title} that differ"
+            yield from align_columns(rows)
+            yield ""
+
+
+def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> Iterator[AlignedRow]:
+    for name, old_chain in old_chains.items():
+        new_chain = new_chains[name]
+        verdicts = (
+            old_chain.verdict
+            if old_chain.verdict == new_chain.verdict
+            else f"{old_chain.verdict} -> {new_chain.verdict}"
+        )
+        yield (
+            name,
+            _format_change(old_chain.bound, new_chain.bound),
+            _format_difference(old_chain.bound, new_chain.bound),
+            verdicts if old_chain.deadline else "",
+        )
+
+
+def _changed_host_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[AlignedRow]:
+    for name, old_load in old_analysis.hosts.items():
+        new_load = new_analysis.hosts[name]
+        if old_load != new_load:
+            verdicts = (
+                old_load.verdict
+                if old_load.verdict == new_load.verdict
+                else f"{old_load.verdict} -> {new_load.verdict}"
+            )
+            yield (
+                name,
+                f"load {_format_change(old_load.utilisation, new_load.utilisation, figure_wording.format_share)}",
+                verdicts,
+            )
+
+
+def _changed_element_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[AlignedRow]:
+    for name in old_analysis.system.activities:
+        old_rates, new_rates = old_analysis.paces[name], new_analysis.paces[name]
+        old_response, new_response = old_analysis.responses[name].worst, new_analysis.responses[name].worst
+        phrases = []
+        if old_rates.behaviour != new_rates.behaviour:
+            phrases.append(f"{old_rates.behaviour or 'unknown'} -> {new_rates.behaviour or 'unknown'}")
+        if old_rates.rate != new_rates.rate:
+            phrases.append(f"rate {_format_change(old_rates.rate, new_rates.rate, figure_wording.format_rate)}")
+        if old_rates.gap != new_rates.gap:
+            phrases.append(f"gap {_format_change(old_rates.gap, new_rates.gap)}")
+        if old_response != new_response:
+            phrases.append(f"response {_format_change(old_response, new_response)}")
+        if phrases:
+            yield name, ", ".join(phrases)
+
+
+def _format_change(
+    old_value: TimingValue, new_value: TimingValue, write: Callable[[Fraction], str] = figure_wording.format_duration
+) -> str:
+    old_text, new_text = format_figure(old_value, write), format_figure(new_value, write)
+    return old_text if old_text == new_text else f"{old_text} -> {new_text}"
+
+
+def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
+    # The difference of two incomplete sums says nothing about the difference of the true values.
+    if (
+        old_value.value is None
+        or new_value.value is None
+        or not (old_value.complete and new_value.complete)
+        or old_value.value == new_value.value
+    ):
+        return ""
+    sign = "+" if new_value.value > old_value.value else "-"
+    return f"({sign}{figure_wording.format_duration(abs(new_value.value - old_value.value))})"
+
+
+def format_sensitivity(chain: ChainResult, ranking: ChainSensitivity) -> Iterator[str]:
+    """Yield a ranking of what decides a chain."""
+    yield f"{chain.id}: {format_figure(chain.bound)}"
+    yield ""
+    if ranking.gains:
+        yield "Improved by 10 %, each figure takes off"
+        yield from align_columns(
+            (figure_wording.format_duration(gain.gain), gain.figure, f"now {gain.written}", _span_text(gain.at))
+            for gain in ranking.gains
+        )
+    elif not ranking.gaps:
+        yield "No single figure, improved by 10 %, shortens the chain."
+    if ranking.untried:
+        yield f"  {ranking.untried} more figures of elements on the same hosts were not tried"
+    if ranking.gaps:
+        yield ""
+        yield "Not known; to be measured in this order"
+        yield from align_columns(
+            (
+                f"{gap.what} of {gap.element}",
+                f"in {gap.terms} term{'s' if gap.terms != 1 else ''}",
+                f"of {gap.chains} chain{'s' if gap.chains != 1 else ''}",
+                f"works every {figure_wording.format_duration(gap.plausible)}" if gap.plausible else "",
+            )
+            for gap in ranking.gaps
+        )
+
+
+def _span_text(span: object) -> str:
+    return str(span) if getattr(span, "file", "") else ""
+
+
+def sensitivity_to_json(chain: ChainResult, ranking: ChainSensitivity) -> AnswerJson:
+    """Return the ranking as plain data; gains in ms."""
+    return {
+        "version": timing_json.VERSION,
+        "sensitivity": chain.id,
+        "bound": timing_json.duration_to_json(chain.bound),
+        "gains": [
+            {
+                "figure": gain.figure,
+                "written": gain.written,
+                "gain": float(gain.gain / 10**6),
+                "at": _span_text(gain.at) or None,
+            }
+            for gain in ranking.gains
+        ],
+        "unknown": [
+            {"element": gap.element, "what": gap.what, "terms": gap.terms, "chains": gap.chains} for gap in ranking.gaps
+        ],
+        "untried": ranking.untried,
+    }
+
+
+def format_measured(comparisons: Iterable[MeasuredComparison]) -> Iterator[str]:
+    """Yield designed beside measured figures, and the outliers by name."""
+    rows = list(comparisons)
+    if rows:
+        yield from align_columns([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)])
+    outliers = [row for row in rows if row.verdict == "outlier"]
+    yield ""
+    figures = f"{len(rows)} figure{'s' if len(rows) != 1 else ''} measured"
+    if not outliers:
+        yield f"{figures}, no outliers" if rows else "nothing was measured that could be compared"
+    else:
+        yield f"{figures}, {len(outliers)} outlier{'s' if len(outliers) != 1 else ''}:"
+        yield from (make_visible(f"  {row.id}: {row.key} {row.why}") for row in outliers)
+
+
+def _measured_row(row: MeasuredComparison) -> AlignedRow:
+    write = figure_wording.format_rate if row.key == "rate" else figure_wording.format_duration
+    ratio = f" ({figure_wording.format_number(100 * row.ratio)} %)" if row.ratio is not None else ""
+    mark = "OUTLIER" if row.verdict == "outlier" else row.verdict
+    return row.id, row.key, format_figure(row.designed, write), write(row.measured) + ratio, mark
+
+
+def measured_to_json(comparisons: Iterable[MeasuredComparison]) -> AnswerJson:
+    """Return the comparison as plain data: rates in Hz, durations in ms."""
+    return {
+        "version": timing_json.VERSION,
+        "measured": [
+            {
+                "id": row.id,
+                "figure": row.key,
+                "designed": (timing_json.quantity_to_json if row.key == "rate" else timing_json.duration_to_json)(
+                    row.designed
+                ),
+                "measured": float(row.measured if row.key == "rate" else row.measured / 10**6),
+                "verdict": row.verdict,
+                "why": row.why or None,
+            }
+            for row in comparisons
+        ],
+    }

@@ -1,0 +1,236 @@
+"""Timing for people: a summary for the terminal, chains term by term, ways between two elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.diagnostics.safe_text import make_visible, measure_width
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
+from archgen.timing.chains.chain_bounds import BoundedPath
+from archgen.timing.chains.figure_explanations import describe_behaviour
+from archgen.timing.chains.loop_rounds import LoopRound
+from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import TimingValue
+
+_VERDICT_WORDS = {"met": "met", "missed": "MISSED", "open": "open"}
+AlignedRow = Sequence[str]
+
+
+def format_timing(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[LoopRound]) -> Iterator[str]:
+    """Yield the whole picture: chains first, then hosts, links, services, elements, loops."""
+    yield from _section_lines("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
+    yield from _section_lines("Hosts", _host_rows(analysis))
+    yield from _section_lines("Links", _link_rows(analysis))
+    yield from _section_lines(
+        "Services and actions: longest time from a call until it is worked off", _service_rows(analysis)
+    )
+    yield from _section_lines("Elements", _element_rows(analysis))
+    yield from _section_lines("Loops: latency of one round", _loop_rows(loops))
+    yield from _fault_lines(analysis)
+
+
+def _section_lines(title: str, rows: Iterable[AlignedRow]) -> Iterator[str]:
+    section_rows = list(rows)
+    if section_rows:
+        yield title
+        yield from align_columns(section_rows)
+        yield ""
+
+
+def _chain_rows(chains: Iterable[ChainResult]) -> Iterator[AlignedRow]:
+    for result in chains:
+        deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
+        yield (
+            result.id,
+            format_figure(result.bound),
+            deadline,
+            _VERDICT_WORDS[result.verdict] if result.deadline else "",
+            describe_gaps(result),
+        )
+
+
+def _host_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+    for name, load in analysis.hosts.items():
+        cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
+        load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
+        yield name, cores, load_text, load.verdict, format_missing(load.utilisation) or _format_bounds(load)
+
+
+def _format_bounds(load: HostLoad) -> str:
+    """Return the utilisation bounds of Liu and Layland, on one core."""
+    rate_bound, deadline_bound = load.rate_monotonic_bound.value, load.earliest_deadline_bound.value
+    if rate_bound is None or deadline_bound is None or len(load.activity_shares) < 2:  # noqa: PLR2004 - one alone needs no order
+        return ""
+    # Rounded down: a displayed bound that is a little too high would promise too much.
+    rounded_down = Fraction(rate_bound * 1000 // 1, 1000)
+    return f"priorities by rate are sure to do up to {figure_wording.format_share(rounded_down)}, deadlines up to {figure_wording.format_share(deadline_bound)}"
+
+
+def _link_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+    for name, load in analysis.links.items():
+        traffic = format_figure(load.traffic, lambda count: f"{figure_wording.format_size(count)}/s")
+        share = (
+            f"{format_figure(load.share, figure_wording.format_share)} of it"
+            if load.share.value is not None
+            else "share unknown"
+        )
+        yield name, traffic, share, format_missing(load.traffic)
+
+
+def _service_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+    for name, load in analysis.services.items():
+        caller_count = len(load.callers)
+        yield (
+            name,
+            f"{caller_count} caller{'s' if caller_count != 1 else ''}",
+            format_figure(load.worst),
+            format_missing(load.worst),
+        )
+
+
+def _element_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+    for name in analysis.system.activities:
+        rates, response = analysis.paces[name], analysis.responses[name]
+        behaviour_text = describe_behaviour(analysis.system.activities[name], rates)
+        rate, gap = format_figure(rates.rate, figure_wording.format_rate), format_figure(rates.gap)
+        yield name, behaviour_text, rate, f"gap {gap}", f"response {format_figure(response.worst)} ({response.tier})"
+
+
+def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[AlignedRow]:
+    for loop in loops:
+        steps = len(loop.through) - 1
+        group_note = f"one round of {loop.members} elements that feed one another" if loop.members > steps else ""
+        yield " > ".join(loop.through), format_figure(loop.latency), group_note or format_missing(loop.latency)
+
+
+def _fault_lines(analysis: Analysis) -> Iterator[str]:
+    for ring in analysis.endless:
+        yield f"endless: every event circulates for ever in {' > '.join(ring)}"
+    for ring in analysis.deadlocked:
+        yield f"deadlock: each waits for the other in {' > '.join(ring)}"
+    if analysis.diverged:
+        yield f"diverged: no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+
+
+def format_chain(
+    result: ChainResult, age: TimingValue, published: tuple[Fraction, Fraction] | None = None
+) -> Iterator[str]:
+    """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
+    yield f"{result.id}: {' > '.join(result.through)}"
+    if result.terms:
+        yield from align_columns(_term_rows(result.terms))
+        yield ""
+    rows: list[AlignedRow] = [
+        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result))
+    ]
+    if age != result.bound:
+        rows = [("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result))]
+        rows.append(("largest data age, until the next event's comes", format_figure(age), format_missing(age)))
+    rows += [
+        ("reduced reaction time (from the first sample on)", format_figure(result.reduced_reaction)),
+        ("reduced data age (when the last element sends)", format_figure(result.reduced_age)),
+        ("best case", format_figure(result.best)),
+    ]
+    if published:
+        rows.append(
+            (
+                "with priorities and implicit communication (Duerr): reaction",
+                figure_wording.format_duration(published[0]),
+            )
+        )
+        rows.append(("    reduced data age", figure_wording.format_duration(published[1])))
+    if result.deadline:
+        rows.append(("deadline", format_figure(result.deadline), _VERDICT_WORDS[result.verdict]))
+    yield from align_columns(rows)
+    for assumption in result.bound.assumptions if result.terms else ():
+        yield f"  assumes: {assumption}"
+
+
+def _term_rows(terms: Iterable[ChainTerm]) -> Iterator[AlignedRow]:
+    yield "element", "link", "waits", "response", "why"
+    for term in terms:
+        place = f" ({term.at})" if term.at.file else ""
+        link = format_figure(term.link) if term.link.value != 0 else "-"
+        yield term.activity, link, format_figure(term.sampling), format_figure(term.response), f"{term.why}{place}"
+
+
+def format_ways(
+    source: str, target: str, count: int, worst: Iterable[BoundedPath], best: Iterable[BoundedPath]
+) -> Iterator[str]:
+    """Yield the ways between two elements."""
+    yield f"{source} to {target}: {count} way{'s' if count != 1 else ''}"
+    if not count:
+        yield "  nothing that leaves the first reaches the second; ask the other way round?"
+    for title, listed_ways in (("worst", worst), ("best case", best)):
+        for number, way in enumerate(listed_ways, 1):
+            yield f"  {title} {number}: {format_figure(way.bound)}   {' > '.join(way.through)}"
+            if not way.bound.complete:
+                yield f"      no bound: {format_missing(way.bound)}"
+
+
+def describe_gaps(result: ChainResult) -> str:
+    """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
+    if result.bound.complete:
+        return ""
+    phrases = []
+    links = {name for term in result.terms for name in term.link.missing}
+    for quantity, values in (
+        ("period or rate", [term.sampling for term in result.terms]),
+        ("execution time", [term.response for term in result.terms]),
+        ("latency", [term.link for term in result.terms]),
+    ):
+        lacking = dict.fromkeys(name for value in values for name in value.missing if not value.complete)
+        # An unknown latency makes the waiting time unknown as well: it is named once, as a latency.
+        names = tuple(name for name in lacking if quantity != "period or rate" or name not in links)
+        if names:
+            phrases.append(f"{quantity} of {figure_wording.join_first_names(names)} unknown")
+    named_elements = {
+        name
+        for term in result.terms
+        for term_value in (term.sampling, term.response, term.link)
+        for name in term_value.missing
+    }
+    # The bound is the maximum over all ways, the terms are those of one of them.
+    elsewhere = tuple(name for name in result.bound.missing if name not in named_elements)
+    if elsewhere and result.terms:
+        phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
+    phrases += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
+    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}" if phrases else "no bound"
+
+
+def _describe_basis(result: ChainResult) -> str:
+    if result.bound.value is None:
+        return ""
+    values = [value for term in result.terms for value in (term.response, term.link)]
+    return "(what is known) " if any(value.value for value in values) else "(periods only) "
+
+
+def format_missing(value: TimingValue) -> str:
+    """Return which elements' figures a value lacks."""
+    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
+
+
+def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:
+    """Format a value: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
+    if value is None:
+        return ""
+    if value.value is None:
+        reason = figure_wording.name_unknown_reason(value)
+        return f"unbounded ({reason})" if reason == "overload" else reason
+    sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
+    return sign + write(value.value)
+
+
+def align_columns(rows: Iterable[AlignedRow]) -> Iterator[str]:
+    """Yield rows in aligned columns; the last cell of a row needs no width."""
+    # Made visible before it is measured: replacements may have another width.
+    cleaned = [[make_visible(cell) for cell in row] for row in rows]
+    columns = max((len(row) for row in cleaned), default=0)
+    widths = [
+        max((measure_width(row[column]) for row in cleaned if column < len(row) - 1), default=0)
+        for column in range(columns)
+    ]
+    for row in cleaned:
+        cells = [cell + " " * (widths[column] - measure_width(cell)) for column, cell in enumerate(row[:-1])]
+        yield ("  " + "  ".join([*cells, row[-1]])).rstrip()

@@ -1,0 +1,92 @@
+"""The filters of templates: they put text safely where it is needed, be it Markdown, code span, Mermaid or identifier.
+
+The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from archgen.emit.safe_names import make_slug
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+
+_MARKDOWN_MARKS = re.compile(r"([\\`*_{}\[\]<>&~$])")
+_LINE_START_MARK = re.compile(r"^(\d*)([-+=#]|(?<=\d)[.)](?=\s|$))")
+_TICK_RUN = re.compile(r"`+")
+_CONTROL_CHARACTER = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
+_URL_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+
+
+def escape_markdown(text: object) -> str:
+    """Escape text for a line of Markdown: nothing in the result is a mark."""
+    line = _join_lines(text)
+    return _LINE_START_MARK.sub(r"\1\\\2", _MARKDOWN_MARKS.sub(r"\\\1", line))
+
+
+def make_code_span(text: object) -> str:
+    """Make a code span of one line, with more ticks around it than in it."""
+    line = _join_lines(text) or " "
+    # CommonMark: a code span ends at the first run of exactly as many ticks as began it.
+    ticks = "`" * (max((len(run) for run in _TICK_RUN.findall(line)), default=0) + 1)
+    pad = " " if line[0] == "`" or line[-1] == "`" else ""
+    return f"{ticks}{pad}{line}{pad}{ticks}"
+
+
+def _join_lines(text: object) -> str:
+    return _CONTROL_CHARACTER.sub("\ufffd", " ".join(str(text).split()))
+
+
+def safe_commonmark(text: object) -> str:
+    """Return CommonMark as it is if it holds no HTML, and only relative, http, https and mailto addresses; else as
+    plain text.
+    """
+    parser = _commonmark_parser()
+    text = _CONTROL_CHARACTER.sub("\ufffd", str(text))
+    tokens = [token for block in parser.parse(text) for token in (block, *(block.children or ()))]
+    addresses = [str(token.attrs.get(name, "")) for token in tokens for name in ("href", "src")]
+    if any(token.type.startswith("html_") for token in tokens) or any(_is_strange(address) for address in addresses):
+        return "\n".join(escape_markdown(line) for line in text.split("\n"))
+    return text
+
+
+@cache
+def _commonmark_parser() -> MarkdownIt:
+    """Create a parser that takes every address for a link: `_is_strange` judges them, not the library."""
+    from markdown_it import MarkdownIt
+
+    class LenientParser(MarkdownIt):
+        def validateLink(self, url: str) -> bool:  # noqa: ARG002, N802 - the library's
+            return True
+
+    return LenientParser("commonmark", {"html": True})
+
+
+def _is_strange(address: str) -> bool:
+    return bool(_URL_SCHEME.match(address)) and not address.lower().startswith(("http://", "https://", "mailto:"))
+
+
+def escape_mermaid(text: object) -> str:
+    """Escape text for a Mermaid label in double quotes."""
+    line = " ".join(str(text).split())
+    return re.sub(r"[^\w .,:/()+·→-]", lambda found: f"#{ord(found.group())};", line) or " "
+
+
+def make_identifier(text: object) -> str:
+    """Make an identifier from any text. Different texts give different ones, and none is a word of a language."""
+    # Doubled underscores keep escapes apart from texts that look like them: `a.b` is `a_2e_b`, `a_2e_b` is `a__2e__b`.
+    doubled = str(text).replace("_", "__")
+    return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)
+
+
+TEMPLATE_FILTERS: dict[str, Any] = {
+    "code": make_code_span,
+    "commonmark": safe_commonmark,
+    "identifier": make_identifier,
+    "markdown": escape_markdown,
+    "mermaid": escape_mermaid,
+    "slug": lambda text: make_slug(str(text)),
+}

@@ -1,0 +1,38 @@
+"""Limits of what templates may use, and how the process that runs them is bound to them."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class TemplateLimits:
+    """Limits for one backend: seconds of computing, seconds in all, bytes of memory, characters of output, number of
+    files.
+    """
+
+    computing: int = 20
+    waiting: float = 60.0
+    memory: int = 1_000_000_000
+    output: int = 64_000_000
+    files: int = 20_000
+
+
+def confine_process(limits: TemplateLimits) -> None:
+    """Bind this process: computing time, memory, no files written, few open ones.
+
+    Systems without such limits (Windows) still have the time in all, which the parent process watches, and the output.
+    """
+    with contextlib.suppress(ImportError):
+        import resource
+
+        for resource_kind, bound in (
+            (resource.RLIMIT_CPU, limits.computing),
+            (resource.RLIMIT_AS, limits.memory),
+            (resource.RLIMIT_FSIZE, 0),
+            (resource.RLIMIT_CORE, 0),
+            (resource.RLIMIT_NOFILE, 32),
+        ):
+            with contextlib.suppress(ValueError, OSError):  # a tighter limit than ours is in force already
+                resource.setrlimit(resource_kind, (bound, bound))

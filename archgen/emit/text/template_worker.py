@@ -1,0 +1,222 @@
+"""Render a backend's templates in a process of their own, confined, and answer with what they wrote.
+
+Reads one JSON object from standard input and writes one to standard output. Templates are untrusted: they get plain
+data, no attribute that leads into Python, no file but those in their own folder, and limited time, memory and output.
+"""
+
+from __future__ import annotations
+
+import json
+import posixpath
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from traceback import walk_tb
+from typing import Any, NoReturn
+
+from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, TemplateSyntaxError
+from jinja2.loaders import BaseLoader
+from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+from archgen.emit.safe_names import is_safe_path, make_safe_path
+from archgen.emit.text.template_filters import TEMPLATE_FILTERS
+from archgen.emit.text.template_limits import TemplateLimits, confine_process
+
+_MAX_TEMPLATE_BYTES = 1_000_000
+_ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
+
+
+class TemplateBoundError(Exception):
+    """A template asks for more than it may have, or for what does not exist. The message is for the user."""
+
+
+class TemplateLoader(BaseLoader):
+    """Load templates from one folder only: no `..`, and no link that leads out of it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.resolve()
+
+    def get_source(self, environment: object, template: str) -> tuple[str, str | None, Callable[[], bool] | None]:
+        """Return a template's text, name, and no function that watches it for changes."""
+        del environment
+        # Resolved before the test, so that a link out of the folder is refused as well.
+        path = (self.folder / template).resolve() if is_safe_path(template) else self.folder
+        if not path.is_relative_to(self.folder) or not path.is_file():
+            raise TemplateNotFound(template)
+        if path.stat().st_size > _MAX_TEMPLATE_BYTES:
+            msg = f"the template has more than {_MAX_TEMPLATE_BYTES} bytes"
+            raise TemplateBoundError(msg)
+        return path.read_text("utf-8"), template, None
+
+
+def create_sandbox(folder: Path) -> ImmutableSandboxedEnvironment:
+    """Create the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is random."""
+    sandbox = ImmutableSandboxedEnvironment(
+        loader=TemplateLoader(folder),
+        autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    sandbox.filters.update(TEMPLATE_FILTERS)
+    # Random words, random choice: the same input must give the same bytes.
+    del sandbox.globals["lipsum"]
+    del sandbox.filters["random"]
+    return sandbox
+
+
+def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Render every file. Return `files` (path, text), or `error` with its `template` and `line`."""
+    limits = TemplateLimits(**request["limits"])
+    current_template: dict[str, str] = {}
+    try:
+        return {
+            "files": list(_render_files(create_sandbox(Path(request["templates"])), request, limits, current_template))
+        }
+    # MemoryError and RecursionError are caught here too; what is worse ends the process, and the parent explains it.
+    except Exception as error:  # noqa: BLE001 - whatever a template raises is the template's mistake
+        template, line = _locate_error(error, current_template)
+        return {"error": _describe_error(error, limits), "template": template, "line": line}
+
+
+def _describe_error(error: Exception, limits: TemplateLimits) -> str:
+    """Describe what went wrong in one line."""
+    match error:
+        case TemplateSyntaxError():
+            message = f"this is no template: {error.message}"
+        case TemplateNotFound():
+            message = f"there is no template `{error.name}` in templates/"
+        case MemoryError():
+            message = f"it needs more than {limits.memory // 1_000_000} MB of memory"
+        case RecursionError():
+            message = "its templates call each other without end"
+        case UnicodeDecodeError():
+            message = "it is not UTF-8 text"
+        case TemplateBoundError() | TemplateError():
+            message = str(error)
+        case _:
+            message = f"{type(error).__name__}: {error}"
+    return message[:500]
+
+
+def _render_files(
+    sandbox: ImmutableSandboxedEnvironment,
+    request: Mapping[str, Any],
+    limits: TemplateLimits,
+    current_template: dict[str, str],
+) -> Iterator[tuple[str, str]]:
+    """Yield path and text of each file. All paths are planned first, so that templates can link to files that come
+    later.
+
+    `current_template["template"]` always names the template in work, for the message of an error.
+    """
+    planned = list(_plan_files(sandbox, request, limits, current_template))
+    paths = {item["anchor"]: path for path, _, item, _ in planned if isinstance(item, dict) and "anchor" in item}
+    remaining = limits.output
+    for path, template, item, key in planned:
+        current_template["template"] = template
+        values = {**request["data"], "options": request["options"], "path": path, "item": item, "key": key}
+        text = _render_bounded(sandbox.get_template(template), {**values, "href": _make_href(path, paths)}, remaining)
+        remaining -= len(text)
+        yield path, text
+
+
+def _plan_files(
+    sandbox: ImmutableSandboxedEnvironment,
+    request: Mapping[str, Any],
+    limits: TemplateLimits,
+    current_template: dict[str, str],
+) -> Iterator[tuple[str, str, Any, Any]]:
+    """Yield (path, template, item, key) for each file to write. Paths are safe, and no two are equal."""
+    taken_paths: set[str] = set()
+    for file in request["files"]:
+        current_template["template"] = file["template"]
+        sandbox.get_template(file["template"])
+        path_template = sandbox.from_string(file["path"])
+        for key, item in _select_items(request["data"], file):
+            path = make_safe_path(
+                path_template.render(**request["data"], options=request["options"], item=item, key=key)
+            )
+            stem, ending = posixpath.splitext(path)
+            number = 2
+            while path in taken_paths:
+                path, number = f"{stem}-{number}{ending}", number + 1
+            taken_paths.add(path)
+            if len(taken_paths) > limits.files:
+                msg = f"it writes more than {limits.files} files"
+                raise TemplateBoundError(msg)
+            yield path, file["template"], item, key
+
+
+def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[Any, Any]]:
+    """Return (key, item) pairs that a file is written for: a single pair of None where it has no `for_each`."""
+    if not file.get("for_each"):
+        return [(None, None)]
+    collection: Any = data
+    for name in file["for_each"].split("."):
+        if not isinstance(collection, dict) or name not in collection:
+            msg = f"there is no `{file['for_each']}` in the data for `for_each`"
+            raise TemplateBoundError(msg)
+        collection = collection[name]
+    pairs = (
+        collection.items()
+        if isinstance(collection, dict)
+        else enumerate(collection if isinstance(collection, list) else ())
+    )
+    required_values = file.get("only") or {}
+    return [
+        (key, item)
+        for key, item in pairs
+        if all(isinstance(item, dict) and item.get(name) == value for name, value in required_values.items())
+    ]
+
+
+def _make_href(path: str, paths: Mapping[str, str]) -> Callable[[str | None], str]:
+    """Make templates' function `href(ref)`: the address of a page's file relative to this one, or an empty text."""
+    folder = posixpath.dirname(path) or "."
+
+    def href(ref: str | None) -> str:
+        return posixpath.relpath(paths[ref], folder) if ref is not None and ref in paths else ""
+
+    return href
+
+
+def _render_bounded(template: Template, values: Mapping[str, Any], remaining: int) -> str:
+    """Render a template piece by piece, and stop as soon as it is too much."""
+    parts = []
+    for part in template.generate(**values):
+        remaining -= len(part)
+        if remaining < 0:
+            msg = "it writes more than it may"
+            raise TemplateBoundError(msg)
+        parts.append(part)
+    return "".join(parts)
+
+
+def _locate_error(error: BaseException, current_template: Mapping[str, str]) -> tuple[str | None, int | None]:
+    """Return the template and line that an error comes from: the last frame that Jinja2 rewrote to a template's.
+
+    What is not a file (`<template>`) is a path in the manifest: then both are None.
+    """
+    if isinstance(error, TemplateSyntaxError):
+        return error.name, error.lineno
+    location: tuple[str | None, int | None] = (current_template.get("template"), None)
+    for frame, line in walk_tb(error.__traceback__):
+        # Jinja2 replaces frames of compiled templates in tracebacks by frames with the template's name and line; this
+        # global is how they can be told from others.
+        if "__jinja_exception__" in frame.f_globals:
+            name = frame.f_code.co_filename
+            location = (None, None) if name.startswith("<") else (name, line)
+    return location
+
+
+def main() -> NoReturn:
+    """Answer one request. Called by name from the command line of `_run_worker`."""
+    request = json.load(sys.stdin.buffer)
+    # After the request is read, before the first template is: no file can be opened for writing from here on.
+    confine_process(TemplateLimits(**request["limits"]))
+    answer = json.dumps(render_request(request))
+    sys.stdout.write(answer)
+    sys.stdout.flush()
+    sys.exit(0)

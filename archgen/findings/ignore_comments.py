@@ -1,0 +1,162 @@
+"""Comments that silence findings: `# archgen: ignore[unread-output] why`."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Protocol
+
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+
+
+class SilencingComment(Protocol):
+    """A comment `# archgen: ignore[rule, other] why`. A protocol: the comments themselves come from the syntax."""
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """The names between the brackets."""
+
+    @property
+    def why(self) -> str:
+        """What follows the brackets."""
+
+    @property
+    def span(self) -> Span:
+        """The comment's span."""
+
+
+LineSet = frozenset[tuple[str, int]]
+
+UNUSED_IGNORE = Rule(
+    "unused-ignore",
+    Severity.WARNING,
+    """\
+A comment says to ignore a finding that is not there.
+
+Why: The fault was mended and the comment forgotten, or the comment stands in the wrong line. It stands at the end of the line
+that the finding points at, or of the first line of its element. It would hide the next finding of this kind. Rules about
+reading and linking cannot be ignored.
+
+Bad:
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}  # archgen: ignore[unread-output] the screen comes later
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+
+Good:
+    groups:
+      sensing:
+        components:
+          camera:
+            outputs:
+              image: sensor_msgs/msg/Image
+              depth: sensor_msgs/msg/Image  # archgen: ignore[unread-output] the picking arm comes next year
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+""",
+)
+
+
+def apply_ignores(
+    diagnostics: Iterable[Diagnostic],
+    ignores: Iterable[SilencingComment],
+    rules: Mapping[str, Rule],
+    first_lines: Mapping[str, LineSet],
+) -> Iterator[Diagnostic]:
+    """Leave out what comments silence, and add what is wrong with the comments.
+
+    This runs before findings are settled, so that a comment for a rule that is switched off counts as used. After read
+    or link errors nobody knows what else would have been found: then no comment is called unused.
+    """
+    ignores = tuple(ignores)
+    ignores_by_line: dict[tuple[str, str, int], list[SilencingComment]] = defaultdict(list)
+    for ignore in ignores:
+        for name in ignore.rules:
+            ignores_by_line[name, ignore.span.file, ignore.span.line].append(ignore)
+    used_ignores: set[tuple[Span, str]] = set()
+    has_read_errors = False
+    # One pass: it yields what is left, and notes which comments silenced something.
+    for diagnostic in diagnostics:
+        rule = rules[diagnostic.rule]
+        has_read_errors = has_read_errors or (rule.fixed and (diagnostic.severity or rule.severity) is Severity.ERROR)
+        # A comment counts at the line of the finding, and at the first line of its element.
+        lines = {(diagnostic.span.file, diagnostic.span.line), *first_lines.get(diagnostic.element or "", ())}
+        matching_ignores = (
+            [matching for file, line in lines for matching in ignores_by_line.get((diagnostic.rule, file, line), ())]
+            if not rule.fixed
+            else []
+        )
+        used_ignores.update((ignore.span, diagnostic.rule) for ignore in matching_ignores)
+        # A fixed rule is never silenced, and its comment is reported below.
+        if not matching_ignores:
+            yield diagnostic
+    for ignore in ignores:
+        if not ignore.rules:
+            help_text = "name the rule in brackets: `# archgen: ignore[unread-output] why`"
+            yield Diagnostic("unused-ignore", "this comment names no rule", ignore.span, help=help_text)
+        # Every finding has passed by now: only here is it known which comments were used.
+        for name in dict.fromkeys(ignore.rules):
+            yield from _check_ignore(
+                ignore, name, rules, is_used=has_read_errors or (ignore.span, name) in used_ignores
+            )
+
+
+def _check_ignore(
+    ignore: SilencingComment, name: str, rules: Mapping[str, Rule], *, is_used: bool
+) -> Iterator[Diagnostic]:
+    rule = rules.get(name)
+    if rule is None:
+        help_text = did_you_mean(name, (candidate.name for candidate in rules.values() if not candidate.fixed))
+        yield Diagnostic("unknown-rule", f"there is no rule `{name}` to ignore", ignore.span, help=help_text)
+    elif rule.fixed:
+        message = f"`{name}` cannot be ignored: what comes after reading and linking rests on it"
+        yield Diagnostic("unused-ignore", message, ignore.span, help="mend what it reports, and take the comment out")
+    elif not is_used:
+        message = f"nothing here is `{name}`"
+        help_text = "take it out, or put it at the end of the line that the finding points at"
+        yield Diagnostic("unused-ignore", message, ignore.span, help=help_text)
+
+
+def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
+    """Return the lines where each element begins, by the id that findings name; elements of several kinds may share one
+    id.
+    """
+    model = architecture
+    lines_by_id: dict[str, set[tuple[str, int]]] = defaultdict(set)
+    element_maps = (
+        *(
+            model.partners,
+            model.use_cases,
+            model.requirements,
+            model.groups,
+            model.components,
+            model.inputs,
+            model.outputs,
+            model.types,
+            model.nodes,
+        ),
+        *(model.hosts, model.containers, model.links, model.chains, model.views, model.policies),
+    )
+    for elements in element_maps:
+        for key, element in elements.items():
+            lines_by_id[key].add((element.at.file, element.at.line))
+    # A type that nobody declared has the lines of its ports: in `image: {type: Image}` its own may be another one.
+    typed_ports = [(port.type, port.at) for port in model.inputs.values()] + [
+        (port.type, port.at) for port in model.outputs.values()
+    ]
+    for name, span in typed_ports:
+        if name is not None:
+            lines_by_id[name].add((span.file, span.line))
+    return {key: frozenset(lines) for key, lines in lines_by_id.items()}

@@ -1,0 +1,78 @@
+"""The table of all rules by name, and findings about settings that name rules which do not exist."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from archgen.diagnostics.source_span import Span
+
+
+def index_rules(rules: Iterable[Rule]) -> Mapping[str, Rule]:
+    """Return the rules by name, in alphabetical order. Raise ValueError for two of one name, which is a bug."""
+    rule_by_name: dict[str, Rule] = {}
+    for rule in sorted(rules, key=lambda rule: rule.name):
+        if rule.name in rule_by_name:
+            msg = f"two rules are called {rule.name}"
+            raise ValueError(msg)
+        rule_by_name[rule.name] = rule
+    return rule_by_name
+
+
+UNKNOWN_RULE = Rule(
+    "unknown-rule",
+    Severity.WARNING,
+    """\
+A setting or an ignore comment names a rule that does not exist, or one that cannot be set.
+
+Why: The setting does nothing, and the finding that it was meant for goes on (or is missed). Rules about reading and linking
+are always errors: what comes after them rests on them.
+
+Bad:
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+    rules: {unread-outputs: off}
+
+Good:
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+    rules: {unread-output: off}
+""",
+)
+
+
+def check_rule_settings(settings: Iterable[tuple[str, Span]], rules: Mapping[str, Rule]) -> Iterator[Diagnostic]:
+    """Check the names below `rules:`, each with the span of its key."""
+    for name, span in settings:
+        rule = rules.get(name)
+        if rule is None:
+            help_text = did_you_mean(name, (candidate.name for candidate in rules.values() if not candidate.fixed))
+            yield Diagnostic("unknown-rule", f"there is no rule `{name}`", span, help=help_text)
+        elif rule.fixed:
+            message = f"`{name}` is always {_SEVERITY_PHRASES[rule.severity]}: what comes after reading and linking rests on it"
+            yield Diagnostic("unknown-rule", message, span, help="take this line out")
+
+
+_SEVERITY_PHRASES = {
+    Severity.ERROR: "an error",
+    Severity.WARNING: "a warning",
+    Severity.NOTE: "a note",
+    Severity.OFF: "off",
+}

@@ -1,0 +1,64 @@
+"""Call a forge's API: JSON over HTTPS, to the one host that the job names, with a time limit and no redirects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http.client import HTTPException
+from typing import Any
+from urllib.error import HTTPError, URLError
+from urllib.parse import urlsplit
+from urllib.request import HTTPRedirectHandler, Request, build_opener
+
+_TIMEOUT_SECONDS = 30
+_MAX_ANSWER_BYTES = 64 * 1024 * 1024
+_LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
+
+
+class ForgeError(Exception):
+    """The forge did not do what was asked. The message says why; `status` is HTTP's, 0 where there was no answer."""
+
+    def __init__(self, message: str, status: int = 0) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+class _NoRedirects(HTTPRedirectHandler):
+    """Refuses redirects: a token is for one host, so an answer that leads elsewhere is an error."""
+
+    def redirect_request(self, *_: Any, **__: Any) -> None:  # noqa: ANN401 - whatever urllib passes
+        """Follow nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class ForgeApi:
+    """A forge's API: its address, and the headers that authenticate."""
+
+    url: str
+    headers: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Refuse to send a token over a line that anybody can read."""
+        url_parts = urlsplit(self.url)
+        if url_parts.scheme != "https" and not (url_parts.scheme == "http" and url_parts.hostname in _LOOPBACK_HOSTS):
+            msg = f"the API's address {self.url!r} does not begin with https://"
+            raise ForgeError(msg)
+
+    def send_request(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401 - JSON
+        """Send one request and return its answer as plain data. Raise ForgeError."""
+        data = json.dumps(body).encode() if body is not None else None
+        headers = {"Accept": "application/json", "Content-Type": "application/json", "User-Agent": "archgen"}
+        request = Request(f"{self.url}{path}", data, {**headers, **self.headers}, method=method)  # noqa: S310 - see above
+        try:
+            with build_opener(_NoRedirects).open(request, timeout=_TIMEOUT_SECONDS) as answer:
+                return json.loads(answer.read(_MAX_ANSWER_BYTES))
+        except HTTPError as error:
+            msg = f"{method} {path} was answered with {error.code} {error.reason}"
+            raise ForgeError(msg, error.code) from None
+        except (URLError, TimeoutError, HTTPException) as error:
+            msg = f"{method} {path} got no answer: {getattr(error, 'reason', error)}"
+            raise ForgeError(msg) from None
+        except ValueError:
+            msg = f"{method} {path} was answered with something that is no JSON"
+            raise ForgeError(msg) from None

@@ -1,0 +1,56 @@
+"""A pull request of GitHub, from the variables of an Actions job."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from archgen.forge.comment_post import CommentTarget
+from archgen.forge.forge_api import ForgeApi, ForgeError
+
+ACTIONS_BOT = "github-actions[bot]"
+MAX_COMMENT_LENGTH = 65_536
+
+
+def find_pull_request(environment: Mapping[str, str]) -> CommentTarget:
+    """Find the pull request that the job runs for. GITHUB_TOKEN needs the permission `pull-requests: write`."""
+    token = environment.get("GITHUB_TOKEN") or environment.get("GH_TOKEN")
+    repository = environment.get("GITHUB_REPOSITORY", "")
+    if not token:
+        msg = "GITHUB_TOKEN is not set: pass `${{ github.token }}` to this step"
+        raise ForgeError(msg)
+    # It becomes a part of the URL: nothing but a name may get there.
+    if not re.fullmatch(r"[\w.-]+/[\w.-]+", repository):
+        msg = "GITHUB_REPOSITORY names no repository"
+        raise ForgeError(msg)
+    headers = {"Authorization": f"Bearer {token}", "X-GitHub-Api-Version": "2022-11-28"}
+    api = ForgeApi(environment.get("GITHUB_API_URL", "https://api.github.com"), headers)
+    issues = f"/repos/{repository}/issues"
+    comments = f"{issues}/{_read_number(environment)}/comments"
+    return CommentTarget(
+        api, comments, f"{issues}/comments", "PATCH", ("user", "login", _token_author(api)), MAX_COMMENT_LENGTH
+    )
+
+
+def _read_number(environment: Mapping[str, str]) -> int:
+    """Read the pull request's number from the event that started the job."""
+    try:
+        event = json.loads(Path(environment["GITHUB_EVENT_PATH"]).read_bytes())
+        return int(event["pull_request"]["number"])
+    except (KeyError, OSError, ValueError, TypeError):
+        msg = "the event that started this job is no pull request"
+        raise ForgeError(msg) from None
+
+
+def _token_author(api: ForgeApi) -> object:
+    """Return whose comments are ours: the token's user, or the bot of Actions for a job's own token."""
+    try:
+        return api.send_request("GET", "/user")["login"]
+    except ForgeError as error:
+        if error.status in {401, 403, 404}:
+            return ACTIONS_BOT
+        raise
+    except (KeyError, TypeError):
+        return ACTIONS_BOT

@@ -1,0 +1,31 @@
+"""List the line of commits that led to one, and look up the ids of objects in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.git.git_call import run_git
+from archgen.git.repository_lookup import GitRepository, resolve_revision
+
+
+def list_first_parents(repository: GitRepository, revision: str) -> tuple[tuple[str, str], ...]:
+    """Return (hash, day by the committer's clock) of a commit and its first parents, oldest first.
+
+    Raises what `resolve_revision` raises. The line of a shallow clone ends where the clone does.
+    """
+    commit = resolve_revision(repository, revision)
+    result = run_git(
+        repository.top, "log", "--first-parent", "--reverse", "--format=%H %cs", "--end-of-options", commit
+    )
+    rows = (line.partition(" ") for line in result.text.splitlines())
+    return tuple((commit, day) for commit, _, day in rows)
+
+
+def find_object_ids(repository: GitRepository, names: Iterable[str]) -> tuple[str, ...]:
+    """Return the ids of objects by their names (`COMMIT:path`), empty where there is no such object."""
+    # One name a line: a path with a line break would shift all answers behind it.
+    safe_names = [name if "\n" not in name else "" for name in names]
+    lines = "".join(f"{name}\n" for name in safe_names).encode("utf-8", "surrogateescape")
+    result = run_git(repository.top, "cat-file", "--batch-check=%(objectname)", stdin=lines)
+    answers = result.text.splitlines()
+    return tuple("" if line.endswith((" missing", " ambiguous")) else line for line in answers)

@@ -1,0 +1,118 @@
+"""Read trees and blobs. Two `git cat-file` processes serve any number of blobs: one returns sizes, one contents."""
+
+from __future__ import annotations
+
+import os
+import weakref
+from typing import IO, TYPE_CHECKING, NamedTuple
+
+from archgen.git.git_call import SAFE_COMMAND, git_environment, run_git
+from archgen.git.repository_lookup import GitRepository
+
+if TYPE_CHECKING:
+    import subprocess
+
+LINK_MODE = "120000"
+SUBMODULE_MODE = "160000"
+_SMALL_BYTES = 65_536
+_MAX_CACHED = 4096
+"""The most small files that are cached: most are the same in most commits."""
+
+
+class TreeEntry(NamedTuple):
+    """An entry of a tree: a file, a symbolic link (`mode` is LINK_MODE) or a submodule's commit (SUBMODULE_MODE)."""
+
+    mode: str
+    object_id: str
+
+
+class GitObjects:
+    """The objects of one repository."""
+
+    def __init__(self, repository: GitRepository) -> None:
+        """Start no process yet."""
+        self.repository = repository
+        self._sizes = _BatchProcess(repository, "--batch-check")
+        self._contents = _BatchProcess(repository, "--batch")
+        self._cached_blobs: dict[str, bytes] = {}
+
+    def list_tree(self, commit: str, prefix: str = "") -> dict[str, TreeEntry] | None:
+        """Return everything below a folder of a commit, by path; None where there is no such folder."""
+        result = run_git(self.repository.top, "ls-tree", "-r", "-z", "--full-tree", f"{commit}:{prefix}")
+        if result.status:
+            return None
+        rows = (row.partition("\t") for row in result.text.split("\0") if row)
+        return {path: TreeEntry(fields[:6], fields.rpartition(" ")[2]) for fields, _, path in rows}
+
+    def blob_size(self, blob_id: str) -> int | None:
+        """Return a blob's size in bytes, None where this clone does not have it."""
+        if blob_id in self._cached_blobs:
+            return len(self._cached_blobs[blob_id])
+        fields = self._sizes.query_object(blob_id)
+        return int(fields[2]) if fields else None
+
+    def read_blob(self, blob_id: str) -> bytes | None:
+        """Return a blob's content, None where this clone does not have it. Ask for its size first."""
+        cached = self._cached_blobs.get(blob_id)
+        if cached is not None:
+            return cached
+        fields = self._contents.query_object(blob_id)
+        if not fields:
+            return None
+        data = self._contents.read_content(int(fields[2]))
+        if len(data) <= _SMALL_BYTES and len(self._cached_blobs) < _MAX_CACHED:
+            self._cached_blobs[blob_id] = data
+        return data
+
+
+class _BatchProcess:
+    """A `git cat-file` process that answers one question after the other. It ends with its owner."""
+
+    def __init__(self, repository: GitRepository, mode: str) -> None:
+        self._repository = repository
+        self._mode = mode
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def query_object(self, blob: str) -> list[str] | None:
+        """Return the three words of the answer's first line, None where there is no such blob."""
+        source, sink = self._get_pipes()
+        try:
+            sink.write(blob.encode() + b"\n")
+            sink.flush()
+            fields = source.readline().decode().split()
+        except OSError:
+            fields = []
+        if not fields:  # git gave up: a blob that a partial clone would have to fetch
+            self._process = None
+        return fields if len(fields) == 3 and fields[1] == "blob" else None  # noqa: PLR2004 - id, kind, size
+
+    def read_content(self, size: int) -> bytes:
+        """Read a content of `size` bytes and the line end behind it."""
+        source, _ = self._get_pipes()
+        return source.read(size + 1)[:size]
+
+    def _get_pipes(self) -> tuple[IO[bytes], IO[bytes]]:
+        process = self._process or self._start()
+        if process.stdout is None or process.stdin is None:  # pragma: no cover - they are asked for below
+            raise AssertionError
+        return process.stdout, process.stdin
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        import subprocess
+
+        process = self._process = subprocess.Popen(  # noqa: S603 - a fixed program, questions are hashes
+            [*SAFE_COMMAND, "cat-file", self._mode],
+            cwd=self._repository.top,
+            env=git_environment(os.environ),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        # Ends the process together with this object, at the latest with the interpreter.
+        weakref.finalize(self, _end_process, process)
+        return process
+
+
+def _end_process(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.communicate()

@@ -1,0 +1,189 @@
+"""Declare ROS nodes: what was written about them, with the components and ports that they name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.frozen import dataclass
+from archgen.link import mapping_values
+from archgen.link.declare.timing_declaration import declare_timing
+from archgen.link.element_outline import ElementOutline
+from archgen.link.merged_timing import TimingMerger
+from archgen.link.reference_resolution import PortResolver, ReferenceResolver
+from archgen.model.component import Component
+from archgen.model.deployment import Container
+from archgen.model.node import Node, NodeStatus, PortUse, Qos, UseKind
+from archgen.model.qos_profiles import qos_profile
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
+
+USE_KINDS: tuple[UseKind, ...] = ("publishes", "subscribes", "serves", "calls")
+# What a node publishes or serves is an output of its component, what it subscribes to or calls is an input.
+_PORT_KINDS: Mapping[UseKind, str] = {
+    "publishes": "output",
+    "serves": "output",
+    "subscribes": "input",
+    "calls": "input",
+}
+_NODE_KINDS = frozenset({"node", "lifecycle", "composable", "driver", "nodelet"})
+_QOS_DURATIONS = ("deadline", "lifespan", "lease_duration")
+
+
+@dataclass(frozen=True, slots=True)
+class NodeContext:
+    """What the declaration of a node needs: the elements that it may name, and where findings go."""
+
+    outline: ElementOutline
+    resolver: ReferenceResolver
+    components: Mapping[str, Component]
+    containers: Mapping[str, Container]
+    timing_merger: TimingMerger
+
+
+def resolve_implements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, tuple[str, ...]]:
+    """Resolve what each node implements: component ids by node, without those that cannot be resolved."""
+    implements: dict[str, tuple[str, ...]] = {}
+    for name, _, body in mapping_values.iterate_elements(root, "nodes"):
+        targets = [
+            resolver.resolve_reference(w, ("component",), name) for w in mapping_values.get_scalars(body, "implements")
+        ]
+        implements[name] = tuple(dict.fromkeys(target.id for target in targets if target))
+    return implements
+
+
+def declare_nodes(
+    root: MappingNode, context: NodeContext, implements: Mapping[str, tuple[str, ...]]
+) -> dict[str, Node]:
+    """Declare every node that is written, by id. Nodes that archgen derives are added later, by `transform`."""
+    return {
+        name: _declare_node(name, entry, context, implements[name])
+        for name, entry, _ in mapping_values.iterate_elements(root, "nodes")
+    }
+
+
+def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, implements: tuple[str, ...]) -> Node:
+    body, resolver = mapping_values.get_body(entry), context.resolver
+    kinds = tuple(dict.fromkeys(kind for kind in mapping_values.get_texts(body, "kind") if kind in _NODE_KINDS))
+    container = resolver.resolve_plain_id(mapping_values.get_scalar(body, "container"), "container", node_id)
+    host = resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", node_id)
+    if host and container and context.containers[container].host not in {None, host}:
+        resolver.diagnostics.append(_diagnose_other_host(body, node_id, context.containers[container]))
+    # Several components may have several owners: the node then belongs to all of them, in the order of `implements`.
+    inherited_owners = (owner for component in implements for owner in context.components[component].owners)
+    owners = resolver.resolve_owners(body, node_id, inherited_owners)
+    ports = _make_port_resolver(node_id, body, context, implements)
+    return Node(
+        id=node_id,
+        title=mapping_values.get_title(body, node_id),
+        implements=implements,
+        description=mapping_values.get_text(body, "description"),
+        owner=next(iter(owners), None),
+        co_owners=owners[1:],
+        name=mapping_values.get_text(body, "name") or node_id,
+        namespace=_make_absolute(mapping_values.get_text(body, "namespace")),
+        kinds=kinds or ("node",),  # type: ignore[arg-type]
+        package=mapping_values.get_text(body, "package"),
+        executable=mapping_values.get_text(body, "executable"),
+        plugin=mapping_values.get_text(body, "plugin"),
+        container=container,
+        host=host or (context.containers[container].host if container else None),
+        status=_read_status(body),
+        uses=tuple(_declare_uses(body, ports)),
+        uses_known=tuple(use for use in USE_KINDS if body.get(use) is not None),
+        timing=context.timing_merger.merge_timing(
+            node_id, declare_timing(entry, ports, resolver.diagnostics), implements
+        ),
+        parameters=_read_parameters(body),
+        parameter_files=mapping_values.get_texts(body, "parameter_files"),
+        tags=mapping_values.get_texts(body, "tags"),
+        urls=mapping_values.get_text_mapping(body, "urls"),
+        implements_written=body.get("implements") is not None,
+        at=entry.key_span,
+        name_at=mapping_values.get_span(body, "name"),
+    )
+
+
+def _diagnose_other_host(body: MappingNode, node_id: str, container: Container) -> Diagnostic:
+    return Diagnostic(
+        "conflicting-values",
+        f"`{node_id}` runs in the container `{container.id}`, which is on another host: `{container.host}`",
+        mapping_values.get_span(body, "host"),
+        labels=(Label(container.at, "the container"),),
+        help="leave `host` out: a node in a container runs on the container's host",
+        element=node_id,
+    )
+
+
+def _make_absolute(namespace: str | None) -> str:
+    """Return a namespace with its leading slash; a node without one is in the root namespace, `/`."""
+    return "/" + (namespace or "").removeprefix("/")
+
+
+def _read_status(body: MappingNode) -> NodeStatus | None:
+    status = mapping_values.get_text(body, "status")
+    return status if status in {"existing", "adapted", "planned"} else None  # type: ignore[return-value]
+
+
+def _read_parameters(body: MappingNode) -> Mapping[str, object]:
+    # The only part of the language where values keep the type that YAML gives them.
+    parameters = node_to_data(mapping_values.get_mapping(body, "parameters"))
+    return parameters if isinstance(parameters, dict) else {}
+
+
+def _make_port_resolver(
+    node_id: str, body: MappingNode, context: NodeContext, implements: tuple[str, ...]
+) -> PortResolver:
+    # Not `not implements`: a node whose `implements` could not be resolved has no ports, one without it has free ones.
+    is_free = body.get("implements") is None
+    return PortResolver(context.resolver, node_id, implements, context.outline.port_names, is_free=is_free)
+
+
+def _declare_uses(body: MappingNode, ports: PortResolver) -> Iterator[PortUse]:
+    for use in USE_KINDS:
+        for key, entry, use_body in mapping_values.iterate_elements(body, use):
+            port = ports.resolve_port(key, entry.key_span, _PORT_KINDS[use]) if ports.component_ids else None
+            yield _declare_use(use, port, entry, use_body)
+    internal_body = mapping_values.get_mapping(body, "internal")
+    for use in USE_KINDS:
+        for _, entry, use_body in mapping_values.iterate_elements(internal_body, use):
+            yield _declare_use(use, None, entry, use_body, is_internal=True)
+
+
+def _declare_use(
+    use: UseKind, port: str | None, entry: MappingEntry, use_body: MappingNode, *, is_internal: bool = False
+) -> PortUse:
+    names = mapping_values.get_scalars(use_body, "topic" if use in {"publishes", "subscribes"} else "name")
+    return PortUse(
+        use=use,
+        key=entry.key,
+        port=port,
+        topics=tuple(scalar.text for scalar in names),
+        message=mapping_values.get_message(use_body),
+        qos=_read_qos(use, use_body),
+        internal=is_internal,
+        at=entry.key_span,
+        message_at=mapping_values.get_span(use_body, "message"),
+        topic_places=tuple(scalar.span for scalar in names),
+    )
+
+
+def _read_qos(use: UseKind, use_body: MappingNode) -> Qos | None:
+    """Return the values of the profile with the written ones over them; None where no `qos` is written."""
+    qos_body = mapping_values.get_mapping(use_body, "qos")
+    if not qos_body.entries:
+        return None
+    values: dict[str, object] = {
+        key: mapping_values.get_text(qos_body, key)
+        for key in ("reliability", "durability", "history", "liveliness")
+        if mapping_values.get_scalar(qos_body, key)
+    }
+    values |= {
+        key: mapping_values.get_quantity(qos_body, key, "duration")
+        for key in _QOS_DURATIONS
+        if mapping_values.get_scalar(qos_body, key)
+    }
+    if mapping_values.get_scalar(qos_body, "depth"):
+        values["depth"] = mapping_values.get_integer(qos_body, "depth")
+    base = qos_profile(mapping_values.get_text(qos_body, "profile") or "default", use)
+    return replace(base, **values, written=True, at=mapping_values.get_span(use_body, "qos"))  # type: ignore[arg-type]

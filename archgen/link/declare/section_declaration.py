@@ -1,0 +1,209 @@
+"""Declare all sections but groups, nodes and types: project, partners, requirements, hosts, chains, views and so on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.diagnostics.diagnostic import Severity
+from archgen.link import mapping_values, sanity_checks
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
+from archgen.model.deployment import Container, Host, Link
+from archgen.model.review_settings import AcceptedChange, ReviewSettings
+from archgen.syntax.yaml_tree import MappingNode
+
+_WAYPOINT_KINDS = ("node", "component", "output")
+
+
+def declare_project(root: MappingNode, default_id: str, default_title: str) -> ProjectInfo:
+    """Declare the project itself, with defaults for its id and title."""
+    body = mapping_values.get_mapping(root, "project")
+    entry = root.entries.get("project")
+    return ProjectInfo(
+        id=mapping_values.get_text(body, "id") or default_id,
+        title=mapping_values.get_text(body, "title") or default_title,
+        version=mapping_values.get_text(body, "version"),
+        description=mapping_values.get_text(body, "description"),
+        # Without the section the field keeps its default, which this module would otherwise have to repeat.
+        **({"at": entry.key_span} if entry else {}),
+    )
+
+
+def declare_partners(root: MappingNode) -> dict[str, Partner]:
+    """Declare the partners."""
+    return {
+        name: Partner(
+            name,
+            mapping_values.get_title(body, name),
+            mapping_values.get_text(body, "description"),
+            mapping_values.get_text(body, "contact"),
+            mapping_values.get_texts(body, "reviewers"),
+            at=entry.key_span,
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "partners")
+    }
+
+
+def declare_use_cases(root: MappingNode) -> dict[str, UseCase]:
+    """Declare the use cases. One without a title has its id as title: `UC-4` cannot be turned into words."""
+    return {
+        name: UseCase(
+            name,
+            mapping_values.get_text(body, "title") or name,
+            mapping_values.get_text(body, "description"),
+            entry.key_span,
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "use_cases")
+    }
+
+
+def declare_requirements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Requirement]:
+    """Declare the requirements, with the use cases that are declared."""
+    return {
+        name: Requirement(
+            id=name,
+            title=mapping_values.get_text(body, "title") or name,
+            description=mapping_values.get_text(body, "description"),
+            use_cases=tuple(_resolve_plain_ids(body, "use_cases", "use case", resolver, name)),
+            tags=mapping_values.get_texts(body, "tags"),
+            urls=mapping_values.get_text_mapping(body, "urls"),
+            at=entry.key_span,
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "requirements")
+    }
+
+
+def _resolve_plain_ids(
+    body: MappingNode, key: str, kind: str, resolver: ReferenceResolver, element_id: str
+) -> Iterator[str]:
+    """Return the plain ids in a list that are declared, each once; the others are reported."""
+    ids = (resolver.resolve_plain_id(scalar, kind, element_id) for scalar in mapping_values.get_scalars(body, key))
+    return iter(dict.fromkeys(name for name in ids if name))
+
+
+def declare_hosts(root: MappingNode) -> dict[str, Host]:
+    """Declare the hosts."""
+    return {
+        name: Host(
+            id=name,
+            title=mapping_values.get_title(body, name),
+            cores=mapping_values.get_integer(body, "cores"),
+            description=mapping_values.get_text(body, "description"),
+            tags=mapping_values.get_texts(body, "tags"),
+            at=entry.key_span,
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "hosts")
+    }
+
+
+def declare_containers(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Container]:
+    """Declare the containers."""
+    return {
+        name: Container(
+            id=name,
+            title=mapping_values.get_title(body, name),
+            host=resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", name),
+            threads=mapping_values.get_integer(body, "threads"),
+            at=entry.key_span,
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "containers")
+    }
+
+
+def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Link]:
+    """Declare the links between hosts."""
+    links_by_id: dict[str, Link] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "links"):
+        best, worst = sanity_checks.read_latency(
+            mapping_values.get_mapping(body, "latency"), name, resolver.diagnostics
+        )
+        links_by_id[name] = Link(
+            id=name,
+            title=mapping_values.get_title(body, name),
+            connects=tuple(_resolve_plain_ids(body, "connects", "host", resolver, name)),
+            bandwidth=sanity_checks.read_positive(body, "bandwidth", "bandwidth", name, resolver.diagnostics),
+            best=best,
+            worst=worst,
+            at=entry.key_span,
+        )
+    return links_by_id
+
+
+def declare_chains(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Chain]:
+    """Declare the chains; a waypoint that cannot be resolved is kept in `unresolved`: the chain then counts as open."""
+    chains_by_id: dict[str, Chain] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "chains"):
+        sanity_checks.report_empty_list(body, "through", "element", name, resolver.diagnostics)
+        waypoints = [
+            (resolver.resolve_reference(scalar, _WAYPOINT_KINDS, name), scalar)
+            for scalar in mapping_values.get_scalars(body, "through")
+        ]
+        chains_by_id[name] = Chain(
+            id=name,
+            title=mapping_values.get_title(body, name),
+            through=tuple(Waypoint(target.kind, target.id, scalar.span) for target, scalar in waypoints if target),  # type: ignore[arg-type]
+            deadline=sanity_checks.read_positive(body, "deadline", "duration", name, resolver.diagnostics),
+            requirements=mapping_values.get_texts(body, "requirements"),
+            at=entry.key_span,
+            unresolved=tuple(scalar.text for target, scalar in waypoints if target is None),
+        )
+    return chains_by_id
+
+
+def declare_views(root: MappingNode) -> dict[str, View]:
+    """Declare the views, except one without `show`, which merging has reported."""
+    views_by_id: dict[str, View] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "views"):
+        if body.get("show") is None:
+            continue
+        level = mapping_values.get_text(body, "level")
+        views_by_id[name] = View(
+            id=name,
+            title=mapping_values.get_title(body, name),
+            show=mapping_values.get_text(body, "show") or "",
+            colour=mapping_values.get_text(body, "colour"),
+            level="implementation" if level == "implementation" else "functional",
+            layout=mapping_values.get_layout(body),
+            at=entry.key_span,
+            show_at=mapping_values.get_span(body, "show"),
+        )
+    return views_by_id
+
+
+def declare_review(root: MappingNode) -> ReviewSettings:
+    """Declare how changes are judged, without accepted changes that lack a reason, which merging has reported."""
+    body = mapping_values.get_mapping(root, "review")
+    breaking = mapping_values.get_text(body, "breaking")
+    return ReviewSettings(
+        main=mapping_values.get_text(body, "main"),
+        breaking=None if breaking is None else Severity(breaking),
+        accepted={
+            name: AcceptedChange(
+                name,
+                mapping_values.get_text(accepted_body, "reason") or "",
+                mapping_values.get_text(accepted_body, "key"),
+                accepted_entry.key_span,
+            )
+            for name, accepted_entry, accepted_body in mapping_values.iterate_elements(body, "accepted")
+            if mapping_values.get_text(accepted_body, "reason")
+        },
+        backends=mapping_values.get_texts(body, "backends"),
+    )
+
+
+def declare_policies(root: MappingNode) -> dict[str, Policy]:
+    """Declare the policies, except one without `forbid.from` or `forbid.to`, which merging has reported."""
+    policies_by_id: dict[str, Policy] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "policies"):
+        forbid = mapping_values.get_mapping(body, "forbid")
+        if forbid.get("from") is not None and forbid.get("to") is not None:
+            policies_by_id[name] = Policy(
+                id=name,
+                title=mapping_values.get_title(body, name),
+                forbid_from=mapping_values.get_text(forbid, "from") or "",
+                forbid_to=mapping_values.get_text(forbid, "to") or "",
+                at=entry.key_span,
+                from_at=mapping_values.get_span(forbid, "from"),
+                to_at=mapping_values.get_span(forbid, "to"),
+            )
+    return policies_by_id

@@ -1,0 +1,104 @@
+"""Declare the timing of an element: its figures, its ports resolved, and nothing in it that makes no sense."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.link import mapping_values, sanity_checks
+from archgen.link.reference_resolution import PortResolver
+from archgen.model.declared_timing import OutputTiming, Timing, Trigger
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+_MAX_NUMBER_LENGTH = 40
+"""Longer than any number that the schema allows in `calls`; it bounds the time that Fraction takes."""
+
+
+def declare_timing(owner_entry: MappingEntry, ports: PortResolver, diagnostics: list[Diagnostic]) -> Timing | None:
+    """Read the `timing` of an element; None if none is written."""
+    entry = mapping_values.get_body(owner_entry).entries.get("timing")
+    if entry is None or type(entry.value) is not MappingNode:
+        return None
+    body = entry.value
+    behaviour = mapping_values.get_text(body, "behaviour")
+    calls = list(_read_calls(body, ports))
+    timing = Timing(
+        behaviour=behaviour if behaviour in {"periodic", "event", "on_demand", "once"} else None,  # type: ignore[arg-type]
+        period=mapping_values.get_quantity(body, "period", "duration"),
+        rate=mapping_values.get_quantity(body, "rate", "frequency"),
+        jitter=mapping_values.get_quantity(body, "jitter", "duration"),
+        wcet=mapping_values.get_quantity(body, "wcet", "duration"),
+        bcet=mapping_values.get_quantity(body, "bcet", "duration"),
+        trigger=_read_trigger(body, ports, diagnostics),
+        every=mapping_values.get_integer(body, "every"),
+        throttle=mapping_values.get_quantity(body, "throttle", "duration"),
+        outputs=dict(_read_output_timing(body, ports, diagnostics)),
+        calls={port: count for port, count, _ in calls},
+        priority=mapping_values.get_integer(body, "priority"),
+        core=mapping_values.get_integer(body, "core"),
+        response=mapping_values.get_quantity(body, "response", "duration"),
+        # Positions by key; each call has its own, under a key that no YAML key can be (it holds a blank).
+        places={e.key: e.value.span for e in body} | {f"calls {port}": call_span for port, _, call_span in calls},
+        at=entry.key_span,
+    )
+    return sanity_checks.drop_senseless(timing, ports.owner_id, diagnostics)
+
+
+def _read_trigger(body: MappingNode, ports: PortResolver, diagnostics: list[Diagnostic]) -> Trigger | None:
+    entry = body.entries.get("trigger")
+    if entry is None:
+        return None
+    node = entry.value
+    if type(node) is ScalarNode:
+        return Trigger(node.text, None, node.span) if node.text in {"any", "all"} else None  # type: ignore[arg-type]
+    if type(node) is SequenceNode:
+        inputs = _resolve_inputs(body, "trigger", ports, diagnostics)
+        return None if inputs is None else Trigger("any", inputs, node.span)
+    if type(node) is MappingNode and node.get("all") is not None:
+        inputs = _resolve_inputs(node, "all", ports, diagnostics)
+        return None if inputs is None else Trigger("all", inputs, node.span)
+    return None
+
+
+def _resolve_inputs(
+    mapping: MappingNode, key: str, ports: PortResolver, diagnostics: list[Diagnostic]
+) -> tuple[str, ...] | None:
+    """Resolve a list of inputs; None if it is empty or nothing in it can be resolved."""
+    sanity_checks.report_empty_list(mapping, key, "input", ports.owner_id, diagnostics)
+    input_ids = [
+        ports.resolve_port(scalar.text, scalar.span, "input") for scalar in mapping_values.get_scalars(mapping, key)
+    ]
+    distinct_ids = tuple(dict.fromkeys(port for port in input_ids if port))
+    return distinct_ids or None
+
+
+def _read_output_timing(
+    body: MappingNode, ports: PortResolver, diagnostics: list[Diagnostic]
+) -> Iterator[tuple[str, OutputTiming]]:
+    for key, entry, output_body in mapping_values.iterate_elements(body, "outputs"):
+        port = ports.resolve_port(key, entry.key_span, "output")
+        if port:
+            max_gap = sanity_checks.read_positive(output_body, "max_gap", "duration", ports.owner_id, diagnostics)
+            yield port, OutputTiming(mapping_values.get_flag(output_body, "conditional"), max_gap, entry.key_span)
+
+
+def _read_calls(body: MappingNode, ports: PortResolver) -> Iterator[tuple[str, Fraction, Span]]:
+    for entry in mapping_values.get_mapping(body, "calls"):
+        port = ports.resolve_port(entry.key, entry.key_span, "input")
+        count = _parse_fraction(entry.value.text) if type(entry.value) is ScalarNode else None
+        if port and count is not None:
+            yield port, count, entry.key_span
+
+
+def _parse_fraction(text: str) -> Fraction | None:
+    try:
+        return Fraction(text) if len(text) <= _MAX_NUMBER_LENGTH else None
+    except (ValueError, ZeroDivisionError):
+        return None
+
+
+def find_senseless_timing(timing: Timing, element_id: str) -> Iterator[Diagnostic]:
+    """Yield what makes no sense in a timing, wherever its figures come from."""
+    return (finding for _, finding in sanity_checks.find_senseless(timing, element_id))

@@ -1,0 +1,115 @@
+"""Wire inputs: turn each reference in `from` into the outputs that it stands for, as connections and edges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.link import mapping_values
+from archgen.link.element_outline import ElementOutline
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.model.architecture import PortEdge
+from archgen.model.component import Connection, Input, Output
+from archgen.model.message_types import ConceptualType, flow_of
+from archgen.model.path_resolver import ElementRef
+from archgen.syntax.yaml_tree import MappingEntry, ScalarNode
+
+_SOURCE_KINDS = ("group", "component", "output")
+MAX_PAIRS = 500_000
+"""How many pairs of output and input references may make. 10,000 components with 23,000 connections make 30,000; only
+many references to large groups make more, and then their number grows with the square of the groups' size.
+"""
+
+
+@dataclass(slots=True)
+class InputWiring:
+    """Wires inputs one after the other; the results are in `connections` and `edges`."""
+
+    outline: ElementOutline
+    resolver: ReferenceResolver
+    types: Mapping[str, ConceptualType]
+    connections: list[Connection] = field(default_factory=list)
+    edges: list[PortEdge] = field(default_factory=list)
+    _is_full: bool = False
+    _outputs_by_target: dict[str, tuple[Output, ...]] = field(default_factory=dict)
+
+    def declare_input(self, component_id: str, entry: MappingEntry) -> Input:
+        """Return an input, connected to what its `from` names."""
+        body = mapping_values.get_body(entry)
+        input_id = f"{component_id}.{entry.key}"
+        attempts = tuple(
+            self._connect_source(component_id, input_id, reference)
+            for reference in mapping_values.get_scalars(body, "from")
+        )
+        connections = tuple(connection for connection in attempts if connection)
+        self.connections += connections
+        # Two references may bring the same output: one edge, in the order of first mention and with its position. The
+        # reversal makes the first mention win in the dict.
+        spans_by_output = {
+            output: connection.at for connection in reversed(connections) for output in connection.outputs
+        }
+        output_ids = dict.fromkeys(output for connection in connections for output in connection.outputs)
+        self.edges += [PortEdge(output, input_id, spans_by_output[output]) for output in output_ids]
+        type_text = mapping_values.get_text(body, "type")
+        return Input(
+            id=input_id,
+            name=entry.key,
+            component=component_id,
+            connections=connections,
+            external=mapping_values.get_text(body, "external"),
+            physical=mapping_values.get_text(body, "medium") == "physical",
+            type=mapping_values.normalise_type_name(type_text) if type_text else None,
+            optional=mapping_values.get_flag(body, "optional"),
+            description=mapping_values.get_text(body, "description"),
+            from_written=body.get("from") is not None,
+            at=entry.key_span,
+            type_at=mapping_values.get_span(body, "type"),
+        )
+
+    def _connect_source(self, component_id: str, input_id: str, reference: ScalarNode) -> Connection | None:
+        target = self.resolver.resolve_reference(reference, _SOURCE_KINDS, component_id, component_id)
+        if target is None:
+            return None
+        # A connection without outputs is kept: it is what was written, even if it brings nothing.
+        output_ids = () if self._is_full else tuple(self._list_output_ids(target, component_id))
+        if len(self.edges) + len(output_ids) > MAX_PAIRS:
+            self._report_too_many(reference, component_id)
+            output_ids = ()
+        return Connection(input_id, reference.text, target.kind, target.id, output_ids, reference.span)  # type: ignore[arg-type]
+
+    def _report_too_many(self, reference: ScalarNode, component_id: str) -> None:
+        """Report the limit on pairs once; all later references bring nothing, so that the cut is at one clear place."""
+        if not self._is_full:
+            self._is_full = True
+            message = (
+                f"up to here references make more than {MAX_PAIRS:,} pairs of output and input; the rest is left out"
+            )
+            help_line = "name single outputs or components where whole groups are named"
+            self.resolver.diagnostics.append(
+                Diagnostic("too-large", message, reference.span, help=help_line, element=component_id)
+            )
+
+    def _list_output_ids(self, target: ElementRef, reader_id: str) -> Iterator[str]:
+        """Yield the outputs that a reference stands for: one, or all that carry messages except the reader's own."""
+        if target.kind == "output":
+            yield target.id
+            return
+        # Cached by id alone: a group and a component never share a complete id, since one has a dot and one has none.
+        if target.id not in self._outputs_by_target:
+            self._outputs_by_target[target.id] = tuple(self._list_message_outputs(target))
+        yield from (output.id for output in self._outputs_by_target[target.id] if output.component != reader_id)
+
+    def _list_message_outputs(self, target: ElementRef) -> Iterator[Output]:
+        members = (
+            mapping_values.get_mapping(mapping_values.get_body(self.outline.groups[target.id]), "components")
+            if target.kind == "group"
+            else None
+        )
+        components = [target.id] if members is None else [f"{target.id}.{name}" for name in members.entries]
+        for component in components:
+            for output in self.outline.outputs[component].values():
+                output_type = self.types.get(output.type or "")
+                # A component or group as a whole stands for its data: a service is called by name, light is no message.
+                if not output.physical and flow_of(output_type.message if output_type else None) == "topic":
+                    yield output

@@ -1,0 +1,126 @@
+"""Read values off a mapping in normal form. What is missing, or of an unexpected kind, reads as not written.
+
+Types are compared with `type(...) is`, not isinstance: these functions run for every key of every element.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model import quantity
+from archgen.model.component import DiagramLayout
+from archgen.model.message_types import full_message_name
+from archgen.model.path_resolver import title_from_id
+from archgen.model.quantity import Quantity
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+EMPTY_MAPPING = MappingNode({}, NO_SPAN)
+_BLANKS = re.compile(r"\s+")
+
+
+def get_mapping(mapping: MappingNode, key: str) -> MappingNode:
+    """Return the mapping at a key, an empty one where there is none."""
+    entry = mapping.entries.get(key)
+    return entry.value if entry is not None and type(entry.value) is MappingNode else EMPTY_MAPPING
+
+
+def get_body(entry: MappingEntry) -> MappingNode:
+    """Return an element's body: the mapping at its key, an empty one where there is none."""
+    return entry.value if type(entry.value) is MappingNode else EMPTY_MAPPING
+
+
+def get_scalar(mapping: MappingNode, key: str) -> ScalarNode | None:
+    """Return the scalar at a key, None where nothing is written."""
+    entry = mapping.entries.get(key)
+    if entry is None:
+        return None
+    node = entry.value
+    return node if type(node) is ScalarNode and node.value is not None else None
+
+
+def get_text(mapping: MappingNode, key: str) -> str | None:
+    """Return the text at a key as it was written (`1.10` is not 1.1), None where nothing is written."""
+    # The same as get_scalar(...).text, without the second call: the most frequent function of linking.
+    entry = mapping.entries.get(key)
+    if entry is None:
+        return None
+    node = entry.value
+    return node.text if type(node) is ScalarNode and node.value is not None else None
+
+
+def get_scalars(mapping: MappingNode, key: str) -> tuple[ScalarNode, ...]:
+    """Return the scalars of a list; a single scalar counts as a list of one."""
+    node = mapping.get(key)
+    if type(node) is SequenceNode:
+        return tuple(item for item in node.items if type(item) is ScalarNode and item.value is not None)
+    return (node,) if type(node) is ScalarNode and node.value is not None else ()
+
+
+def get_texts(mapping: MappingNode, key: str) -> tuple[str, ...]:
+    """Return the texts of a list."""
+    return tuple(item.text for item in get_scalars(mapping, key))
+
+
+def get_integer(mapping: MappingNode, key: str) -> int | None:
+    """Return a whole number, None for any other value."""
+    node = get_scalar(mapping, key)
+    return node.value if node and type(node.value) is int else None
+
+
+def get_flag(mapping: MappingNode, key: str) -> bool:
+    """Whether the value at a key is `true`."""
+    node = get_scalar(mapping, key)
+    return node is not None and node.value is True
+
+
+def get_quantity(mapping: MappingNode, key: str, dimension: str) -> Quantity | None:
+    """Return a quantity of a dimension such as `duration`, None where it is not written or malformed."""
+    node = get_scalar(mapping, key)
+    return quantity.parse_quantity(node.text, dimension) if node else None
+
+
+def get_span(mapping: MappingNode, key: str) -> Span:
+    """Return the span of the value at a key, `NOWHERE` where it is not written."""
+    entry = mapping.entries.get(key)
+    return entry.value.span if entry else NO_SPAN
+
+
+def get_text_mapping(mapping: MappingNode, key: str) -> Mapping[str, str]:
+    """Return a mapping of texts, such as `urls`."""
+    texts_mapping = get_mapping(mapping, key)
+    return {e.key: e.value.text for e in texts_mapping if type(e.value) is ScalarNode and e.value.value is not None}
+
+
+def iterate_elements(mapping: MappingNode, key: str) -> Iterator[tuple[str, MappingEntry, MappingNode]]:
+    """Yield the elements of a section: id, entry and body."""
+    for entry in get_mapping(mapping, key):
+        yield entry.key, entry, get_body(entry)
+
+
+def get_layout(mapping: MappingNode) -> DiagramLayout:
+    """Return an element's layout."""
+    direction = get_text(get_mapping(mapping, "layout"), "direction")
+    return DiagramLayout(direction) if direction in {"left-right", "top-bottom"} else DiagramLayout()  # type: ignore[arg-type]
+
+
+def get_title(mapping: MappingNode, element_id: str) -> str:
+    """Return an element's title, made from its id if it has none: `object_recognition` is "Object Recognition"."""
+    title_text = get_text(mapping, "title")
+    return title_text if title_text is not None else title_from_id(element_id)
+
+
+@lru_cache(4096)
+def normalise_type_name(text_written: str) -> str:
+    """Return a type's name in the form in which names are compared: NFC, blanks folded to one, messages in full."""
+    folded = _BLANKS.sub(" ", unicodedata.normalize("NFC", text_written)).strip()
+    return full_message_name(folded) or folded
+
+
+def get_message(mapping: MappingNode) -> str | None:
+    """Return the full name of the message that an element names, None where there is none."""
+    message_text = get_text(mapping, "message")
+    return None if message_text is None else full_message_name(message_text.strip())

@@ -1,0 +1,172 @@
+"""Read the report's chapters: which ones, in what order, the text of the project's own, and the pictures in them."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import posixpath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from urllib.parse import unquote
+
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
+from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+
+MISSING_CHAPTER = Rule(
+    "missing-chapter",
+    Severity.ERROR,
+    """\
+The report asks for a chapter that is neither one that archgen writes nor a file of the project.
+
+Why: The document would lack what its readers were promised. archgen writes the chapters overview, groups, deployment,
+timing, chains, views, types, connections, requirements, open_points and statistics; every other entry of `report.chapters` is the
+path of a CommonMark file inside the project's folder.
+
+Bad:
+    report: {chapters: [group, connections]}
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+
+Good:
+    report: {chapters: [groups, connections]}
+    groups:
+      sensing:
+        components:
+          camera: {outputs: {image: sensor_msgs/msg/Image}}
+          screen: {inputs: {image: camera.image}}
+    nodes:
+      camera: {implements: camera}
+      screen: {implements: screen}
+""",
+    fixed=True,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ReportChapters:
+    """The chapters of the report: the order of all, and those that the project wrote, by path.
+
+    Frozen, but `picture_cache` is filled as pictures are read.
+    """
+
+    files: ProjectFiles
+    order: tuple[str, ...] = GENERATED_CHAPTERS
+    texts: Mapping[str, Chapter] = field(default_factory=dict)
+    packed_pictures: Mapping[str, bytes] = field(default_factory=dict)
+    """Pictures that a packed project holds itself, by path; they win over files."""
+    picture_cache: dict[str, bytes | None] = field(default_factory=dict, compare=False, repr=False)
+    """Pictures read so far, None for one that is absent: each is read once, so that all outputs have the same bytes."""
+
+    def read_picture(self, path: str) -> bytes | None:
+        """Read a picture by its path in the project; None if there is no such file inside the project."""
+        normal_path = posixpath.normpath(path)
+        if normal_path not in self.picture_cache:
+            self.picture_cache[normal_path] = self._load_picture(normal_path)
+        return self.picture_cache[normal_path]
+
+    def _load_picture(self, normal_path: str) -> bytes | None:
+        if normal_path in self.packed_pictures:
+            return self.packed_pictures[normal_path]
+        if normal_path.startswith(("/", "../")) or normal_path == ".." or "\\" in normal_path or "\0" in normal_path:
+            return None
+        return read_binary_file(self.files, normal_path)
+
+    def read_pictures(self) -> dict[str, bytes]:
+        """Read all pictures that the chapters show; return their bytes by path."""
+        data_by_path = {}
+        for chapter in self.texts.values():
+            for name in find_shown_pictures(chapter.text):
+                normal_path = posixpath.normpath(posixpath.join(chapter.folder, name))
+                stem = normal_path.removesuffix(".svg")
+                # Programs that cannot show SVG use a PNG of the same name instead.
+                for path in (normal_path, f"{stem}.png") if stem != normal_path else (normal_path,):
+                    data = self.read_picture(path)
+                    if data is not None:
+                        data_by_path[path] = data
+        return data_by_path
+
+
+def find_shown_pictures(markdown: str) -> Iterator[str]:
+    """Yield the paths of the pictures in a Markdown text, percent-decoded, without those with a scheme (`https:`)."""
+    from markdown_it import MarkdownIt
+
+    for block in MarkdownIt("commonmark", {"html": False}).parse(markdown):
+        # Pictures are inline tokens, which markdown-it keeps one level below the blocks.
+        for token in block.children or ():
+            address = str(token.attrs.get("src", "")) if token.type == "image" else ""
+            if address and ":" not in address.split("/", 1)[0]:
+                yield unquote(address)
+
+
+def read_chapters(root: MappingNode, files: ProjectFiles) -> tuple[ReportChapters, tuple[Diagnostic, ...]]:
+    """Read the chapters that the merged project asks for; without `report.chapters` those that archgen writes."""
+    report = root.get("report")
+    if not isinstance(report, MappingNode):
+        return ReportChapters(files), ()
+    chapters_node = report.get("chapters")
+    entries = (
+        [item for item in chapters_node.items if isinstance(item, ScalarNode)]
+        if isinstance(chapters_node, SequenceNode)
+        else None
+    )
+    packed_texts = dict(_list_texts(report.get("texts")))
+    order, texts, diagnostics = [], {}, []
+    for entry in entries or ():
+        name = entry.text
+        if name in order:
+            continue
+        if name not in GENERATED_CHAPTERS:
+            # A packed project holds its chapters' text under `report.texts` and needs no files.
+            text, problem = (
+                (packed_texts[name], None) if name in packed_texts else _read_chapter(files, name, entry.span)
+            )
+            if problem:
+                diagnostics.append(problem)
+                continue
+            texts[name] = Chapter(name, text)
+        order.append(name)
+    chapter_order = tuple(order) if entries is not None else GENERATED_CHAPTERS
+    return ReportChapters(files, chapter_order, texts, dict(_decode_pictures(report.get("pictures")))), tuple(
+        diagnostics
+    )
+
+
+def _list_texts(node: object) -> Iterator[tuple[str, str]]:
+    for entry in node if isinstance(node, MappingNode) else ():
+        if isinstance(entry.value, ScalarNode):
+            yield entry.key, entry.value.text
+
+
+def _decode_pictures(node: object) -> Iterator[tuple[str, bytes]]:
+    for path, text in _list_texts(node):
+        try:
+            yield path, base64.b64decode(text, validate=True)
+        except binascii.Error:
+            continue  # reported where the chapter shows the picture
+
+
+def _read_chapter(files: ProjectFiles, name: str, span: Span) -> tuple[str, Diagnostic | None]:
+    if not name.endswith(".md"):
+        help_line = (
+            did_you_mean(name, GENERATED_CHAPTERS)
+            or f"archgen writes {', '.join(GENERATED_CHAPTERS)}; a file ends in .md"
+        )
+        return "", Diagnostic("missing-chapter", f"there is no chapter `{name}`", span, help=help_line)
+    normal_path = posixpath.normpath(name)
+    if normal_path.startswith(("/", "../")):
+        return "", Diagnostic("missing-chapter", f"the chapter `{name}` lies outside the project's folder", span)
+    file_text = read_text_file(files, normal_path)
+    if file_text.problem:
+        message = f"the chapter `{name}` cannot be read: {file_text.problem.message.removeprefix('the file cannot be read: ')}"
+        return "", Diagnostic("missing-chapter", message, span, help=file_text.problem.help)
+    return file_text.text, None

@@ -1,0 +1,58 @@
+"""Ids of elements: which texts are valid, and how to make one from a name."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import unicodedata
+
+MAX_ID_LENGTH = 64
+RESERVED_IDS = frozenset({"true", "false", "null", "any", "all", "none", "self"})
+_ID_PATTERN = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*\Z")
+_CAMEL_CASE_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z][a-z])")
+# Letters that Unicode's NFKD does not decompose to ASCII (they would be dropped), and `&`.
+_LATIN_SPELLINGS = {
+    "ß": "ss",
+    "æ": "ae",
+    "Æ": "Ae",
+    "ø": "o",
+    "Ø": "O",
+    "ł": "l",
+    "Ł": "L",
+    "đ": "d",
+    "Đ": "D",
+    "&": " and ",
+}
+_SPELLING_TABLE = str.maketrans(_LATIN_SPELLINGS)
+
+
+def is_id(text: str) -> bool:
+    """Whether a text is a valid id of an element."""
+    return len(text) <= MAX_ID_LENGTH and text not in RESERVED_IDS and _ID_PATTERN.match(text) is not None
+
+
+def make_id(name: str, prefix: str) -> str:
+    """Make an id from a name: `Object Recognition (3D)` is `object_recognition_3d`.
+
+    `prefix` is put in front of names that begin with a digit or are reserved words. A name without any Latin letter or
+    digit becomes the prefix and a digest of the name, so that the same name always makes the same id.
+    """
+    ascii_name = unicodedata.normalize("NFKD", name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
+    words = re.findall(r"[a-z0-9]+", _CAMEL_CASE_HUMP.sub(" ", ascii_name).lower())
+    # Cutting may leave an underscore at the end, which no id may have.
+    element_id = "_".join(words)[:MAX_ID_LENGTH].strip("_")
+    if not element_id:
+        return f"{prefix}_{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:6]}"
+    if element_id[0].isdigit() or element_id in RESERVED_IDS:
+        return f"{prefix}_{element_id}"[:MAX_ID_LENGTH].strip("_")
+    return element_id
+
+
+def make_unique_id(wanted_id: str, used_ids: frozenset[str] | set[str]) -> str:
+    """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ..."""
+    element_id, number = wanted_id, 2
+    while element_id in used_ids:
+        ending = f"_{number}"
+        element_id = wanted_id[: MAX_ID_LENGTH - len(ending)].strip("_") + ending
+        number += 1
+    return element_id

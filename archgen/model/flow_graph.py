@@ -1,0 +1,112 @@
+"""The flow of data between components or between nodes: adjacency, and what is upstream and downstream of an element.
+
+Plain dictionaries and a breadth-first search instead of networkx, whose import takes 116 ms, a third of what a whole
+`archgen check` may take (docs/decisions/0001-no-networkx.md).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.component import Connection
+from archgen.model.message_types import flow_of
+
+
+@dataclass(frozen=True, slots=True)
+class FlowGraph:
+    """The successors and predecessors of each element, by complete id, in order of appearance, without self-loops."""
+
+    successors: Mapping[str, tuple[str, ...]]
+    predecessors: Mapping[str, tuple[str, ...]]
+
+
+def build_component_graph(architecture: Architecture) -> FlowGraph:
+    """Build the graph of components.
+
+    Services and actions carry data both ways. A component whose outputs are not known yet feeds its readers.
+    """
+    return _build_graph(_component_flow_pairs(architecture))
+
+
+def build_node_graph(architecture: Architecture) -> FlowGraph:
+    """Build the graph of nodes from the topics, services and actions they use; the last two carry data both ways."""
+    return _build_graph(_node_flow_pairs(architecture))
+
+
+def find_reachable(
+    neighbours: Mapping[str, Collection[str]], starts: Iterable[str], max_steps: int | None = None
+) -> dict[str, int]:
+    """Return all elements that can be reached, the starts included, each with its least number of steps.
+
+    `steps` limits the number of steps; None is no limit.
+    """
+    distances = dict.fromkeys(starts, 0)
+    frontier, distance = list(distances), 0
+    while frontier and (max_steps is None or distance < max_steps):
+        distance += 1
+        next_frontier: list[str] = []
+        for element in frontier:
+            for neighbour in neighbours.get(element, ()):
+                if neighbour not in distances:
+                    distances[neighbour] = distance
+                    next_frontier.append(neighbour)
+        frontier = next_frontier
+    return distances
+
+
+def _build_graph(pairs: Iterable[tuple[str, str]]) -> FlowGraph:
+    # Dictionaries as ordered sets: the result must not depend on hashing.
+    successors: dict[str, dict[str, None]] = defaultdict(dict)
+    predecessors: dict[str, dict[str, None]] = defaultdict(dict)
+    for source, target in pairs:
+        if source != target:
+            successors[source][target] = None
+            predecessors[target][source] = None
+    return FlowGraph(
+        {element: tuple(neighbours) for element, neighbours in successors.items()},
+        {element: tuple(neighbours) for element, neighbours in predecessors.items()},
+    )
+
+
+def _component_flow_pairs(architecture: Architecture) -> Iterator[tuple[str, str]]:
+    both_ways = {o.id for o in architecture.outputs.values() if flow_of(architecture.message_of(o)) != "topic"}
+    for edge in architecture.edges:
+        writer = architecture.outputs[edge.output].component
+        reader = architecture.inputs[edge.input].component
+        yield writer, reader
+        # A request flows to the server, the answer back.
+        if edge.output in both_ways:
+            yield reader, writer
+    for connection in architecture.connections:
+        # A connection without outputs makes no edge: a stub is joined by what refers to it.
+        if not connection.outputs:
+            reader = architecture.inputs[connection.input].component
+            for component in _stub_components(architecture, connection):
+                yield component, reader
+
+
+def _stub_components(architecture: Architecture, connection: Connection) -> Iterator[str]:
+    """Yield the components that a reference takes as a whole and whose outputs are not known yet."""
+    if connection.kind == "group":
+        members = tuple(architecture.groups[connection.target].components.values())
+    elif connection.kind == "component":
+        members = (architecture.components[connection.target],)
+    else:
+        members = ()
+    return (component.id for component in members if not component.outputs_known)
+
+
+def _node_flow_pairs(architecture: Architecture) -> Iterator[tuple[str, str]]:
+    for topic in architecture.topics.values():
+        for reader in topic.readers:
+            for writer in topic.writers:
+                # A shared topic such as /tf would connect every node to every other one: there only the outputs count
+                # that the reader's input names. timing/arcs has the same rule for its arcs.
+                if topic.shared and writer.port not in reader.sources:
+                    continue
+                yield writer.node, reader.node
+                if topic.flow != "topic":
+                    yield reader.node, writer.node

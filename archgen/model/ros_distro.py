@@ -1,0 +1,11 @@
+"""Which ROS distributions are ROS 1: some rules differ between the two generations."""
+
+from __future__ import annotations
+
+ROS_1_DISTROS = frozenset({"groovy", "hydro", "indigo", "jade", "kinetic", "lunar", "melodic", "noetic"})
+"""The ROS 1 distributions that may still be in use. Any other name, or none, counts as ROS 2."""
+
+
+def is_ros_1(distro: str | None) -> bool:
+    """Whether a distribution is one of ROS 1; False for None."""
+    return distro in ROS_1_DISTROS

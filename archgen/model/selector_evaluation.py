@@ -1,0 +1,277 @@
+"""Evaluate selectors: which components and nodes of an architecture they select.
+
+`model.selector_parser` parses selectors, `model.selector_keys` finds what a key such as `tag:` names.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
+from functools import cached_property
+
+from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import dataclass
+from archgen.model import flow_graph
+from archgen.model.architecture import Architecture
+from archgen.model.path_resolver import ElementRef, PathResolver
+from archgen.model.selector_keys import SelectorHit, find_by_key, matches_wildcard
+from archgen.model.selector_parser import ALL_STEPS, SelectorAtom, SelectorProblem, SelectorWord, parse_selector
+
+__all__ = ["Selection", "SelectorEvaluator", "SelectorProblem", "evaluate_selector", "parse_selector"]
+
+_PATH_KINDS = ("group", "component", "output")
+_MAX_GUESS_POOL = 100_000
+"""No guess is made among more names than these: it would take seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """The selected components and nodes by complete id: with a component its nodes, with a node its components.
+
+    `named_elements` are the elements that paths name, groups and outputs included, in the order of the words.
+    """
+
+    components: frozenset[str] = frozenset()
+    nodes: frozenset[str] = frozenset()
+    named_elements: tuple[ElementRef, ...] = ()
+
+
+def evaluate_selector(
+    text: str, architecture: Architecture, findings: Mapping[str, frozenset[str]] | None = None
+) -> tuple[Selection, tuple[SelectorProblem, ...]]:
+    """Evaluate one selector. `findings` are the ids of the elements with findings of each rule, for `finding:`."""
+    return SelectorEvaluator(architecture, findings or {}).evaluate(text)
+
+
+@dataclass()
+class SelectorEvaluator:
+    """Evaluates selectors on one architecture. Its look-ups are made on first use: keep it for several selectors."""
+
+    architecture: Architecture
+    findings: Mapping[str, frozenset[str]] = field(default_factory=dict)
+
+    def evaluate(self, text: str) -> tuple[Selection, tuple[SelectorProblem, ...]]:
+        """Evaluate a selector: the union of the words without `-` (everything if there are none), minus those with `-`.
+
+        With an error (not only warnings) nothing is selected.
+        """
+        selector = parse_selector(text)
+        problems = list(selector.problems)
+        wanted_hits = [self._evaluate_word(word, problems) for word in selector.words if not word.is_negative]
+        refused_hits = [self._evaluate_word(word, problems) for word in selector.words if word.is_negative]
+        if any(problem.severity == "error" for problem in problems):
+            return Selection(), tuple(problems)
+        if not wanted_hits:
+            wanted_hits = [SelectorHit(frozenset(self.architecture.components), frozenset(self.architecture.nodes))]
+        # The order of words does not matter: `-` is applied last, to all of them.
+        return self._subtract_hits(wanted_hits, refused_hits), tuple(problems)
+
+    def _subtract_hits(self, wanted_hits: Sequence[SelectorHit], refused_hits: Sequence[SelectorHit]) -> Selection:
+        """Subtract hits from others. A node goes if it is refused itself, or if the last of its components is."""
+        refused_components = frozenset[str]().union(*(hit.components for hit in refused_hits))
+        # Nodes that refused words bring only by their components stay as long as another of their components does.
+        refused_nodes = frozenset[str]().union(*(hit.nodes for hit in refused_hits if hit.only_nodes))
+        components = frozenset[str]().union(*(hit.components for hit in wanted_hits)) - refused_components
+        nodes = frozenset[str]().union(*(hit.nodes for hit in wanted_hits)) - refused_nodes
+        implements = {node: self.architecture.nodes[node].implements for node in nodes}
+        orphaned_nodes = {
+            node
+            for node in nodes
+            if not refused_components.isdisjoint(implements[node]) and components.isdisjoint(implements[node])
+        }
+        elements = dict.fromkeys(name for hit in wanted_hits for name in hit.elements)
+        return Selection(components, nodes - orphaned_nodes, tuple(elements))
+
+    @cached_property
+    def resolver(self) -> PathResolver:
+        """Resolves paths to elements."""
+        architecture = self.architecture
+        ids_by_kind = {
+            "group": architecture.groups,
+            "component": architecture.components,
+            "output": architecture.outputs,
+            "input": architecture.inputs,
+        }
+        return PathResolver({**ids_by_kind, "node": architecture.nodes})
+
+    @cached_property
+    def component_graph(self) -> flow_graph.FlowGraph:
+        """The flow between components."""
+        return flow_graph.build_component_graph(self.architecture)
+
+    @cached_property
+    def node_graph(self) -> flow_graph.FlowGraph:
+        """The flow between nodes."""
+        return flow_graph.build_node_graph(self.architecture)
+
+    @cached_property
+    def nodes_by_component(self) -> Mapping[str, list[str]]:
+        """The ids of the nodes that implement each component."""
+        nodes: dict[str, list[str]] = defaultdict(list)
+        for node in self.architecture.nodes.values():
+            for component in node.implements:
+                nodes[component].append(node.id)
+        return nodes
+
+    @cached_property
+    def readers_by_output(self) -> Mapping[str, list[str]]:
+        """The ids of the components that read each output."""
+        readers: dict[str, list[str]] = defaultdict(list)
+        for edge in self.architecture.edges:
+            readers[edge.output].append(self.architecture.inputs[edge.input].component)
+        return readers
+
+    def _evaluate_word(self, word: SelectorWord, problems: list[SelectorProblem]) -> SelectorHit:
+        hit = self._evaluate_atom(word.atom, problems)
+        if word.range_end:
+            return self._find_ways(hit, self._evaluate_atom(word.range_end, problems))
+        if word.steps_before or word.steps_after:
+            hit = self._add_neighbours(hit, _step_limit(word.steps_before), _step_limit(word.steps_after))
+        return self._add_other_level(hit)
+
+    def _add_neighbours(self, hit: SelectorHit, steps_before: int | None, steps_after: int | None) -> SelectorHit:
+        """Add what feeds a hit and what it feeds, up to some steps each; None is any number of steps."""
+        # Steps are steps between nodes only if the word names nodes and nothing else.
+        if hit.only_nodes:
+            reached = flow_graph.find_reachable(
+                self.node_graph.predecessors, hit.nodes, steps_before
+            ) | flow_graph.find_reachable(self.node_graph.successors, hit.nodes, steps_after)
+            return SelectorHit(frozenset(), frozenset(reached), hit.elements, only_nodes=True)
+        full_hit = self._add_other_level(hit)
+        upstream = flow_graph.find_reachable(self.component_graph.predecessors, full_hit.components, steps_before)
+        return SelectorHit(
+            full_hit.components.union(upstream, self._reach_downstream(full_hit, steps_after)),
+            full_hit.nodes,
+            hit.elements,
+        )
+
+    def _reach_downstream(self, hit: SelectorHit, max_steps: int | None) -> dict[str, int]:
+        """Return the components that a hit feeds, with their steps; the first step of outputs is their own readers."""
+        if not hit.outputs or max_steps == 0:
+            return flow_graph.find_reachable(self.component_graph.successors, hit.components, max_steps)
+        starts = (reader for output in hit.outputs for reader in self.readers_by_output.get(output, ()))
+        return flow_graph.find_reachable(
+            self.component_graph.successors, starts, None if max_steps is None else max_steps - 1
+        )
+
+    def _find_ways(self, first_hit: SelectorHit, last_hit: SelectorHit) -> SelectorHit:
+        """Return all ways from one hit to another: what is both downstream of the first and upstream of the last."""
+        elements = (*first_hit.elements, *last_hit.elements)
+        if first_hit.only_nodes and last_hit.only_nodes:
+            downstream = flow_graph.find_reachable(self.node_graph.successors, first_hit.nodes)
+            way_elements = (
+                downstream.keys() & flow_graph.find_reachable(self.node_graph.predecessors, last_hit.nodes).keys()
+            )
+            hit = SelectorHit(frozenset(), frozenset(way_elements), elements, only_nodes=True)
+        else:
+            first_hit, last_hit = self._add_other_level(first_hit), self._add_other_level(last_hit)
+            upstream = flow_graph.find_reachable(self.component_graph.predecessors, last_hit.components).keys()
+            way_elements = self._reach_downstream(first_hit, None).keys() & upstream
+            # The components of outputs are no part of what the outputs feed, but where the way begins.
+            if first_hit.outputs and way_elements:
+                way_elements |= first_hit.components
+            hit = SelectorHit(frozenset(way_elements), frozenset(), elements)
+        return self._add_other_level(hit)
+
+    def _add_other_level(self, hit: SelectorHit) -> SelectorHit:
+        """Add the nodes of the components, and the components of the nodes."""
+        nodes = {node for component in hit.components for node in self.nodes_by_component.get(component, ())}
+        crossing_nodes = hit.nodes if hit.includes_components else ()
+        implemented_components = (c for node in crossing_nodes for c in self.architecture.nodes[node].implements)
+        return SelectorHit(
+            hit.components.union(implemented_components), hit.nodes | nodes, hit.elements, hit.outputs, hit.only_nodes
+        )
+
+    def _evaluate_atom(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
+        if atom.key is not None:
+            hit = find_by_key(self.architecture, atom.key, atom.value, self.findings)
+            # Only a warning, unlike a path that names nothing: a tag may be selected before anything has it.
+            if not hit.components and not hit.nodes:
+                message = f"nothing has `{atom.key}:{atom.value}`"
+                problems.append(SelectorProblem(message, atom.start, atom.end, "warning"))
+            return hit
+        if "*" in atom.value:
+            hit = self._hit_of_elements(self._match_pattern(atom.value))
+            if not hit.elements:
+                problems.append(SelectorProblem(f"nothing fits `{atom.value}`", atom.start, atom.end, "warning"))
+            return hit
+        return self._evaluate_path(atom, problems)
+
+    def _evaluate_path(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
+        """Resolve a path by the rules of references. If no group, component or output fits, try nodes, then inputs."""
+        # Kinds are tried in this order, so that an input or a node never makes the path of a component ambiguous.
+        match = self.resolver.resolve_path(atom.value, _PATH_KINDS)
+        if not match.count:
+            match = self.resolver.resolve_path(atom.value, ("node",))
+        if not match.count:
+            match = self.resolver.resolve_path(atom.value, ("input",))
+        if match.count > 1:
+            quoted_ids = [f"`{name.id}`" for name in match.elements]
+            last_phrase = f"{match.count - len(quoted_ids)} more" if match.count > len(quoted_ids) else quoted_ids.pop()
+            message = f"`{atom.value}` can mean {', '.join(quoted_ids)} or {last_phrase}"
+            remedy = f"write more of the path, such as `{match.elements[0].id}`"
+            problems.append(SelectorProblem(message, atom.start, atom.end, help=remedy))
+        elif not match.count:
+            guess = self._guess_path(atom.value)
+            help_line = f"did you mean `{guess}`?" if guess else None
+            problems.append(SelectorProblem(f"nothing is called `{atom.value}`", atom.start, atom.end, help=help_line))
+        return self._hit_of_elements(match.elements if match.count == 1 else ())
+
+    def _guess_path(self, path_text: str) -> str | None:
+        """Return the path with as many parts that is most similar, or None."""
+        # Only among paths with as many parts: `camera` is no slip for `sensing.camera`, which it would have found.
+        dots = path_text.count(".")
+        pool = {
+            path
+            for kind in (*_PATH_KINDS, "node")
+            for path in self.resolver.path_endings(kind)
+            if path.count(".") == dots
+        }
+        return find_closest(path_text, pool) if len(pool) <= _MAX_GUESS_POOL else None
+
+    def _match_pattern(self, pattern: str) -> list[ElementRef]:
+        """Return the elements whose ids end in a pattern, part by part."""
+        pattern_parts = pattern.split(".")
+        architecture = self.architecture
+        ids_by_kind = {
+            "group": architecture.groups,
+            "component": architecture.components,
+            "output": architecture.outputs,
+            "node": architecture.nodes,
+        }
+        return [
+            ElementRef(kind, path)
+            for kind, paths in ids_by_kind.items()
+            for path in paths
+            if _matches_ending(path.split("."), pattern_parts)
+        ]
+
+    def _hit_of_elements(self, named_elements: Iterable[ElementRef]) -> SelectorHit:
+        """Return the components and nodes of some elements; a group stands for all of its components."""
+        elements = tuple(named_elements)
+        components = set[str]()
+        for element in elements:
+            if element.kind == "group":
+                components.update(c.id for c in self.architecture.groups[element.id].components.values())
+            elif element.kind == "component":
+                components.add(element.id)
+            elif element.kind in {"output", "input"}:
+                components.add(element.id.rpartition(".")[0])
+        nodes = frozenset(element.id for element in elements if element.kind == "node")
+        outputs = tuple(element.id for element in elements if element.kind == "output")
+        # `outputs` is set only if the word names nothing else, see `SelectorHit.outputs`.
+        only_outputs = len(outputs) == len(elements)
+        return SelectorHit(
+            frozenset(components), nodes, elements, outputs if only_outputs else (), bool(nodes) and not components
+        )
+
+
+def _step_limit(steps: int) -> int | None:
+    return None if steps == ALL_STEPS else steps
+
+
+def _matches_ending(path_parts: list[str], pattern_parts: list[str]) -> bool:
+    return len(path_parts) >= len(pattern_parts) and all(
+        map(matches_wildcard, pattern_parts, path_parts[-len(pattern_parts) :])
+    )

@@ -1,0 +1,211 @@
+"""From a checked project to an interface agreement: between whom, since when, in which format, and where to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal, get_args
+
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.emit import file_tree
+from archgen.emit.picture import Picture
+from archgen.git.project_revision import find_revision
+from archgen.pipeline import CheckedProject
+from archgen.products import project_outputs
+from archgen.products.compared_versions import ProjectVersion
+from archgen.products.project_outputs import OutputOptions
+from archgen.views import inline_text
+from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Graph, Paragraph, Section
+from archgen.views.tables.architecture_tables import describe_severities
+from archgen.views.timing.timing_lookup import analyse_with_chains
+
+AgreementFormat = Literal["docx", "markdown", "html"]
+AGREEMENT_FORMATS: tuple[AgreementFormat, ...] = get_args(AgreementFormat)
+"""The formats, as the command line names them."""
+FORMAT_BY_ENDING: Mapping[str, AgreementFormat] = {
+    ".docx": "docx",
+    ".md": "markdown",
+    ".markdown": "markdown",
+    ".html": "html",
+    ".htm": "html",
+}
+"""The format by the ending of a file's name."""
+_MAX_LISTED = 8
+"""At most this many partners are named in a message."""
+
+
+class PartnersError(ValueError):
+    """Two partners cannot have an agreement; the text says why and what can be done."""
+
+
+def make_project_agreement(
+    checked_project: CheckedProject,
+    first: str,
+    second: str,
+    earlier_version: ProjectVersion | None = None,
+    printed_revision: str | None = None,
+) -> PartnerAgreement:
+    """Make the agreement of two partners.
+
+    Changes since `earlier_version` are marked; `printed_revision` is printed instead of git's last commit. Raise
+    PartnersError where there can be no agreement.
+    """
+    _check_partners(checked_project, first, second)
+    partner_agreement = make_agreement(
+        _make_timed_lookup(checked_project),
+        first,
+        second,
+        revision=find_revision(checked_project.root, checked_project.input_files)
+        if printed_revision is None
+        else printed_revision,
+        earlier_revision=(_format_version_name(earlier_version), _make_timed_lookup(earlier_version.checked_project))
+        if earlier_version
+        else None,
+        notices=tuple(_error_notices(checked_project, earlier_version)),
+    )
+    # Without interfaces there may still be removed ones to agree on.
+    if not partner_agreement.interface_count and not (
+        partner_agreement.changes and partner_agreement.changes.removed_records
+    ):
+        raise PartnersError(_explain_no_interfaces(checked_project, first, second))
+    return partner_agreement
+
+
+def _format_version_name(earlier_version: ProjectVersion) -> str:
+    """Name an earlier version as the user typed it, with its commit where that says more."""
+    # A hash that begins with what the user typed says nothing new.
+    name_suffices = not earlier_version.commit or earlier_version.commit.startswith(earlier_version.name)
+    return earlier_version.name if name_suffices else f"{earlier_version.name} ({earlier_version.commit[:7]})"
+
+
+def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
+    """Build the look-ups of the whole project, with timing."""
+    return replace(
+        project_outputs.make_scoped_lookup(checked_project, OutputOptions()),
+        timing=analyse_with_chains(checked_project.architecture),
+    )
+
+
+def _check_partners(checked_project: CheckedProject, first: str, second: str) -> None:
+    """Raise PartnersError unless both ids are declared and different."""
+    partners = checked_project.architecture.partners
+    if not partners:
+        msg = "the project has no partners: declare them below `partners`, and name them as `owner` of groups or components"
+        raise PartnersError(msg)
+    for name in (first, second):
+        if name not in partners:
+            guess = did_you_mean(name, partners)
+            available_names = ", ".join(list(partners)[:_MAX_LISTED]) + (", ..." if len(partners) > _MAX_LISTED else "")
+            msg = f"there is no partner `{name}`; {guess or f'there are {available_names}'}"
+            raise PartnersError(msg)
+    if first == second:
+        msg = f"an agreement is between two partners, and `{first}` was given twice"
+        raise PartnersError(msg)
+
+
+def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: str) -> str:
+    """Explain that two partners share no interface, and with whom they do."""
+    architecture = checked_project.architecture
+    owners = [item.owners for item in architecture.components.values()] + [
+        item.owners for item in architecture.nodes.values()
+    ]
+    # A partner without elements is the more basic reason, so it is named before neighbours are searched.
+    for name in (first, second):
+        if not any(name in item for item in owners):
+            return f"nothing flows between `{first}` and `{second}`: `{name}` owns no component and no node"
+    lookup, sentences = project_outputs.make_scoped_lookup(checked_project, OutputOptions()), []
+    for name in (first, second):
+        neighbours = [
+            partner_id
+            for partner_id in architecture.partners
+            if partner_id != name and find_interfaces_between(lookup, name, partner_id)
+        ]
+        sentences.append(f"`{name}` has interfaces with {', '.join(neighbours) or 'nobody'}")
+    return f"nothing flows between `{first}` and `{second}`; {'; '.join(sentences)}"
+
+
+def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVersion | None) -> Iterator[Paragraph]:
+    """Yield a notice for each version that has errors."""
+    for version_suffix, noticed_project in (
+        ("", checked_project),
+        *(
+            ((f" at {_format_version_name(earlier_version)}", earlier_version.checked_project),)
+            if earlier_version
+            else ()
+        ),
+    ):
+        if noticed_project.has_errors:
+            message = f"The architecture{version_suffix} has errors ({describe_severities(noticed_project.findings)}). What is sound is shown all the same."
+            yield Paragraph(inline_text.to_inlines(message), "error")
+
+
+def render_agreement_markdown(partner_agreement: PartnerAgreement) -> str:
+    """Write an agreement as GitHub-flavoured Markdown, with its picture as Mermaid."""
+    from archgen.emit import backend_manifests, text
+
+    files = (backend_manifests.BackendFile("outline.md.j2", "agreement.md"),)
+    backend = replace(
+        backend_manifests.read_shipped_backend("wiki"), files=files, views=("outline", "graphs", "places")
+    )
+    # Markdown has no page for an element; the template may link only to sections of this document.
+    section_anchors = [section.anchor for section in _walk_sections(partner_agreement.outline.sections)]
+    written_files, problems = text.render_backend(
+        backend, {"outline": partner_agreement.outline, "graphs": (partner_agreement.graph,), "places": section_anchors}
+    )
+    if written_files is None:
+        raise file_tree.OutputError(problems[0].message, problems[0].help)
+    return written_files.files["agreement.md"].decode()
+
+
+def _walk_sections(sections: tuple[Section, ...]) -> Iterator[Section]:
+    """Yield all sections, each before those below it."""
+    for section in sections:
+        yield section
+        yield from _walk_sections(section.sections)
+
+
+def render_agreement_html(partner_agreement: PartnerAgreement, options: OutputOptions) -> bytes:
+    """Write an agreement as one self-contained HTML page."""
+    from archgen.emit.site import standalone_page
+
+    return standalone_page.write_standalone_page(
+        partner_agreement.outline, _draw_graph(partner_agreement.graph, ("svg",), options)
+    )
+
+
+def render_agreement_docx(partner_agreement: PartnerAgreement, options: OutputOptions) -> bytes:
+    """Write an agreement as a Word document."""
+    from archgen.emit import docx as emitter
+
+    pictures = _draw_graph(partner_agreement.graph, ("png", "svg_outlines"), options)
+    # An agreement has no chapters, hence no pictures of chapters.
+    document, warnings = emitter.write(partner_agreement.outline, pictures, chapter_files=lambda _path: None)
+    for warning in warnings:
+        options.warn(warning)
+    return document
+
+
+def _draw_graph(graph: Graph, formats: tuple[str, ...], options: OutputOptions) -> Mapping[str, Picture]:
+    return project_outputs.draw_or_warn((graph,), formats, options)
+
+
+def write_agreement(
+    partner_agreement: PartnerAgreement,
+    agreement_format: AgreementFormat,
+    target: Path,
+    options: OutputOptions | None = None,
+) -> None:
+    """Write an agreement into a file."""
+    options = options or OutputOptions()
+    if agreement_format == "markdown":
+        file_tree.write_file(target, render_agreement_markdown(partner_agreement).encode())
+    else:
+        file_tree.write_file(
+            target,
+            render_agreement_html(partner_agreement, options)
+            if agreement_format == "html"
+            else render_agreement_docx(partner_agreement, options),
+        )

@@ -1,0 +1,196 @@
+"""Which findings a check reports: all, those that a baseline does not list, or those that a change caused.
+
+What makes two findings the same: docs/decisions/0005-known-findings.md.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen import git, pipeline, project
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
+from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
+from archgen.emit import file_tree
+from archgen.findings.rule_table import index_rules
+from archgen.pipeline import ALL_RULES, CheckedProject
+from archgen.products import baseline_entries
+from archgen.project import baseline_reading as reading
+
+BASELINE_FILE = "archgen-baseline.yaml"
+"""The baseline of a project, unless another file is named."""
+RULES_BY_NAME = index_rules(ALL_RULES)
+"""Every rule by its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReportedFindings:
+    """What a check reports, and what it keeps quiet.
+
+    A baseline lists `known_findings`; `earlier_findings` were there before a change. Of what the baseline lists or what
+    was there before, `cured_entries` and `healed_findings` no longer exist.
+    """
+
+    findings: tuple[Diagnostic, ...]
+    known_findings: tuple[Diagnostic, ...] = ()
+    cured_entries: tuple[BaselineEntry, ...] = ()
+    earlier_findings: tuple[Diagnostic, ...] = ()
+    healed_findings: tuple[Diagnostic, ...] = ()
+    was_compared: bool = False
+    """Whether there was a baseline or an earlier version to compare with."""
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineUpdate:
+    """What an update of a baseline did: findings that it lists now, newly listed ones, and removed ones."""
+
+    path: Path
+    known_count: int
+    added_count: int
+    cured_count: int
+
+
+def find_reading_error(findings: Iterable[Diagnostic]) -> Diagnostic | None:
+    """Return the first error of reading or linking, None where there is none.
+
+    Behind such an error more may be hidden, so nobody can say which findings are cured.
+    """
+    return next(
+        (finding for finding in findings if RULES_BY_NAME[finding.rule].fixed and finding.severity is Severity.ERROR),
+        None,
+    )
+
+
+def report_findings(
+    checked_project: CheckedProject, baseline_file: Path | None = None, earlier_project: CheckedProject | None = None
+) -> ReportedFindings:
+    """Compare a project's findings with a baseline and with an earlier version of the project.
+
+    Findings about the baseline itself are reported, too.
+    """
+    known_entries, problems = _read_baseline(checked_project, baseline_file) if baseline_file else ((), ())
+    new_findings, baselined_findings, cured_entries = baseline_entries.divide_by_baseline(
+        checked_project.findings, known_entries, RULES_BY_NAME
+    )
+    caused_findings, healed_findings = (
+        compare_findings(checked_project, earlier_project) if earlier_project else (checked_project.findings, ())
+    )
+    caused_set = set(caused_findings)
+    # The baseline is read after the project, so its problems have not been through `settle` yet.
+    baseline_problems = settle_diagnostics(problems, RULES_BY_NAME, checked_project.loaded_project.rule_settings)
+    is_complete = find_reading_error(checked_project.findings) is None
+    return ReportedFindings(
+        # New to both: neither listed in the baseline nor there before the change.
+        findings=tuple(
+            sorted(
+                (*(d for d in new_findings if d in caused_set), *baseline_problems),
+                key=lambda finding: finding.sort_key,
+            )
+        ),
+        known_findings=baselined_findings,
+        cured_entries=cured_entries if is_complete else (),
+        earlier_findings=tuple(finding for finding in new_findings if finding not in caused_set),
+        healed_findings=healed_findings if is_complete else (),
+        was_compared=baseline_file is not None or earlier_project is not None,
+    )
+
+
+def compare_findings(
+    checked_project: CheckedProject, earlier_project: CheckedProject
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Return the findings that are new or graver than before, and those that are gone.
+
+    Renamed elements keep their findings. Of several findings that are alike, those on the same line of the same file
+    are matched first, so that the one reported is the new one.
+    """
+    from archgen.compare.match_elements import match_elements
+
+    renames = match_elements(earlier_project.architecture, checked_project.architecture)
+    current_keys = [_matching_keys(finding, checked_project, None) for finding in checked_project.findings]
+    earlier_keys = [_matching_keys(finding, earlier_project, renames) for finding in earlier_project.findings]
+    matched_indexes = match_findings(current_keys, earlier_keys)
+    # Positions, not findings: equal findings may occur several times, and each is matched by itself.
+    new_indexes = [
+        index
+        for index, earlier_index in enumerate(matched_indexes)
+        if earlier_index is None or _is_graver(checked_project.findings[index], earlier_project.findings[earlier_index])
+    ]
+    gone_indexes = set(range(len(earlier_keys))).difference(matched_indexes)
+    return tuple(checked_project.findings[index] for index in new_indexes), tuple(
+        earlier_project.findings[index] for index in sorted(gone_indexes)
+    )
+
+
+def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
+    """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
+    severity_order = list(Severity)
+    return severity_order.index(new_finding.severity or Severity.ERROR) > severity_order.index(
+        old_finding.severity or Severity.ERROR
+    )
+
+
+def _matching_keys(
+    finding: Diagnostic, checked_project: CheckedProject, renames: IdRenamer | None
+) -> tuple[Hashable, Hashable]:
+    """Return the keys for matching, strictest first: identity with file and text of the line, then identity alone."""
+    finding_identity = identify_finding(finding, renames)
+    # The line's text and not its number: lines move with every edit above them.
+    line = checked_project.sources.line_of(finding.span.file, finding.span.line) or ""
+    return (finding_identity, finding.span.file, line.strip()), finding_identity
+
+
+def check_earlier(path: Path | None, revision: str) -> CheckedProject:
+    """Check the project as it was at a revision; `main...` is the commit where HEAD left main.
+
+    Raise what `pipeline.check_at` raises.
+    """
+    if not revision.endswith("..."):
+        return pipeline.check_at_revision(path, revision)
+    tracked_project = project.find_tracked_project(path)
+    fork = git.find_common_commit(tracked_project.objects.repository, revision.removesuffix("...") or "HEAD", "HEAD")
+    return pipeline.check_tracked_project(tracked_project, fork.commit_id)
+
+
+def update_baseline(checked_project: CheckedProject, baseline_file: Path) -> BaselineUpdate:
+    """Write a baseline that lists every finding of now.
+
+    Raise OutputError instead of replacing a file that is no baseline.
+    """
+    known_entries: tuple[BaselineEntry, ...] = ()
+    # `lexists`: a dangling link is in the way as well and must not be replaced unread.
+    if os.path.lexists(baseline_file):
+        known_entries, problems = _read_baseline(checked_project, baseline_file)
+        if not reading.is_baseline(
+            checked_project.sources.text_of(_path_in_project(checked_project, baseline_file)) or ""
+        ):
+            reason = problems[0].message if problems else "the file is empty"
+            msg = f"{baseline_file} stays as it is: {reason}"
+            raise file_tree.OutputError(msg, "give another file with `--baseline`")
+    new_findings, known_findings, cured_entries = baseline_entries.divide_by_baseline(
+        checked_project.findings, known_entries, RULES_BY_NAME
+    )
+    file_tree.write_file(
+        baseline_file, baseline_entries.format_baseline(checked_project.findings, RULES_BY_NAME).encode()
+    )
+    # Errors of reading and linking are never listed in a baseline, so they are not counted as added.
+    added_count = sum(not RULES_BY_NAME[finding.rule].fixed for finding in new_findings)
+    return BaselineUpdate(
+        baseline_file, len(known_findings) + added_count, added_count, sum(entry.occurrences for entry in cured_entries)
+    )
+
+
+def _read_baseline(
+    checked_project: CheckedProject, baseline_file: Path
+) -> tuple[tuple[BaselineEntry, ...], tuple[Diagnostic, ...]]:
+    """Read a baseline, and make its text available for excerpts in messages."""
+    shown_path = _path_in_project(checked_project, baseline_file)
+    text, known_entries, problems = reading.read_baseline(baseline_file, shown_path, RULES_BY_NAME)
+    checked_project.sources.add_text(shown_path, text)
+    return known_entries, problems
+
+
+def _path_in_project(checked_project: CheckedProject, baseline_file: Path) -> str:
+    """Return the path of the baseline relative to the project's folder, as paths are shown in findings."""
+    return Path(os.path.relpath(baseline_file.absolute(), checked_project.root.absolute())).as_posix()

@@ -1,0 +1,133 @@
+"""Versions of a project to compare, as users type them: revisions, folders, files, the working tree."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from archgen import git, pipeline, project
+from archgen.compare import ArchitectureVersion, Comparison, compare_versions
+from archgen.pipeline import CheckedProject
+from archgen.project import ParsedSlices
+from archgen.syntax.yaml_tree import MappingNode
+
+_PATH_PREFIXES = ("./", "../", "/", "~")
+WORKING_TREE_NAME = "the working tree"
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectVersion:
+    """A checked project, and its name as the user typed it."""
+
+    name: str
+    checked_project: CheckedProject
+
+    @property
+    def commit(self) -> str:
+        """Return the full hash of the commit that it was read from, empty for files on disk."""
+        return self.checked_project.loaded_project.files.commit
+
+
+def read_versions(
+    first: str | None, second: str | None, path: Path | None = None
+) -> tuple[ProjectVersion, ProjectVersion]:
+    """Read the two versions to compare. `path` is the project, as for `pipeline.check`.
+
+    Without `second` it is the working tree; without `first` it is the commit at which the branch left its main line.
+    `A..B` and `A...B` mean what they mean in git. Raise `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    # Parsed slices are shared: most files are the same in both versions.
+    parsed_slices: ParsedSlices = {}
+    if first is not None and second is None and ".." in first and not _is_path(first):
+        # Three dots first, since they contain the two.
+        left, dots, right = first.partition("..." if "..." in first else "..")
+        if dots == "...":
+            before = _read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, parsed_slices)
+            return before, read_version(right or "HEAD", path, parsed_slices)
+        return read_version(left or "HEAD", path, parsed_slices), read_version(right or "HEAD", path, parsed_slices)
+    if first is not None:
+        return read_version(first, path, parsed_slices), read_version(second, path, parsed_slices)
+    # The newer version first here: it names the main line that the older one is found by.
+    after = read_version(second, path, parsed_slices)
+    return read_fork_point(path, after.checked_project.architecture.review.main, parsed_slices), after
+
+
+def read_version(
+    version_text: str | None, path: Path | None = None, parsed_slices: ParsedSlices | None = None
+) -> ProjectVersion:
+    """Read one version: nothing or `.` is the working tree; what may be a revision or a path is taken as a revision.
+
+    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    if version_text in {None, "", "."}:
+        return ProjectVersion(WORKING_TREE_NAME, pipeline.check_project(path, parsed_slices))
+    if not _is_path(version_text):
+        try:
+            return ProjectVersion(version_text, pipeline.check_at_revision(path, version_text, parsed_slices))
+        # The revision exists and lacks the project: falling back to a path of that name would hide this mistake.
+        except project.NotAtRevisionError:
+            raise
+        except (git.GitError, project.ProjectNotFoundError):
+            # Neither revision nor path: the message about the revision is the more useful one.
+            if not os.path.lexists(version_text):
+                raise
+    return ProjectVersion(version_text, pipeline.check_project(Path(version_text), parsed_slices))
+
+
+def read_fork_point(
+    path: Path | None = None, main_line: str | None = None, parsed_slices: ParsedSlices | None = None
+) -> ProjectVersion:
+    """Read the project where the branch left its main line.
+
+    `main_line` is the main line that the project names; None asks git.
+    """
+    return _read_at_base(
+        git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line), path, parsed_slices
+    )
+
+
+def _read_at_base(base: git.BaseCommit, path: Path | None, parsed_slices: ParsedSlices | None) -> ProjectVersion:
+    """Read the project at a commit of git."""
+    return ProjectVersion(base.description, pipeline.check_at_revision(path, base.commit_id, parsed_slices))
+
+
+def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
+    """Find the commit where two lines of history parted."""
+    return git.find_common_commit(project.find_tracked_project(path).objects.repository, left, right)
+
+
+def _is_path(version_text: str) -> bool:
+    """Whether a text can only be a path, judged by its form."""
+    return version_text.startswith(_PATH_PREFIXES) or version_text in {".", ".."} or os.path.isabs(version_text)  # noqa: PTH117 - Windows' drives
+
+
+def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Comparison:
+    """Compare two versions.
+
+    Findings are not reported as cured where the newer version has errors of reading or linking: they hide findings.
+    """
+    comparison = compare_versions(
+        make_comparison_input(before.checked_project), make_comparison_input(after.checked_project)
+    )
+    return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
+
+
+def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:
+    """Return what a comparison looks at."""
+    return ArchitectureVersion(
+        architecture=checked_project.architecture,
+        findings=checked_project.findings,
+        silenced_findings=checked_project.silenced_findings,
+        rule_settings={rule: str(severity) for rule, severity in checked_project.loaded_project.rule_settings.items()},
+        chapters={path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
+        chapter_order=checked_project.chapters.order,
+        # Where a project does not write them, they come from the name of its folder: that is no change of the project.
+        unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
+    )
+
+
+def _written_project_keys(checked_project: CheckedProject) -> set[str]:
+    """Return the keys that are written below `project`."""
+    project_section = checked_project.merged_table.get("project")
+    return {entry.key for entry in project_section} if isinstance(project_section, MappingNode) else set()

@@ -1,0 +1,139 @@
+"""Load a project: everything that later stages need to know about its files."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.frozen import dataclass
+from archgen.project.project_search import PROJECT_FILE, find_project
+from archgen.project.slice_parsing import ParsedSlices
+from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
+from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax.project_files import ProjectFiles
+from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlDocument
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.syntax.yaml_tree import YamlNode
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedProject:
+    """A project whose files have been read. `documents` are in normal form, in the order in which they are merged.
+
+    `first_file` was read first. `id` and `title` are the defaults for a project that states neither. `rule_settings`
+    are the severities in `rules:` by name (names not checked), `rule_spans` where they are written. `interface_files`
+    are relative to the project's folder. `chapter_entries` are those of `report.chapters`, None if it is not written.
+
+    Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
+    understood: what they may declare is never reported as missing. `partial` is whether that was a whole file or
+    section.
+    """
+
+    files: ProjectFiles
+    first_file: str
+    id: str
+    title: str
+    documents: tuple[YamlDocument, ...]
+    sources: SourceTexts
+    diagnostics: tuple[Diagnostic, ...]
+    ignores: Mapping[str, tuple[IgnoreComment, ...]] = field(default_factory=dict)
+    rule_settings: Mapping[str, Severity] = field(default_factory=dict)
+    rule_spans: Mapping[str, Span] = field(default_factory=dict)
+    distro: str | None = None
+    interface_files: tuple[str, ...] = ()
+    chapter_entries: tuple[ScalarNode, ...] | None = None
+    layout: MappingNode | None = None
+    broken_files: tuple[str, ...] = ()
+    lost_keys: frozenset[str] = frozenset()
+    partial: bool = False
+
+    @property
+    def root(self) -> Path:
+        """The project's folder."""
+        return self.files.root
+
+
+def load_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
+    """Read the project in a folder, in a file, or (None) around the current folder."""
+    root, first_file = find_project(path)
+    return load_from_files(FolderFiles(root), first_file, parsed_slices)
+
+
+def load_from_files(files: ProjectFiles, first_file: str, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
+    """Read a project, wherever its files are, beginning with `first_file`.
+
+    Slices in `parsed_slices` are not parsed again, and new ones are added to it.
+    """
+    state = ReadingState(files, parsed_slices=parsed_slices)
+    read_slice(state, first_file)
+    if first_file == PROJECT_FILE:  # a file of any other name is the whole project: its `sources` are not followed
+        read_sources(state)
+    return _finish_loading(state, first_file)
+
+
+def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
+    # The default id and title come from the folder's name, or from the file's. A bare clone is called `robot.git`.
+    stem = state.files.root.name.removesuffix(".git") if first_file == PROJECT_FILE else Path(first_file).stem
+    name_words = re.findall(r"[a-z0-9]+", stem.lower())
+    slug = "_".join(name_words) if name_words and name_words[0][0].isalpha() else "_".join(["project", *name_words])
+    interface_files = [
+        file
+        for listing in _list_nodes_at(state, "ros", "interfaces")
+        if isinstance(listing, SequenceNode)
+        for pattern in listing.items
+        for file in expand_source_pattern(state, pattern)
+    ]
+    settings = dict(_read_rule_settings(state))
+    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
+    # In a conflict the first value wins, as it does in merging.
+    distro = next(
+        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
+    )
+    chapters_node = next(
+        (value for value in _list_nodes_at(state, "report", "chapters") if isinstance(value, SequenceNode)), None
+    )
+    return LoadedProject(
+        files=state.files,
+        first_file=first_file,
+        id=slug,
+        title=" ".join(name_words).capitalize() or "Project",
+        documents=tuple(state.documents),
+        sources=state.sources,
+        diagnostics=tuple(state.diagnostics),
+        ignores={document.file: document.ignores for document in state.documents if document.ignores},
+        rule_settings={name: severity for name, (severity, _) in settings.items()},
+        rule_spans={name: span for name, (_, span) in settings.items()},
+        distro=distro,
+        interface_files=tuple(dict.fromkeys(interface_files)),
+        chapter_entries=tuple(item for item in chapters_node.items if isinstance(item, ScalarNode))
+        if chapters_node
+        else None,
+        broken_files=tuple(state.broken_files),
+        lost_keys=frozenset(state.lost_keys),
+        partial=state.partial,
+        layout=next((value for value in _list_nodes_at(state, "layout") if isinstance(value, MappingNode)), None),
+    )
+
+
+def _read_rule_settings(state: ReadingState) -> Iterator[tuple[str, tuple[Severity, Span]]]:
+    for mapping in _list_nodes_at(state, "rules"):
+        for entry in mapping if isinstance(mapping, MappingNode) else ():
+            if isinstance(entry.value, ScalarNode):
+                yield entry.key, (Severity(entry.value.text), entry.key_span)
+
+
+def _list_nodes_at(state: ReadingState, *path: str) -> Iterator[YamlNode]:
+    """Yield the nodes that the documents hold at a path of keys, in the order of the documents."""
+    for document in state.documents:
+        node: YamlNode | None = document.root
+        for key in path:
+            node = node.get(key) if isinstance(node, MappingNode) else None
+        if node is not None:
+            yield node

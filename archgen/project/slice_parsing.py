@@ -1,0 +1,114 @@
+"""One file of a project by itself: parsed, validated and normalised. The same text is processed only once."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.schema import normalise_document, suggest_ids, validate_document
+from archgen.syntax import yaml_parser
+from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlDocument, YamlNode
+
+
+@dataclass(frozen=True, slots=True)
+class ValidatedSlice:
+    """The result of validating a slice.
+
+    `lost_keys` are the keys that were taken out of it, and the ids that malformed ones may have been meant to be.
+    `partial` is whether a whole section is among them.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    lost_keys: tuple[str, ...] = ()
+    partial: bool = False
+
+
+@dataclass(slots=True)
+class Slice:
+    """A file's document, None where it cannot be parsed, and the sections that it writes.
+
+    `sections` are those of the text: validation may take some of them out of the document.
+    """
+
+    file: str
+    text: str
+    document: YamlDocument | None
+    diagnostics: tuple[Diagnostic, ...]
+    sections: tuple[str, ...] = ()
+    _validated: ValidatedSlice | None = None
+
+    def validate_once(self) -> ValidatedSlice:
+        """Validate and normalise the document, in place, on the first call; later calls return the same result."""
+        if self._validated is None:
+            self._validated = _validate_slice(self)
+        return self._validated
+
+
+ParsedSlices = dict[tuple[str, str], Slice]
+"""Cache of slices by file and text, for reading a project at many revisions, most of whose files are the same.
+
+The documents are shared by all revisions, so no tree may change after `Slice.validate_once`.
+"""
+
+
+def parse_slice(file: str, text: str, parsed_slices: ParsedSlices | None = None) -> Slice:
+    """Parse a file, or take it from the cache; a newly parsed slice is added to the cache."""
+    parsed_slice = parsed_slices.get((file, text)) if parsed_slices is not None else None
+    if parsed_slice is None:
+        document, diagnostics = yaml_parser.parse_yaml(file, text)
+        sections = tuple(document.root.entries) if document is not None else ()
+        parsed_slice = Slice(file, text, document, diagnostics, sections)
+        if parsed_slices is not None:
+            parsed_slices[file, text] = parsed_slice
+    return parsed_slice
+
+
+def _validate_slice(parsed_slice: Slice) -> ValidatedSlice:
+    if parsed_slice.document is None:
+        return ValidatedSlice(parsed_slice.diagnostics, tuple(_find_written_keys(parsed_slice.text)), partial=True)
+    schema_diagnostics = validate_document(parsed_slice.document)
+    lost_keys = (
+        tuple(_find_lost_keys(parsed_slice, parsed_slice.document, schema_diagnostics)) if schema_diagnostics else ()
+    )
+    # Both before normalise: it removes empty sections, which are not lost but simply not written.
+    partial = len(parsed_slice.document.root.entries) < len(parsed_slice.sections)
+    return ValidatedSlice(
+        (*parsed_slice.diagnostics, *schema_diagnostics, *normalise_document(parsed_slice.document)), lost_keys, partial
+    )
+
+
+_WRITTEN_KEY = re.compile(r"(?<![A-Za-z0-9_.-])([A-Za-z0-9][A-Za-z0-9_.-]*+)[\"']?[ \t]*+:")
+"""A word before a colon. It starts only at a word's beginning, and possessive quantifiers (`*+`) never backtrack: a
+long word without a colon is scanned once, not once for each of its letters.
+"""
+
+
+def _find_written_keys(text: str) -> list[str]:
+    """Return everything in a text that looks like a key; works on text that cannot be parsed."""
+    return _WRITTEN_KEY.findall(text)
+
+
+def _find_lost_keys(
+    parsed_slice: Slice, document: YamlDocument, schema_diagnostics: tuple[Diagnostic, ...]
+) -> Iterator[str]:
+    """Yield the keys that were taken out of a document, and the ids that malformed keys may have been meant to be."""
+    # Counted, not a set: of two elements with the same id in different sections one may be lost and the other not.
+    yield from Counter(_find_written_keys(parsed_slice.text)) - Counter(_list_keys(document.root))
+    lines = parsed_slice.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    for diagnostic in schema_diagnostics:
+        span = diagnostic.span
+        line = lines[span.line - 1] if 0 < span.line <= len(lines) else ""
+        yield from suggest_ids(line[span.column - 1 : span.end_column - 1])
+
+
+def _list_keys(node: YamlNode) -> Iterator[str]:
+    if isinstance(node, MappingNode):
+        for entry in node:
+            yield entry.key
+            yield from _list_keys(entry.value)
+    elif isinstance(node, SequenceNode):
+        for item in node.items:
+            yield from _list_keys(item)

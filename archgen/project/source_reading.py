@@ -1,0 +1,166 @@
+"""Read the files of a project in the order of `sources`, each normalised by itself."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.suggestions import find_closest
+from archgen.project import baseline_reading
+from archgen.project.project_search import PROJECT_FILE
+from archgen.project.slice_parsing import ParsedSlices, Slice, parse_slice
+from archgen.schema import list_sections
+from archgen.syntax import file_patterns
+from archgen.syntax.project_files import ProjectFiles, read_text_file
+from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.syntax.yaml_tree import YamlDocument, YamlNode
+
+_SKIPPED_FOLDERS = frozenset({"backends"})
+"""Folders that are not searched for slices unless `sources` names them."""
+_OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
+"""Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
+
+
+@dataclass(slots=True)
+class ReadingState:
+    """What has been read so far; the functions below add to it."""
+
+    files: ProjectFiles
+    sources: SourceTexts = field(default_factory=SourceTexts)
+    documents: list[YamlDocument] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    parsed_slices: ParsedSlices | None = None
+    seen_files: set[str] = field(default_factory=set)
+    broken_files: list[str] = field(default_factory=list)
+    lost_keys: set[str] = field(default_factory=set)
+    """The keys of what was not understood, and the ids that malformed ones may have been meant to be."""
+    partial: bool = False
+    """Whether a whole file or section was not understood."""
+
+
+def _parse_file(state: ReadingState, file: str) -> Slice:
+    """Read and parse one file; only its text is recorded, for excerpts."""
+    # A lone surrogate or a line break in a name could not be written to a terminal or a report.
+    if not file.isprintable():
+        message = f"a file's name cannot be read as text: {file!a}"
+        diagnostic = Diagnostic("syntax-error", message, Span.of_file(PROJECT_FILE), help="rename the file")
+        return Slice(file, "", None, (diagnostic,))
+    file_text = read_text_file(state.files, file)
+    state.sources.add_text(file, file_text.text)
+    return (
+        Slice(file, file_text.text, None, (file_text.problem,))
+        if file_text.problem
+        else parse_slice(file, file_text.text, state.parsed_slices)
+    )
+
+
+def read_slice(state: ReadingState, file: str) -> None:
+    """Read one file as a slice, whatever it holds."""
+    state.seen_files.add(file)
+    _keep_slice(state, _parse_file(state, file))
+
+
+def _keep_slice(state: ReadingState, parsed_slice: Slice) -> None:
+    validated = parsed_slice.validate_once()
+    state.diagnostics.extend(validated.diagnostics)
+    state.lost_keys.update(validated.lost_keys)
+    state.partial |= validated.partial
+    if parsed_slice.document is None:
+        state.broken_files.append(parsed_slice.file)
+    else:
+        state.documents.append(parsed_slice.document)
+
+
+def read_sources(state: ReadingState) -> None:
+    """Read the files that `sources` names, or all YAML files below where it is not written."""
+    sources_entry = state.documents[0].root.entries.get("sources") if state.documents else None
+    if sources_entry is None:
+        _read_all_slices(state)
+    elif isinstance(sources_entry.value, SequenceNode):
+        for pattern in sources_entry.value.items:
+            for file in expand_source_pattern(state, pattern):
+                if file not in state.seen_files:
+                    _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
+
+
+def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> None:
+    """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
+    state.seen_files.add(file)
+    parsed_slice = _parse_file(state, file)
+    if is_named or _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
+        _keep_slice(state, parsed_slice)
+
+
+def _read_all_slices(state: ReadingState) -> None:
+    """Read every *.yaml below that holds a section, and list those that do not in one note."""
+    known_sections, ignored_files = list_sections(), list[tuple[str, str | None]]()
+    for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
+        if file in state.seen_files:
+            continue
+        state.seen_files.add(file)
+        parsed_slice = _parse_file(state, file)
+        # Tested on the text, since a baseline that a merge broke cannot be parsed.
+        if baseline_reading.is_baseline(parsed_slice.text):
+            continue  # broken or not, it is judged where it is used
+        # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
+        # only if it seems to be meant as a slice.
+        if (
+            parsed_slice.document is None
+            and parsed_slice.diagnostics[0].rule != "too-large"
+            and not _looks_like_slice(parsed_slice, known_sections)
+        ):
+            ignored_files.append((file, None))
+        elif parsed_slice.document is None:
+            _keep_slice(state, parsed_slice)
+        elif not known_sections.isdisjoint(parsed_slice.sections):
+            if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
+                _keep_slice(state, parsed_slice)
+        elif parsed_slice.sections:
+            # With a guess from the first key that is nearly the name of a section, such as `group:`.
+            ignored_files.append(
+                (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
+            )
+    # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
+    if ignored_files and PROJECT_FILE not in state.broken_files:
+        state.diagnostics.append(_diagnose_ignored_files(ignored_files))
+
+
+def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:
+    """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
+    return (
+        not parsed_slice.text
+        or re.search(rf"^\W*(?:{'|'.join(sorted(known_sections))})\W*:", parsed_slice.text, re.MULTILINE) is not None
+    )
+
+
+def _diagnose_ignored_files(ignored_files: list[tuple[str, str | None]]) -> Diagnostic:
+    names = ", ".join(f"`{file}`" for file, _ in ignored_files)
+    is_plural = len(ignored_files) > 1
+    message = f"{names} {'hold' if is_plural else 'holds'} no section of the language and {'are' if is_plural else 'is'} not read"
+    guesses = [f"did you mean `{guess}:` in `{file}`?" for file, guess in ignored_files if guess]
+    help_line = (
+        guesses[0] if guesses else f"name the project's files in `sources` of {PROJECT_FILE}, and this note goes away"
+    )
+    return Diagnostic("ignored-file", message, Span.of_file(PROJECT_FILE), help=help_line)
+
+
+def expand_source_pattern(state: ReadingState, pattern: YamlNode) -> Iterator[str]:
+    """Yield the files that one pattern matches; report a pattern that leaves the project or matches nothing."""
+    if not isinstance(pattern, ScalarNode):
+        return
+    if not file_patterns.is_inside_project(pattern.text):
+        message = f"`{pattern.text}` leads out of the project's folder"
+        help_line = "write paths relative to the folder of archgen.yaml, with `/`"
+        state.diagnostics.append(Diagnostic("wrong-value", message, pattern.span, help=help_line))
+        return
+    matching_files = file_patterns.expand_pattern(state.files, pattern.text)
+    if not matching_files:
+        state.diagnostics.append(Diagnostic("missing-source", f"`{pattern.text}` matches no file", pattern.span))
+    yield from matching_files

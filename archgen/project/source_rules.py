@@ -1,0 +1,48 @@
+"""The rules about finding a project's files."""
+
+from __future__ import annotations
+
+from archgen.diagnostics.diagnostic import Rule, Severity
+
+RULES: tuple[Rule, ...] = (
+    Rule(
+        "ignored-file",
+        Severity.NOTE,
+        """A YAML file below the project's folder holds no section of the language and is not read.
+
+Why: where `sources` is left out, every YAML file below is looked at. Parameter files and workflows are not meant, a file
+with a slip in its only section is; the note lists both.
+
+Bad:
+
+    # file: archgen.yaml
+    archgen: 1
+    # file: params.yaml
+    max_speed: 0.4
+
+Good:
+
+    # file: archgen.yaml
+    archgen: 1
+    sources: []
+    # file: params.yaml
+    max_speed: 0.4
+""",
+    ),
+    Rule(
+        "missing-source",
+        Severity.WARNING,
+        """A pattern in `sources` or `ros.interfaces` matches no file.
+
+Why: a slip in a pattern would leave out files without a word.
+
+Bad:
+
+    ros: {interfaces: ["mgs/*.msg"]}
+
+Good:
+
+    ros: {interfaces: []}
+""",
+    ),
+)

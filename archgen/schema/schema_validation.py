@@ -1,0 +1,217 @@
+"""Check a document against the JSON Schema, report what differs, and take it out of the tree.
+
+Later stages rely on it: what is left has the kind of value that the schema asks for.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+import jsonschema_rs
+
+from archgen import resources
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.schema import schema_wording
+from archgen.schema.schema_wording import ErrorPlace
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from archgen.syntax.yaml_tree import MappingEntry, YamlDocument, YamlNode
+
+_USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
+"""Ids that only break a rule of style are reported but kept, so that references to them are not reported as well."""
+
+
+def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
+    """Report what the schema does not allow, and remove it from the document's tree in place."""
+    data = _to_validator_data(document.root)
+    validator = _get_validator()
+    if validator.is_valid(data):
+        return ()
+    diagnostics: list[Diagnostic] = []
+    wrong_places: list[tuple[ErrorPlace, str | None]] = []
+    seen_paths = set[tuple[str | int, ...]]()
+    for error in _sort_by_weight(validator.iter_errors(data)):
+        _record_error(document, error, diagnostics, wrong_places, seen_paths)
+    # Only now: while errors are being located, their paths must still lead through an unchanged tree.
+    for place, key in wrong_places:
+        _prune_node(place, key)
+    _drop_holes(document.root)
+    return tuple(diagnostics)
+
+
+@functools.cache
+def load_schema() -> dict[str, Any]:
+    """Return the JSON Schema of the language. Cached and shared: nobody may change it."""
+    text = resources.resource_path("schemas", "archgen.schema.json").read_text(encoding="utf-8")
+    return json.loads(text)  # type: ignore[no-any-return]
+
+
+@functools.cache
+def _get_validator() -> jsonschema_rs.Draft202012Validator:
+    return jsonschema_rs.Draft202012Validator(load_schema())
+
+
+def list_sections() -> frozenset[str]:
+    """Return the names of the top-level sections."""
+    return frozenset(load_schema()["properties"])
+
+
+def _to_validator_data(node: YamlNode) -> object:
+    """Turn a tree into what the validator takes.
+
+    Floats go as text, because the validator reads NaN as null and 5.0 as a whole number. Integers are clamped to what
+    it can hold.
+    """
+    if isinstance(node, MappingNode):
+        return {
+            _NUMERIC_KEY_MARK + key if key[0] in _NUMERIC_KEY_STARTS else key: _to_validator_data(entry.value)
+            for key, entry in node.entries.items()
+        }
+    if isinstance(node, SequenceNode):
+        return [_to_validator_data(item) for item in node.items]
+    plain_value = node.value
+    # `type(...) is`: a bool is an int as well, and must stay a bool.
+    if type(plain_value) is float:
+        return node.text
+    return max(-_INTEGER_LIMIT, min(plain_value, _INTEGER_LIMIT)) if type(plain_value) is int else plain_value
+
+
+_NUMERIC_KEY_MARK = "\0"
+_NUMERIC_KEY_STARTS = frozenset("0123456789+\0")
+"""First characters of keys that get the mark: the validator's paths do not tell the key `0` from the index 0."""
+_INTEGER_LIMIT = 1 << 60
+"""Larger than any number that the language allows, and small enough for the validator."""
+
+
+def _sort_by_weight(errors: Iterable[jsonschema_rs.ValidationError]) -> list[jsonschema_rs.ValidationError]:
+    """Sort wrong types first: what else the validator says of the same value follows from it and is then left out."""
+    return sorted(errors, key=lambda error: error.kind.name != "type")
+
+
+def _record_error(
+    document: YamlDocument,
+    error: jsonschema_rs.ValidationError,
+    diagnostics: list[Diagnostic],
+    wrong_places: list[tuple[ErrorPlace, str | None]],
+    seen_paths: set[tuple[str | int, ...]],
+) -> None:
+    # `seen_paths` are those already reported: one finding for each place, the first one, which is a wrong type if any.
+    place = _locate_error(document.root, [_remove_key_mark(step) for step in error.instance_path])
+    schema_part = _find_schema_part(error.schema_path)
+    kind = error.kind.name
+    # The library reports one error for all unknown keys of a mapping; each becomes a finding of its own, at its key.
+    if kind == "additionalProperties" and isinstance(place.node, MappingNode):
+        unexpected_kind: Any = error.kind  # its attributes depend on the kind, which the library's types do not say
+        for key in map(_remove_key_mark, unexpected_kind.unexpected):
+            diagnostics.append(schema_wording.diagnose_unknown_key(place.node.entries[key], schema_part, place.path))
+            wrong_places.append((place, key))
+    elif kind == "propertyNames" and isinstance(place.node, MappingNode):
+        names_kind: Any = error.kind
+        key = _remove_key_mark(names_kind.error.instance)
+        if (*place.path, key, "") not in seen_paths:  # no key is empty, so this is no value's path
+            seen_paths.add((*place.path, key, ""))
+            diagnostics.append(schema_wording.diagnose_wrong_key(place.node.entries[key], schema_part, place.path))
+            if not _USABLE_ID.match(key):
+                wrong_places.append((place, key))
+    elif place.path not in seen_paths:
+        seen_paths.add(place.path)
+        diagnostics.append(schema_wording.diagnose_wrong_value(kind, place, schema_part))
+        wrong_places.append((place, None))
+
+
+def _remove_key_mark(step: Any) -> Any:  # noqa: ANN401 - a key or a number
+    return step[1:] if isinstance(step, str) and step[0] == _NUMERIC_KEY_MARK else step
+
+
+def _locate_error(root: MappingNode, path: list[str | int]) -> ErrorPlace:
+    node: YamlNode = root
+    parent: MappingNode | SequenceNode | None = None
+    entry: MappingEntry | None = None
+    for step in path:
+        parent = node if isinstance(node, MappingNode | SequenceNode) else None
+        if isinstance(node, MappingNode):
+            entry = node.entries[str(step)]
+            node = entry.value
+        elif isinstance(node, SequenceNode):
+            node = node.items[int(step)]
+    return ErrorPlace(tuple(path), node, parent, entry)
+
+
+def _find_schema_part(path: Iterable[str | int]) -> dict[str, Any]:
+    """Return the part of the schema that an error comes from: all but the last step, which is the keyword."""
+    schema_part: Any = load_schema()
+    for step in list(path)[:-1]:
+        schema_part = schema_part[step]
+    return schema_part  # type: ignore[no-any-return]
+
+
+# Stands in for a wrong list entry until all are found: removing one at once would shift the indices of the others.
+# Compared by identity, and gone from the tree when validation returns.
+_HOLE_NODE = ScalarNode(None, "", schema_wording.NO_DOCUMENT_SPAN)
+_KEPT_LIST_KEYS = frozenset({"from", "implements", "through"})
+"""Keys whose absence a rule reports. Where nothing sound is left of one, an empty list keeps the fact that it was
+written, so that the same mistake is not reported a second time as a missing key.
+"""
+_KEYS_OF_IDS = schema_wording.SECTIONS_BY_ID | {
+    "components",
+    "inputs",
+    "outputs",
+    "publishes",
+    "subscribes",
+    "serves",
+    "calls",
+}
+
+
+def _prune_node(place: ErrorPlace, key: str | None) -> None:
+    """Take a wrong key or value out of its tree.
+
+    An element keeps its id and loses only its content, so that references to it are not reported as well.
+    """
+    if key is not None and isinstance(place.node, MappingNode):
+        place.node.entries.pop(key, None)
+    elif isinstance(place.parent, SequenceNode):
+        place.parent.items[int(place.path[-1])] = _HOLE_NODE
+    elif isinstance(place.parent, MappingNode) and place.entry is not None:
+        if _is_kept_list(place.path):
+            place.entry.value = SequenceNode([], place.node.span)
+        # An empty value below an id declares the element, as in `rgbd:`; normalising turns it into `{}`.
+        elif len(place.path) > 1 and place.path[-2] in _KEYS_OF_IDS:
+            place.entry.value = ScalarNode(None, "", place.node.span)
+        else:
+            place.parent.entries.pop(place.entry.key, None)
+
+
+def _is_kept_list(path: tuple[str | int, ...]) -> bool:
+    """Whether a path is that of a key in `_KEPT_LIST_KEYS`, not of an element that happens to have such an id."""
+    if path[-1] not in _KEPT_LIST_KEYS:
+        return False
+    if path[-1] == "from":
+        return path[-3:-2] == ("inputs",)
+    return len(path) == 3 and path[0] in {"nodes", "chains"}  # noqa: PLR2004 - section, id, key
+
+
+def _drop_holes(node: YamlNode) -> None:
+    """Remove the holes from lists, and lists of which nothing is left from their mappings."""
+    if isinstance(node, SequenceNode):
+        node.items = [item for item in node.items if item is not _HOLE_NODE]
+        for item in node.items:
+            _drop_holes(item)
+    elif isinstance(node, MappingNode):
+        for entry in tuple(node):
+            # A list that was written empty says "known to be none" and must survive.
+            had_items = isinstance(entry.value, SequenceNode) and bool(entry.value.items)
+            _drop_holes(entry.value)
+            if (
+                had_items
+                and isinstance(entry.value, SequenceNode)
+                and not entry.value.items
+                and entry.key not in _KEPT_LIST_KEYS
+            ):
+                del node.entries[entry.key]

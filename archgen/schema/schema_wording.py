@@ -1,0 +1,309 @@
+"""Phrase what is wrong with a value or a key, in our own words, with help for the commonest slips.
+
+The validator's own messages quote the schema's patterns and Python values, which say nothing to people who write YAML.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model import quantity
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+
+NO_DOCUMENT_SPAN = NO_SPAN
+# A sign, digits with a point or a comma, and whatever follows them as the unit.
+_QUANTITY_PATTERN = re.compile(r"\s*([-+]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*(\S*)\s*\Z", re.ASCII)
+_UNIT_SPELLINGS = {
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "usec": "us", "µs": "us",
+    "μs": "us", "nsec": "ns", "m": "min", "mins": "min", "minutes": "min", "hour": "h", "hours": "h", "fps": "Hz",
+    "bps": "bit/s", "kbps": "kbit/s", "Mbps": "Mbit/s", "mbps": "Mbit/s", "Gbps": "Gbit/s", "gbps": "Gbit/s",
+    "Mb/s": "Mbit/s", "Gb/s": "Gbit/s", "kb/s": "kbit/s", "b/s": "bit/s", "bytes": "B", "byte": "B",
+}  # fmt: skip
+_EXAMPLE_UNIT = {"duration": "ms", "frequency": "Hz", "size": "kB", "bandwidth": "Mbit/s"}
+_BOOLEAN_WORDS = {
+    "yes": "true",
+    "on": "true",
+    "y": "true",
+    "1": "true",
+    "no": "false",
+    "off": "false",
+    "n": "false",
+    "0": "false",
+}
+SECTIONS_BY_ID = frozenset(
+    {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
+    | {"views", "policies"}
+)
+"""The top-level sections that hold elements by id."""
+_TYPE_PHRASES = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}
+
+
+class ErrorPlace(NamedTuple):
+    """Where an error is: its path, the node there, what holds the node, and its entry if that is a mapping."""
+
+    path: tuple[str | int, ...]
+    node: YamlNode
+    parent: MappingNode | SequenceNode | None = None
+    entry: MappingEntry | None = None
+
+
+def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
+    """Report a key that the schema does not have at its place, with the most likely meaning as help."""
+    known_keys = tuple(schema_part.get("properties", ()))
+    message = (
+        f"no section is called `{entry.key}`"
+        if not path
+        else f"{_add_article(schema_part['title'])} has no key `{entry.key}`"
+    )
+    help_line = (
+        _find_key_help(entry, known_keys)
+        or did_you_mean(entry.key, known_keys)
+        or f"its keys are {_join_quoted(known_keys)}"
+    )
+    if not path and help_line.startswith("its keys"):
+        help_line = f"the sections are {_join_quoted(known_keys)}"
+    return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element_of_path(path))
+
+
+def _find_key_help(entry: MappingEntry, known_keys: tuple[str, ...]) -> str | None:
+    if entry.key in {"name", "id"} and "title" in known_keys:
+        return "the key above is the id; write the name for people as `title`"
+    if ":" in entry.key:
+        before, after = entry.key.split(":", 1)
+        if before in known_keys:
+            return f"write a blank after the colon: `{before}: {after}`"
+    return None
+
+
+def diagnose_wrong_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
+    """Report a key that cannot be an id of what it names, with an id that could as help."""
+    message = f"`{entry.key}` cannot be {_add_article(schema_part.get('title', 'key').split(' of ')[0])}"
+    better_key = next(
+        (key for key in suggest_ids(entry.key) if re.search(schema_part.get("pattern", r"\Z."), key)), None
+    )
+    help_line = schema_part.get("patternErrorMessage") or "it is too long"
+    if len(entry.key) > schema_part.get("maxLength", len(entry.key)):
+        help_line = f"at most {schema_part['maxLength']} characters are allowed"
+    elif better_key and better_key != entry.key:
+        help_line = f"{help_line}; write `{better_key}`"
+    return Diagnostic("wrong-value", message, entry.key_span, help=help_line, element=element_of_path(path))
+
+
+def suggest_ids(key: str) -> tuple[str, str]:
+    """Return what a malformed id may have been meant to be: as the id of a requirement, and as any other id."""
+    snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", key).lower()
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", key).strip("-"), re.sub(r"[^a-z0-9]+", "_", snake).strip("_")
+
+
+def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, Any]) -> Diagnostic:
+    """Report a value of the wrong type, or one that is not allowed; `kind` is the validator's name for the error."""
+    name, node = _describe_place(place), place.node
+    if kind == "type":
+        rule, message, help_line = _describe_wrong_type(name, node, schema_part)
+    else:
+        rule, (message, help_line) = "wrong-value", _describe_wrong_value(kind, name, node, schema_part)
+    # A container's own span can cover a whole section: its key is shown instead. An entry of a list has no key.
+    span = node.span
+    if isinstance(node, MappingNode | SequenceNode) and place.entry is not None and node is place.entry.value:
+        span = place.entry.key_span
+    return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path))
+
+
+def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str, str | None]:
+    expected = _describe_expected(schema_part)
+    dimension = _find_dimension(schema_part)
+    if isinstance(node, ScalarNode):
+        if dimension:
+            return "wrong-value", *_describe_wrong_quantity(name, node.text, dimension, schema_part)
+        if node.value is None:
+            return "wrong-type", f"{name} is empty, but must be {expected}", None
+        help_line = _find_scalar_help(node.text, schema_part)
+        return "wrong-type", f"{name} is `{_shorten_text(node.text)}`, but must be {expected}", help_line
+    actual = "a list" if isinstance(node, SequenceNode) else "a mapping"
+    return "wrong-type", f"{name} is {actual}, but must be {expected}", _find_container_help(name, node, schema_part)
+
+
+def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
+    types = schema_part.get("type", ())
+    if "boolean" in types:
+        return _find_boolean_help(text.lower())
+    if "integer" in types:
+        digits = re.match(r"\s*([0-9]+)", text)
+        return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
+    if "array" in types:
+        return f"write `[{_quote_list_entry(text)}]`"
+    if "propertyNames" in schema_part:
+        return "write one `id: ...` line for each below it, or `{}` for none"
+    if "patternErrorMessage" in schema_part:
+        return str(schema_part["patternErrorMessage"])
+    return f"its keys are {_join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
+
+
+def _find_boolean_help(word: str) -> str | None:
+    if word in _BOOLEAN_WORDS:
+        return f"write `{_BOOLEAN_WORDS[word]}`"
+    return f"write `{word}`, without quotes" if word in {"true", "false"} else None
+
+
+_UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
+
+
+def _quote_list_entry(text: str) -> str:
+    """Return a text as an entry of a list in brackets: quoted where YAML would read it as something else."""
+    return _shorten_text(text) if _UNQUOTED_TEXT.match(text) else f'"{_shorten_text(text)}"'
+
+
+def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any]) -> str | None:
+    if isinstance(node, SequenceNode) and "object" in schema_part.get("type", ()):
+        if not node.items:
+            return "write `{}` for none"
+        if "propertyNames" in schema_part or isinstance(schema_part.get("additionalProperties"), dict):
+            return f"{name} is keyed by id: write `id: ...` lines instead of a list"
+        return (
+            f"its keys are {_join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
+        )
+    if isinstance(node, MappingNode) and "array" in schema_part.get("type", ()):
+        return "write a list: [a, b], or one entry a line, each after `- `"
+    if isinstance(node, MappingNode) and node.span.line == node.span.end_line:
+        return "text with braces must be quoted"
+    return str(schema_part["patternErrorMessage"]) if "patternErrorMessage" in schema_part else None
+
+
+def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str | None]:
+    text = node.text if isinstance(node, ScalarNode) else ""
+    dimension = _find_dimension(schema_part)
+    if kind == "pattern" and dimension:
+        return _describe_wrong_quantity(name, text, dimension, schema_part)
+    if kind == "const":
+        return (
+            f"this archgen reads version {schema_part[kind]} of the language, not `{_shorten_text(text)}`",
+            f"write `{schema_part[kind]}`",
+        )
+    if kind in {"maxLength", "minLength"}:
+        return (
+            f"{name} is too {'long' if kind == 'maxLength' else 'short'}",
+            f"the limit is {schema_part[kind]} characters",
+        )
+    if text != text.strip() and re.search(schema_part.get("pattern", ""), text.strip()):
+        return f"{name} has a blank at its beginning or end", f"write `{text.strip()}`"
+    return f"{name} cannot be `{_shorten_text(text)}`", _find_value_help(kind, text, schema_part)
+
+
+def _find_value_help(kind: str, text: str, schema_part: dict[str, Any]) -> str | None:
+    if kind == "enum":
+        options = [option for option in schema_part["enum"] if option is not None]
+        return did_you_mean(text, options) or f"it is one of {_join_quoted(options)}"
+    if kind in {"minimum", "maximum"}:
+        return f"it is at {'least' if kind == 'minimum' else 'most'} {schema_part[kind]}"
+    return schema_part.get("patternErrorMessage")
+
+
+def _find_dimension(schema_part: dict[str, Any]) -> str | None:
+    """Return the dimension of a quantity, or None for other values.
+
+    The schema has no field for it: the second word of its `patternErrorMessage` ("a duration is ...") decides.
+    """
+    message_words = str(schema_part.get("patternErrorMessage", "")).split(" ")
+    return _DIMENSION_WORDS.get(message_words[1]) if message_words[1:] else None
+
+
+_DIMENSION_WORDS = {"duration": "duration", "rate": "frequency", "size": "size", "bandwidth": "bandwidth"}
+
+
+def _describe_wrong_quantity(name: str, text: str, dimension: str, schema_part: dict[str, Any]) -> tuple[str, str]:
+    explanation = str(schema_part["patternErrorMessage"])
+    match = _QUANTITY_PATTERN.match(text)
+    if match is None:
+        return f"{name} cannot be `{_shorten_text(text)}`", explanation
+    sign, number, unit = match.groups()
+    if sign == "-":
+        return f"{name} cannot be negative", explanation
+    number = number.replace(",", ".")
+    if not unit:
+        return f"`{_shorten_text(text)}` has no unit", f"write `{number} {_EXAMPLE_UNIT[dimension]}`; {explanation}"
+    if unit in quantity.UNIT_FACTORS[dimension]:
+        if max(map(len, number.split("."))) > quantity.MAX_DIGITS:
+            return f"{name} has too many digits", f"at most {quantity.MAX_DIGITS} are read before and after the point"
+        return f"{name} cannot be `{_shorten_text(text)}`", f"write `{number} {unit}`"
+    return _describe_wrong_unit(name, number, unit, dimension, explanation)
+
+
+def _describe_wrong_unit(name: str, number: str, unit: str, dimension: str, explanation: str) -> tuple[str, str]:
+    better_unit, message = _suggest_unit(unit, dimension), f"{name} has no unit `{_shorten_text(unit)}`"
+    other_key = _OTHER_KEY.get((name.strip("`"), unit))
+    if other_key:
+        return message, f"write `{other_key}: {number} {unit}`"
+    if dimension in {"size", "bandwidth"} and better_unit and unit.lower() == better_unit.lower():
+        return message, f"write `{number} {better_unit}`; case counts: kB is 1000 bytes, KiB is 1024"
+    return message, f"write `{number} {better_unit}`; case counts" if better_unit else explanation
+
+
+_OTHER_KEY = {("rate", unit): "period" for unit in quantity.UNIT_FACTORS["duration"]} | {
+    ("period", unit): "rate" for unit in quantity.UNIT_FACTORS["frequency"]
+}
+"""The key that was meant where somebody writes `rate: 20 ms` or `period: 50 Hz`, by key and unit."""
+
+
+def _suggest_unit(unit: str, dimension: str) -> str | None:
+    units = quantity.UNIT_FACTORS[dimension]
+    # A known other spelling first, then the case: `MS` may be meant as ms, and `mbps` is nothing but a spelling.
+    spelled_unit = _UNIT_SPELLINGS.get(unit)
+    if spelled_unit in units:
+        return spelled_unit
+    folded_units = [known_unit for known_unit in units if known_unit.lower() == unit.lower()]
+    return folded_units[0] if folded_units else None
+
+
+def _describe_expected(schema_part: dict[str, Any]) -> str:
+    types = [kind for kind in _list_types(schema_part) if kind != "null"]
+    phrases = ["text"] if "string" in types else []
+    if "enum" in schema_part:
+        phrases = [f"one of {_join_quoted([option for option in schema_part['enum'] if option is not None])}"]
+    phrases += [
+        _TYPE_PHRASES[kind] for kind in types if kind in _TYPE_PHRASES and not ("string" in types and kind == "boolean")
+    ]
+    if "number" in types and "boolean" not in types:
+        phrases = ["a number", *(word for word in phrases if word != "text")]
+    return " or ".join((", ".join(phrases[:-1]), phrases[-1])) if len(phrases) > 1 else phrases[0]
+
+
+def _list_types(schema_part: dict[str, Any]) -> list[str]:
+    types = schema_part.get("type", [])
+    return [types] if isinstance(types, str) else types
+
+
+def _describe_place(place: ErrorPlace) -> str:
+    keys = [step for step in place.path if isinstance(step, str)]
+    if not keys:
+        return "the file"
+    return f"an entry of `{keys[-1]}`" if isinstance(place.path[-1], int) else f"`{keys[-1]}`"
+
+
+def element_of_path(path: tuple[str | int, ...]) -> str | None:
+    """Return the id of the element that a path leads into, or None outside of all elements."""
+    if len(path) < 2:  # noqa: PLR2004 - a section and an id
+        return None
+    if path[0] == "groups" and len(path) > 3 and path[2] == "components":  # noqa: PLR2004
+        return f"{path[1]}.{path[3]}"
+    return str(path[1]) if path[0] in SECTIONS_BY_ID else None
+
+
+def _add_article(title: str) -> str:
+    word = title if title[:3].isupper() else title[0].lower() + title[1:]
+    return f"{'an' if word[0] in 'aeioAEIO' else 'a'} {word}"
+
+
+def _join_quoted(words: tuple[str, ...] | list[str]) -> str:
+    return ", ".join(f"`{word}`" for word in words)
+
+
+_MAX_QUOTED_LENGTH = 60
+
+
+def _shorten_text(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= _MAX_QUOTED_LENGTH else f"{line[: _MAX_QUOTED_LENGTH - 3]}..."

@@ -1,0 +1,205 @@
+"""Expand the short forms, file by file, so that later stages never see them: every element becomes a mapping.
+
+Empty entries are removed too (they count as not written), but below an id an empty entry declares the element and
+becomes `{}`. Normalising twice changes nothing.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.frozen import dataclass
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.syntax.yaml_tree import YamlDocument, YamlNode
+
+
+@dataclass(frozen=True, slots=True)
+class ElementForm:
+    """What a kind of element looks like.
+
+    A scalar or list in the element's place is the value of every key in `short_keys`. The keys in `list_keys` always
+    hold lists. `keyed_forms` are the keys that hold elements by id, `part_forms` those that hold a single one. The
+    values of `raw_keys` are left as they are.
+    """
+
+    short_keys: tuple[str, ...] = ()
+    list_keys: frozenset[str] = frozenset()
+    keyed_forms: Mapping[str, ElementForm] = field(default_factory=dict)
+    part_forms: Mapping[str, ElementForm] = field(default_factory=dict)
+    raw_keys: frozenset[str] = frozenset()
+
+
+_PLAIN_FORM = ElementForm()
+_TITLED_FORM = ElementForm(("title",))
+_TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": ElementForm(("profile",))})
+_CALL_FORM = ElementForm(("name",))
+_USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
+_COMPONENT_FORM = ElementForm(
+    ("title",),
+    keyed_forms={
+        "inputs": ElementForm(("from",), frozenset({"from"})),
+        "outputs": ElementForm(("type",)),
+        "performance": _PLAIN_FORM,
+    },
+)
+_NODE_FORM = ElementForm(
+    ("implements",),
+    frozenset({"implements", "kind"}),
+    keyed_forms=_USE_FORMS,
+    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS)},
+    raw_keys=frozenset({"parameters"}),
+)
+# One latency is both the best and the worst: a constant.
+_LINK_FORM = ElementForm(("connects",), frozenset({"connects"}), part_forms={"latency": ElementForm(("best", "worst"))})
+_ROOT_FORM = ElementForm(
+    keyed_forms={
+        "partners": _TITLED_FORM,
+        "use_cases": _TITLED_FORM,
+        "requirements": _TITLED_FORM,
+        "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
+        "nodes": _NODE_FORM,
+        "types": ElementForm(("message",)),
+        "hosts": _TITLED_FORM,
+        "containers": ElementForm(("host",)),
+        "links": _LINK_FORM,
+        "chains": ElementForm(("through",), frozenset({"through"})),
+        "views": ElementForm(("show",)),
+        "policies": _PLAIN_FORM,
+    },
+    part_forms={
+        "review": ElementForm(list_keys=frozenset({"backends"}), keyed_forms={"accepted": ElementForm(("reason",))})
+    },
+)
+
+
+def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
+    """Bring a validated document into the normal form. Its tree is changed in place."""
+    # Types and indicators first: both look at short forms that _normalise_mapping expands.
+    types = document.root.get("types")
+    type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
+    groups = document.root.get("groups")
+    indicator_diagnostics = tuple(_collect_overall(groups)) if isinstance(groups, MappingNode) else ()
+    _normalise_mapping(document.root, _ROOT_FORM)
+    return type_diagnostics + indicator_diagnostics
+
+
+def fold_type_name(name: str) -> str:
+    """Return a type's name as it is compared: runs of blanks folded to one, in Unicode's composed form (NFC)."""
+    # Nearly every name is plain ASCII without double blanks and needs no work.
+    return name if name.isascii() and "  " not in name and name == name.strip() else _fold_name(name)
+
+
+def _fold_name(name: str) -> str:
+    return unicodedata.normalize("NFC", " ".join(name.split()))
+
+
+def _normalise_element(node: YamlNode, form: ElementForm) -> MappingNode:
+    """Return an element as a mapping: itself, or its short form expanded; empty becomes `{}`."""
+    if isinstance(node, MappingNode):
+        _normalise_mapping(node, form)
+        return node
+    if isinstance(node, ScalarNode) and node.value is None:
+        return MappingNode({}, node.span)
+    # All keys share the node where there are several: safe, because scalars and lists are not changed after this.
+    return MappingNode(
+        {key: MappingEntry(key, node.span, _normalise_leaf(key, node, form)) for key in form.short_keys}, node.span
+    )
+
+
+def _normalise_leaf(key: str, node: YamlNode, form: ElementForm) -> YamlNode:
+    return SequenceNode([node], node.span) if key in form.list_keys and isinstance(node, ScalarNode) else node
+
+
+def _normalise_mapping(mapping: MappingNode, form: ElementForm) -> None:
+    """Bring the entries of a mapping into the normal form in place, and drop those that are empty."""
+    empty_keys: list[str] = []
+    for key, entry in mapping.entries.items():
+        node = entry.value
+        if isinstance(node, ScalarNode) and node.value is None:
+            empty_keys.append(key)
+        elif key in form.part_forms:
+            entry.value = _normalise_element(node, form.part_forms[key])
+        elif isinstance(node, MappingNode):
+            _normalise_below(key, node, form)
+        else:
+            entry.value = _normalise_leaf(key, node, form)
+    for key in empty_keys:
+        del mapping.entries[key]
+
+
+def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
+    if key in form.keyed_forms:
+        element_form = form.keyed_forms[key]
+        for entry in mapping.entries.values():
+            entry.value = _normalise_element(entry.value, element_form)
+    elif key not in form.raw_keys:
+        _normalise_mapping(mapping, _PLAIN_FORM)
+
+
+def _fold_type_names(types: MappingNode) -> Iterator[Diagnostic]:
+    """Replace the names of types by their folded form, and report names that fold to the same."""
+    if all(fold_type_name(key) == key for key in types.entries):
+        return
+    folded_types: dict[str, MappingEntry] = {}
+    for entry in types:
+        name = fold_type_name(entry.key)
+        first_entry = folded_types.setdefault(name, entry)
+        if first_entry is not entry:
+            yield _diagnose_duplicate(
+                "duplicate-key", f"the type `{name}` is written twice", entry.key_span, first_entry.key_span
+            )
+        entry.key = name
+    types.entries = folded_types
+
+
+# The figures of an indicator that may be written directly in `performance`.
+_DIRECT_KEYS = ("accuracy", "execution_time")
+
+
+def _collect_overall(groups: MappingNode) -> Iterator[Diagnostic]:
+    """Move figures written directly in `performance` into its indicator `overall`."""
+    for group in groups:
+        components = group.value.get("components") if isinstance(group.value, MappingNode) else None
+        for component in components if isinstance(components, MappingNode) else ():
+            performance = component.value.get("performance") if isinstance(component.value, MappingNode) else None
+            if isinstance(performance, MappingNode):
+                yield from _move_to_overall(performance)
+
+
+def _move_to_overall(performance: MappingNode) -> Iterator[Diagnostic]:
+    direct_entries = [performance.entries[key] for key in _DIRECT_KEYS if isinstance(performance.get(key), ScalarNode)]
+    for entry in direct_entries:
+        del performance.entries[entry.key]
+    written_entries = [
+        entry for entry in direct_entries if isinstance(entry.value, ScalarNode) and entry.value.value is not None
+    ]
+    if not written_entries:
+        return
+    # Validation has left either a mapping or an empty `overall:`, which gives way to the figures.
+    overall_entry = performance.entries.get("overall")
+    if overall_entry is None or not isinstance(overall_entry.value, MappingNode):
+        overall_entry = MappingEntry(
+            "overall", written_entries[0].key_span, MappingNode({}, written_entries[0].key_span)
+        )
+        performance.entries = {"overall": overall_entry} | performance.entries | {"overall": overall_entry}
+    for entry in written_entries:
+        first_entry = (
+            overall_entry.value.entries.setdefault(entry.key, entry)
+            if isinstance(overall_entry.value, MappingNode)
+            else entry
+        )
+        if first_entry is not entry:
+            message = f"`{entry.key}` of the indicator `overall` is written twice"
+            yield _diagnose_duplicate("conflicting-values", message, entry.value.span, first_entry.value.span)
+
+
+def _diagnose_duplicate(rule: str, message: str, span: Span, first_span: Span) -> Diagnostic:
+    return Diagnostic(rule, message, span, labels=(Label(first_span, "first written here"),))

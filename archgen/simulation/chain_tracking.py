@@ -1,0 +1,107 @@
+"""The chains that a simulation follows: their activities and wires, and what all runs together showed of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+
+from archgen.simulation.chain_series import ChainSeries, ChainTrace, TimeRange, compute_quantiles, measure_chain
+from archgen.simulation.simulation_plan import SimulationPlan
+from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain
+from archgen.simulation.simulation_run import SimulationRun
+
+
+@dataclass(frozen=True, slots=True)
+class ChainTrack:
+    """A chain by numbers: its activities, the parallel wires between each two of them, and the figures of each run."""
+
+    activities: tuple[int, ...]
+    wires: tuple[tuple[int, ...], ...]
+    samples_world: bool
+    is_selective: bool
+    """Whether an output on the way may leave inputs out."""
+    all_series: list[ChainSeries] = field(default_factory=list)
+    forwarded_series: list[ChainSeries] = field(default_factory=list)
+
+    def add_run(self, run: SimulationRun) -> None:
+        """Add the figures of one run."""
+        trace = ChainTrace(
+            run.activities.job_activations[self.activities[0]],
+            [_stalest_sources(run, wires) for wires in self.wires],
+            run.activities.job_ends[self.activities[-1]],
+            [_jointly_forwarded(run, wires) for wires in self.wires],
+            self.samples_world,
+        )
+        self.all_series.append(measure_chain(trace))
+        if self.is_selective:
+            self.forwarded_series.append(measure_chain(trace, forwarded_only=True))
+
+    def to_observed(self, through: Sequence[str], unit: Fraction) -> ObservedChain:
+        """Summarise all runs. `through` are the ids of the activities, `unit` is in ns."""
+        forwarded = _summarise_series(self.forwarded_series, unit) if self.is_selective else None
+        return ObservedChain(tuple(through), _summarise_series(self.all_series, unit), forwarded)
+
+
+def unobserved_chain(through: Sequence[str]) -> ObservedChain:
+    """Return the empty result of a chain along which nothing can pass."""
+    return ObservedChain(tuple(through), _summarise_series((), Fraction(1)), None)
+
+
+def track_chain(plan: SimulationPlan, activity_ids: Sequence[str]) -> ChainTrack | None:
+    """Find the wires along a list of activities; None where two neighbours have no wire."""
+    activity_numbers = {planned.id: index for index, planned in enumerate(plan.activities)}
+    wires = tuple(
+        tuple(index for index, arc in enumerate(plan.arcs) if (arc.source, arc.target) == ends)
+        for ends in pairwise(activity_ids)
+    )
+    if not activity_ids or not all(wires):
+        return None
+    activities = tuple(activity_numbers[activity_id] for activity_id in activity_ids)
+    selective = any(plan.wires[index].is_selective for ends in wires for index in ends)
+    return ChainTrack(activities, wires, plan.activities[activities[0]].samples_world, selective)
+
+
+def _stalest_sources(run: SimulationRun, wires: Sequence[int]) -> list[int]:
+    """Return for each job of an activity the oldest job of the one before it whose data it read on any of several
+    wires.
+    """
+    return (
+        list(map(min, *(run.wires.source_log[wire] for wire in wires)))
+        if len(wires) > 1
+        else run.wires.source_log[wires[0]]
+    )
+
+
+def _jointly_forwarded(run: SimulationRun, wires: Sequence[int]) -> frozenset[int] | None:
+    """Return the jobs that sent something on all of several wires; None where every job does."""
+    forwarded = [frozenset(run.wires.forwarded_jobs[wire]) for wire in wires if run.wires.is_noted[wire]]
+    return frozenset.intersection(*forwarded) if forwarded else None
+
+
+def _summarise_series(all_series: Sequence[ChainSeries], unit: Fraction) -> ChainFigures:
+    """Summarise the figures of all runs, converted to ns."""
+    reduced = [run_series.reduced_reaction for run_series in all_series if run_series.reduced_reaction is not None]
+    reduced_ages = [run_series.reduced_age for run_series in all_series if run_series.reduced_age is not None]
+    return ChainFigures(
+        _summarise_ranges([span for run_series in all_series for span in run_series.reactions], unit),
+        _summarise_ranges([span for run_series in all_series for span in run_series.ages], unit),
+        max(reduced) * unit if reduced else None,
+        max(reduced_ages) * unit if reduced_ages else None,
+        sum(run_series.input_count for run_series in all_series),
+    )
+
+
+def _summarise_ranges(ranges: Sequence[TimeRange], unit: Fraction) -> DurationDistribution | None:
+    """Summarise ranges as a distribution in ns; None where there are none."""
+    if not ranges:
+        return None
+    median, percentile_95 = compute_quantiles(ranges, (0.5, 0.95))
+    return DurationDistribution(
+        min(low for low, _ in ranges) * unit,
+        # `compute_quantiles` works in floats; the rounded fraction keeps the result exact from here on.
+        Fraction(median).limit_denominator(1000) * unit,
+        Fraction(percentile_95).limit_denominator(1000) * unit,
+        max(high for _, high in ranges) * unit,
+    )

@@ -1,0 +1,100 @@
+"""Activate jobs: gates (`every`, `throttle`), jitter, and what a job reads when it starts."""
+
+from __future__ import annotations
+
+from heapq import heappush
+from typing import Any
+
+from archgen.simulation.run_state import Job
+from archgen.simulation.simulation_run import (
+    ACTIVITY_RELEASE,
+    ALL_WIRES,
+    HELD_FIRING,
+    JOB_END,
+    LOAD_ONLY,
+    SimulationRun,
+)
+
+
+def passes_gate(run: SimulationRun, now: int, activity: int) -> bool:
+    """Return whether an activation passes `every` and `throttle`, and advance their state."""
+    planned, activities = run.plan.activities[activity], run.activities
+    if planned.every > 1:
+        activities.every_counter[activity] = (activities.every_counter[activity] + 1) % planned.every
+        if activities.every_counter[activity]:
+            return False
+    last_passed = activities.last_passed[activity]
+    if planned.throttle and last_passed >= 0 and now - last_passed < planned.throttle:
+        return False
+    activities.last_passed[activity] = now
+    return True
+
+
+def hold_firing(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Hold back an activation by data for up to the activity's jitter; activations keep their order."""
+    activities = run.activities
+    # Never earlier than the activation before it, since `held_firings` is emptied in order.
+    release_time = max(now + run.draw_time(activity, 0, activities.jitter[activity]), activities.held_until[activity])
+    activities.held_until[activity] = release_time
+    activities.held_firings[activity].append((wire, sample))
+    heappush(run.heap, (release_time << 2 | ACTIVITY_RELEASE, activity, HELD_FIRING))
+
+
+def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Activate an activity: queue a job for its thread.
+
+    With a declared response the job begins at once and ends on time; only its load is queued.
+    """
+    activities = run.activities
+    previous = activities.last_activation[activity]
+    if previous >= 0 and now - previous > activities.activation_gap[activity]:
+        activities.activation_gap[activity] = now - previous
+    activities.last_activation[activity] = now
+    if activities.declared_response[activity] is not None:
+        _start_declared_job(run, now, activity, wire, sample)
+        wire = LOAD_ONLY
+    activities.pending[activity].append((now, wire, sample))
+    thread = activities.thread[activity]
+    if run.threads.is_idle[thread]:
+        run.woken_threads.append(thread)
+
+
+def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Start a job with a declared response: it ends within the declared time whatever the load."""
+    activities = run.activities
+    job = (now, wire, sample)
+    if wire >= 0 and not run.wires.is_request[wire]:
+        run.wires.waiting_count[run.wires.queue[wire]] -= 1
+    read_inputs(run, now, activity, job)
+    declared = activities.declared_response[activity] or 0
+    shortest = min(activities.shortest_time[activity], declared)
+    # Jobs of one activity end in order, as they would on one thread.
+    end = max(now + run.draw_time(activity, shortest, declared - shortest), activities.declared_end[activity])
+    activities.declared_end[activity] = end
+    # `read` has just counted this job, so its number is one less than the count.
+    activities.declared_jobs[activity].append((now, wire, activities.started[activity] - 1))
+    # END, -1 - at, 0)) | Activities are encoded as negative numbers here; thread numbers are not negative.
+    heappush(run.heap, (end << 2 | JOB_END, -1 - activity, 0))
+
+
+def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
+    """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
+    activities, wires = run.activities, run.wires
+    _, wire, sample = job
+    if wire >= 0:
+        wires.newest_job[wire] = sample
+    elif wire == ALL_WIRES:
+        for input_wire, job_number in zip(run.plan.activities[activity].captured_wires, sample, strict=True):
+            wires.newest_job[input_wire] = job_number
+    for queue in wires.sampled_queues[activity]:
+        wires.waiting_count[queue] = 0
+    # Requests that came before this start are answered at its end; later ones wait for the next job.
+    if activities.waiting_requests[activity]:
+        activities.accepted_requests[activity] += activities.waiting_requests[activity]
+        activities.waiting_requests[activity] = []
+    if activities.is_watched[activity]:
+        activities.job_starts[activity].append(now)
+        activities.job_activations[activity].append(job[0])
+        for input_wire in wires.logged_wires[activity]:
+            wires.source_log[input_wire].append(wires.newest_job[input_wire])
+    activities.started[activity] += 1

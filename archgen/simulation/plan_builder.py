@@ -1,0 +1,230 @@
+"""Build a simulation plan from a system. Unknown figures are taken as nothing, and listed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from archgen.simulation.simulation_plan import (
+    INACTIVE,
+    MAX_UNIT_NS,
+    ONCE,
+    PERIODIC,
+    SLOT_ANY,
+    SLOT_SAMPLED,
+    TRIGGERED,
+    PlannedActivity,
+    PlannedOutput,
+    PlannedWire,
+    SimulationPlan,
+)
+from archgen.simulation.thread_placement import ThreadPlacement
+from archgen.timing.system.selective_arcs import is_selective_arc
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+
+_SECOND = 10**9
+PublishPauses = Mapping[tuple[str, str], Fraction]
+"""The longest time between two chances to publish an output, in ns, by activity and output key."""
+
+
+def build_plan(system: TimingSystem, pauses: PublishPauses | None = None) -> SimulationPlan:
+    """Build a plan.
+
+    `pauses` say when a conditional output must be published so that its promised largest gap is kept.
+    """
+    builder = _PlanBuilder(system, pauses or {})
+    # Wires come first: unknown latencies are listed before unknown execution times.
+    wires = tuple(builder.plan_wire(arc) for arc in system.arcs)
+    activities = tuple(builder.plan_activity(activity) for activity in system.activities.values())
+    answer_wires = {
+        (arc.target, arc.source, arc.topic): wire_index
+        for wire_index, arc in enumerate(system.arcs)
+        if arc.role == "answer"
+    }
+    requests = (
+        (wire_index, (arc.source, arc.target, arc.topic))
+        for wire_index, arc in enumerate(system.arcs)
+        if arc.role == "request"
+    )
+    answers = {wire_index: answer_wires[key] for wire_index, key in requests if key in answer_wires}
+    return SimulationPlan(
+        system.tick / builder.scale,
+        activities,
+        wires,
+        system.arcs,
+        tuple(builder.placement.processor_of_thread),
+        tuple(map(tuple, builder.placement.members)),
+        tuple(builder.placement.affinity),
+        tuple(builder.placement.pool_of_thread),
+        tuple(builder.placement.pools),
+        tuple(builder.placement.processors),
+        tuple(builder.links),
+        tuple(builder.queues),
+        builder.placement.cores_by_host(),
+        answers,
+        tuple(builder.unknown),
+    )
+
+
+class _PlanBuilder:
+    """Numbers activities, wires, queues, links and threads in order of appearance."""
+
+    def __init__(self, system: TimingSystem, pauses: PublishPauses) -> None:
+        self.system = system
+        self.pauses = pauses
+        # Rounded up: a unit is at most MAX_UNIT_NS ns long.
+        self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * MAX_UNIT_NS)))
+        self.activity_numbers = {key: index for index, key in enumerate(system.activities)}
+        self.placement = ThreadPlacement(system, self.activity_numbers)
+        self.links: dict[str, int] = {}
+        self.queues: dict[tuple[str, str, str], int] = {}
+        self.unknown: dict[str, None] = {}
+        self.arcs_into: dict[str, list[tuple[int, Arc]]] = {}
+        self.arcs_out_of: dict[str, list[tuple[int, Arc]]] = {}
+        for wire_index, arc in enumerate(system.arcs):
+            self.arcs_into.setdefault(arc.target, []).append((wire_index, arc))
+            self.arcs_out_of.setdefault(arc.source, []).append((wire_index, arc))
+
+    def ticks_to_units(self, ticks: int) -> int:
+        """Convert ticks to units."""
+        return ticks * self.scale
+
+    def known_units(self, ticks: int | None, figure: str) -> int:
+        """Convert ticks to units; an unknown figure is noted and counts as 0."""
+        if ticks is None:
+            self.unknown[figure] = None
+            return 0
+        return self.ticks_to_units(ticks)
+
+    def plan_wire(self, arc: Arc) -> PlannedWire:
+        """Plan the wire for an arc."""
+        reader = self.system.activities[arc.target]
+        best = self.ticks_to_units(arc.best or 0)
+        # A latency that the analysis computed for a queued link is not a declared one: the simulation must be free to
+        # exceed it, or it would prove nothing.
+        declared = None if arc.worst is None or arc.link in self.system.queued_links else self.ticks_to_units(arc.worst)
+        if arc.worst is None:
+            self.unknown[f"latency from {arc.source} to {arc.target}"] = None
+        link, transmission = -1, 0
+        bandwidth = self.system.bandwidths.get(arc.link or "")
+        if arc.link is not None and arc.size is not None and bandwidth:
+            link = self.links.setdefault(arc.link, len(self.links))
+            transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
+        queue = -1
+        if arc.role == "data":
+            queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
+        return PlannedWire(
+            target=self.activity_numbers[arc.target],
+            slot=_slot_of(reader, arc),
+            best=best if declared is None else min(best, declared),
+            worst=best if declared is None else declared,
+            queue=queue,
+            depth=arc.depth or 0,
+            link=link,
+            transmission=transmission,
+            declared_latency=declared,
+            is_request=arc.role == "request",
+            is_selective=is_selective_arc(self.system, arc),
+        )
+
+    def plan_activity(self, activity: Activity) -> PlannedActivity:
+        """Plan an activity."""
+        kind = self.start_kind(activity)
+        wcet = self.known_units(activity.wcet, f"execution time of {activity.id}")
+        # Here no execution time is needed, so it is not listed as unknown.
+        if activity.wcet is None and (activity.response is not None or kind == ONCE):
+            self.unknown.pop(f"execution time of {activity.id}", None)
+        needs_all = activity.mode == "all"
+        incoming = self.arcs_into.get(activity.id, [])
+        return PlannedActivity(
+            activity.id,
+            kind,
+            self.ticks_to_units(activity.period or 0) if kind == PERIODIC else 0,
+            self.ticks_to_units(activity.jitter),
+            min(self.ticks_to_units(activity.bcet or 0), wcet),
+            wcet,
+            None if activity.response is None else self.ticks_to_units(activity.response),
+            1 if kind == PERIODIC else activity.every,
+            0 if kind == PERIODIC else self.ticks_to_units(activity.throttle),
+            len(activity.triggers),
+            self.constant_slots(activity) if needs_all else (),
+            tuple(wire_index for wire_index, arc in incoming if needs_all and _slot_of(activity, arc) >= 0),
+            tuple(wire_index for wire_index, _ in incoming),
+            tuple(self.plan_output(activity, key) for key in self.output_keys(activity)),
+            tuple(self.planned_calls(activity)),
+            self.placement.thread_of(activity),
+            activity.priority,
+            activity.behaviour == "periodic",
+        )
+
+    def start_kind(self, activity: Activity) -> int:
+        """Return what starts an activity, and note what is missing where nothing does."""
+        if activity.behaviour == "once":
+            return ONCE
+        if activity.behaviour == "periodic":
+            if activity.period:
+                return PERIODIC
+            self.unknown[f"period of {activity.id}"] = None
+            return INACTIVE
+        if activity.period and not self.is_fired(activity):
+            return PERIODIC
+        if activity.behaviour is None:
+            self.unknown[f"behaviour of {activity.id}"] = None
+        for external_input in self.system.external_inputs.get(activity.id, ()):
+            if external_input in activity.triggers:
+                self.unknown[f"events from outside at {external_input}"] = None
+        return TRIGGERED
+
+    def is_fired(self, activity: Activity) -> bool:
+        """Return whether something within the architecture fires an activity; else it keeps its stated period."""
+        return any(
+            arc.role == "request" or (arc.role == "data" and arc.input in activity.triggers)
+            for arc in self.system.arcs_into.get(activity.id, ())
+        )
+
+    def constant_slots(self, activity: Activity) -> tuple[int, ...]:
+        """Return the slots of an all-of trigger that outputs published once fill for good."""
+        incoming = self.arcs_into.get(activity.id, [])
+        constant_inputs = {arc.input for _, arc in incoming if self.system.activities[arc.source].behaviour == "once"}
+        return tuple(slot for slot, key in enumerate(activity.triggers) if key in constant_inputs)
+
+    def output_keys(self, activity: Activity) -> tuple[str, ...]:
+        """Return the keys of the outputs that have readers or are conditional, in order and without duplicates."""
+        connected_keys = [arc.output for _, arc in self.arcs_out_of.get(activity.id, []) if arc.role == "data"]
+        return tuple(
+            dict.fromkeys((*connected_keys, *(key for key in activity.outputs if key in activity.conditional)))
+        )
+
+    def plan_output(self, activity: Activity, key: str) -> PlannedOutput:
+        """Plan an output."""
+        outgoing = self.arcs_out_of.get(activity.id, [])
+        wires = tuple(wire_index for wire_index, arc in outgoing if arc.output == key and arc.role == "data")
+        max_gap = activity.max_gaps.get(key)
+        pause = self.pauses.get((activity.id, key))
+        patience = None
+        if max_gap is not None:
+            # Publish unless waiting for one more chance would still keep the promise. The 1 makes up for rounding; -1
+            # (no bound on the pause) publishes at each chance.
+            patience = (
+                self.ticks_to_units(max_gap) - int(pause / self.system.tick * self.scale) - 1
+                if pause is not None
+                else -1
+            )
+        return PlannedOutput(key, wires, key in activity.conditional, patience)
+
+    def planned_calls(self, activity: Activity) -> list[tuple[Fraction, tuple[int, ...]]]:
+        """Return calls for each activation and the wires that they use, by output."""
+        wires_by_output: dict[str, list[int]] = {}
+        for wire_index, arc in self.arcs_out_of.get(activity.id, []):
+            if arc.role == "request":
+                wires_by_output.setdefault(arc.output, []).append(wire_index)
+        return [(activity.calls.get(key, Fraction(1)), tuple(wires)) for key, wires in wires_by_output.items()]
+
+
+def _slot_of(reader: Activity, arc: Arc) -> int:
+    """Return the slot of an arc at its reader: a place of an all-of trigger, SLOT_ANY or SLOT_SAMPLED."""
+    if arc.role == "request":
+        return SLOT_SAMPLED if reader.behaviour == "periodic" else SLOT_ANY
+    if arc.role == "answer" or arc.input not in reader.triggers:
+        return SLOT_SAMPLED
+    return reader.triggers.index(arc.input) if reader.mode == "all" else SLOT_ANY

@@ -1,0 +1,115 @@
+"""Add up what the runs of a plan showed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from archgen.simulation.chain_tracking import ChainTrack, unobserved_chain
+from archgen.simulation.simulation_plan import SimulationPlan
+from archgen.simulation.simulation_result import ObservedActivity, ObservedHost, ObservedLink, SimulationResult
+from archgen.simulation.simulation_run import SimulationRun
+
+
+class RunTotals:
+    """Totals over the runs so far, in units."""
+
+    def __init__(self, plan: SimulationPlan, tracks: Mapping[str, ChainTrack]) -> None:
+        self.plan = plan
+        self.tracks = tracks
+        count = len(plan.activities)
+        self.jobs, self.worst_response, self.end_gap, self.activation_gap = ([0] * count for _ in range(4))
+        self.best_response: list[int] = [-1] * count
+        self.output_silence = [[0] * len(planned.outputs) for planned in plan.activities]
+        self.drops = [0] * len(plan.queues)
+        self.busy_by_run: list[list[int]] = []
+        self.link_wait = [0] * len(plan.links)
+        self.link_busy = [0] * len(plan.links)
+        self.event_count = 0
+
+    def add_run(self, run: SimulationRun, horizon: int) -> None:
+        """Add the figures of one finished run."""
+        activities = run.activities
+        self.event_count += run.event_count
+        self.jobs = [old + new for old, new in zip(self.jobs, activities.finished, strict=True)]
+        self.worst_response = list(map(max, self.worst_response, activities.worst_response))
+        # -1 means that no job has ended yet.
+        self.best_response = [
+            new if old < 0 or 0 <= new < old else old
+            for old, new in zip(self.best_response, activities.best_response, strict=True)
+        ]
+        self.end_gap = list(map(max, self.end_gap, activities.end_gap))
+        self.activation_gap = list(map(max, self.activation_gap, activities.activation_gap))
+        self.output_silence = [
+            list(map(max, old, new)) for old, new in zip(self.output_silence, activities.output_silence, strict=True)
+        ]
+        self.drops = [old + new for old, new in zip(self.drops, run.wires.drop_count, strict=True)]
+        self.busy_by_run.append(
+            # A job's whole execution is counted when it starts, and may reach beyond the end of the run.
+            [
+                min(busy, horizon * processor.cores)
+                for busy, processor in zip(run.threads.busy_time, self.plan.processors, strict=True)
+            ]
+        )
+        self.link_wait = list(map(max, self.link_wait, run.wires.link_wait))
+        self.link_busy = [old + new for old, new in zip(self.link_busy, run.wires.link_busy, strict=True)]
+        for track in self.tracks.values():
+            track.add_run(run)
+
+    def to_result(
+        self, seconds: int, seeds: int, horizon: int, requested_chains: Mapping[str, Sequence[str]]
+    ) -> SimulationResult:
+        """Return the result, with the chains that were asked for by the ids of their activities."""
+        plan, unit = self.plan, self.plan.unit
+        total_seconds = seconds * seeds
+        return SimulationResult(
+            seconds,
+            seeds,
+            self.event_count,
+            {
+                planned.id: self._summarise_activity(index, total_seconds)
+                for index, planned in enumerate(plan.activities)
+            },
+            {
+                key: self.tracks[key].to_observed(activity_ids, unit)
+                if key in self.tracks
+                else unobserved_chain(activity_ids)
+                for key, activity_ids in requested_chains.items()
+            },
+            self._summarise_hosts(horizon),
+            {
+                link: ObservedLink(self.link_wait[index] * unit, Fraction(self.link_busy[index], horizon * seeds))
+                for index, link in enumerate(plan.links)
+            },
+            {queue: count for queue, count in zip(plan.queues, self.drops, strict=True) if count},
+            plan.unknown_figures,
+        )
+
+    def _summarise_activity(self, activity: int, total_seconds: int) -> ObservedActivity:
+        unit, planned = self.plan.unit, self.plan.activities[activity]
+        return ObservedActivity(
+            self.jobs[activity],
+            Fraction(self.jobs[activity], total_seconds),
+            self.best_response[activity] * unit if self.jobs[activity] else None,
+            self.worst_response[activity] * unit if self.jobs[activity] else None,
+            self.activation_gap[activity] * unit if self.activation_gap[activity] else None,
+            self.end_gap[activity] * unit if self.end_gap[activity] else None,
+            {
+                output.key: silence * unit
+                for output, silence in zip(planned.outputs, self.output_silence[activity], strict=True)
+                if output.is_conditional
+            },
+        )
+
+    def _summarise_hosts(self, horizon: int) -> dict[str, ObservedHost]:
+        loads: dict[str, ObservedHost] = {}
+        for host in dict.fromkeys(processor.host for processor in self.plan.processors if processor.host is not None):
+            processor_indices = [
+                index for index, processor in enumerate(self.plan.processors) if processor.host == host
+            ]
+            cores = self.plan.cores[host]
+            shares = [
+                Fraction(sum(busy[index] for index in processor_indices), horizon * cores) for busy in self.busy_by_run
+            ]
+            loads[host] = ObservedHost(sum(shares, Fraction(0)) / len(shares), max(shares))
+        return loads

@@ -1,0 +1,170 @@
+"""What a simulation assumes: what it draws at random, what was filled in for figures nobody wrote, what contradicts
+itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+from archgen.simulation.simulation_result import SimulationResult
+from archgen.timing.analysis import Analysis
+from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.system.selective_arcs import is_selective_arc
+from archgen.timing.system.timing_system import Activity, TimingSystem
+
+NOT_SIMULATED = (
+    "caches, migration, context switches and interrupts",
+    "the middleware's own threads, and what callbacks of inputs that do not fire take",
+    "lost packets",
+    "drifting clocks",
+    "start-up",
+    "callers that block until the answer is there",
+    "deadlines and liveliness of quality of service",
+    "whatever is outside of the architecture",
+)
+"""The user's copy of this list is in docs/simulation.md."""
+
+
+_CONDITIONAL_PHRASES = {
+    "data": "does not always publish",
+    "request": "does not always call",
+    "answer": "does not always answer this caller on",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class DefaultFigure:
+    """A figure that was not written, the value assumed for it, and the elements it is missing from."""
+
+    figure: str
+    assumed_value: str
+    element_ids: tuple[str, ...]
+
+
+def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
+    """Return phrases for what each seed draws at random, as far as this system leaves it open."""
+    activities, arcs = system.activities.values(), system.arcs
+    containers = [name for name, threads in system.threads.items() if threads == 1]
+    choices = (
+        (
+            any(activity.period for activity in activities),
+            "the phase of each clock (every fourth run starts all at once)",
+        ),
+        (any(activity.jitter for activity in activities), "how late a release with jitter is"),
+        (
+            any((activity.wcet or 0) > (activity.bcet or 0) for activity in activities),
+            "execution times from bcet to wcet",
+        ),
+        (
+            any(
+                (activity.worst or 0) > (activity.best or 0) and activity.link not in system.queued_links
+                for activity in arcs
+            ),
+            "latencies of links from best to worst",
+        ),
+        (any(activity.conditional for activity in activities), "when a conditional output is published"),
+        (any(activity.every > 1 for activity in activities), "where `every` begins to count"),
+        (
+            any(activity.host and activity.priority is None for activity in activities),
+            "who comes first among those without a priority",
+        ),
+        (bool(containers), "the order in which an executor looks at its callbacks"),
+        (
+            any(activity.response is not None for activity in activities),
+            "when what has a declared response ends, within it",
+        ),
+    )
+    return tuple(text for applies, text in choices if applies)
+
+
+def list_default_figures(system: TimingSystem) -> tuple[DefaultFigure, ...]:
+    """Return the figures that nobody wrote and the simulation needs."""
+    working = [activity for activity in system.activities.values() if activity.behaviour != "once"]
+    hosts_with_priorities = {activity.host for activity in working if activity.priority is not None}
+    hosts_without_cores = {
+        activity.host for activity in working if activity.host and system.cores.get(activity.host) is None
+    }
+    figures = (
+        DefaultFigure(
+            "wcet",
+            "0",
+            tuple(activity.id for activity in working if activity.wcet is None and activity.response is None),
+        ),
+        DefaultFigure(
+            "bcet", "0", tuple(activity.id for activity in working if activity.wcet and activity.bcet is None)
+        ),
+        DefaultFigure(
+            "jitter",
+            "none",
+            tuple(activity.id for activity in working if activity.period and "jitter" not in activity.places),
+        ),
+        DefaultFigure(
+            "priority",
+            "after all that have one",
+            tuple(
+                activity.id
+                for activity in working
+                if activity.host in hosts_with_priorities and activity.priority is None
+            ),
+        ),
+        DefaultFigure("host", "a core of its own", tuple(activity.id for activity in working if activity.host is None)),
+        DefaultFigure("cores", "1", tuple(sorted(host for host in hosts_without_cores if host))),
+        DefaultFigure(
+            "calls",
+            "1 for each activation",
+            tuple(activity.id for activity in working if _uses_default_calls(system, activity)),
+        ),
+        DefaultFigure(
+            "latency",
+            "the best that is written (0 without one), and on a link with a bandwidth the wait for it",
+            tuple(
+                dict.fromkeys(
+                    f"{activity.source} to {activity.target}" for activity in system.arcs if activity.worst is None
+                )
+            ),
+        ),
+    )
+    return tuple(default for default in figures if default.element_ids)
+
+
+def _uses_default_calls(system: TimingSystem, activity: Activity) -> bool:
+    """Return whether an activity calls without saying how often."""
+    requests = [arc for arc in system.arcs_from.get(activity.id, ()) if arc.role == "request"]
+    return any(arc.output not in activity.calls for arc in requests)
+
+
+def find_contradictions(result: SimulationResult, analysis: Analysis) -> tuple[str, ...]:
+    """Return sentences on what is written but cannot hold: there an observed figure may exceed its bound."""
+    return (*_rate_contradictions(analysis), *_gap_contradictions(result, analysis))
+
+
+def _rate_contradictions(analysis: Analysis) -> Iterator[str]:
+    for activity_id, derived in analysis.derived.items():
+        declared = analysis.paces[activity_id]
+        if derived.gap.value is not None and derived.gap.value != declared.gap.value:
+            period = (analysis.system.activities[activity_id].period or 0) * analysis.system.tick
+            yield f"{activity_id} states a period of {format_duration(period)}, and its inputs fire it at another: here they do"
+
+
+def _gap_contradictions(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
+    for activity_id, observed in result.activities.items():
+        max_gaps = analysis.system.activities[activity_id].max_gaps
+        for key, silence in observed.output_silences.items():
+            limit = max_gaps[key] * analysis.system.tick if key in max_gaps else None
+            if limit is not None and silence > limit:
+                yield (
+                    f"{activity_id} promises {key} every {format_duration(limit)} at least, and had no chance to for {format_duration(silence)}"
+                )
+
+
+def list_selective_elements(system: TimingSystem, through: tuple[str, ...]) -> tuple[str, ...]:
+    """Return phrases for the elements of a chain that may not send each input on, and do not promise when they do."""
+    phrases = (
+        f"{source} {_CONDITIONAL_PHRASES[arc.role]} {arc.topic}"
+        for source, target in pairwise(through)
+        for arc in system.arcs_from.get(source, ())
+        if arc.target == target and is_selective_arc(system, arc)
+    )
+    return tuple(dict.fromkeys(phrases))

@@ -1,0 +1,99 @@
+"""What was observed in all runs together. Durations are in ns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class DurationDistribution:
+    """How a duration was distributed over all seeds, in ns."""
+
+    least: Fraction
+    median: Fraction
+    percentile_95: Fraction
+    """The 95th percentile."""
+    largest: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class ChainFigures:
+    """The figures of a chain, None where nothing passed along all of it. `input_count` is the number of inputs behind
+    them.
+    """
+
+    reaction: DurationDistribution | None
+    age: DurationDistribution | None
+    reduced_reaction: Fraction | None
+    reduced_age: Fraction | None
+    input_count: int
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedChain:
+    """A chain: over all inputs, and over only those inputs for which each output was published, as its bound assumes.
+
+    `forwarded_inputs` is None where no output of the chain leaves any input out: then the bound holds for all of them.
+    """
+
+    through: tuple[str, ...]
+    all_inputs: ChainFigures
+    forwarded_inputs: ChainFigures | None
+
+    @property
+    def bounded_figures(self) -> ChainFigures:
+        """The figures that the bounds hold for."""
+        return self.all_inputs if self.forwarded_inputs is None else self.forwarded_inputs
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedActivity:
+    """An activity: jobs done in all seeds, jobs a second, response times, and largest gaps between activations and
+    ends.
+    """
+
+    jobs: int
+    rate: Fraction
+    best_response: Fraction | None
+    worst_response: Fraction | None
+    activation_gap: Fraction | None
+    end_gap: Fraction | None
+    output_silences: Mapping[str, Fraction]
+    """The longest time between two publications, by conditional output."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedHost:
+    """The busy share of a host's cores: over all seeds, and in the busiest one."""
+
+    mean_load: Fraction
+    largest_load: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedLink:
+    """A link of known bandwidth: the longest wait from sending until sent (in ns), and the share of time that it was
+    busy.
+    """
+
+    wait: Fraction
+    share: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationResult:
+    """What was observed. Each maximum is a lower bound on the worst case: no run is certain to show the worst."""
+
+    seconds: int
+    seeds: int
+    events: int
+    activities: Mapping[str, ObservedActivity]
+    chains: Mapping[str, ObservedChain]
+    hosts: Mapping[str, ObservedHost]
+    links: Mapping[str, ObservedLink]
+    drops: Mapping[tuple[str, str, str], int]
+    """Samples pushed out of a queue unread, by activity, input and topic."""
+    unknown_figures: tuple[str, ...]
+    """Figures that are not written: they were taken as nothing, or what depends on them did not run."""

@@ -1,0 +1,86 @@
+"""One run of a plan with one seed: its random numbers, its state, and its pending events."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from random import Random
+
+from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, ThreadStates, WireStates
+from archgen.simulation.simulation_plan import ONCE, SimulationPlan
+
+JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
+"""The order of events at one moment; two bits of the heap's keys."""
+CLOCK_TICK, LATE_TICK, HELD_FIRING = range(3)
+"""Kinds of releases: a clock tick, a tick that jitter delayed, and an activation by data that jitter held back."""
+NO_WIRE, ALL_WIRES, LOAD_ONLY = -1, -2, -3
+"""What fired a job where no single wire did: a clock, all inputs together, or nothing (it only loads its host)."""
+
+
+class SimulationRun:
+    """One run with one seed. Read `activities`, `wires`, `threads` and `event_count` when it is over."""
+
+    __slots__ = (
+        "activities",
+        "answer_wires",
+        "calls",
+        "changed_processors",
+        "draw_share",
+        "event_count",
+        "heap",
+        "is_critical",
+        "outputs",
+        "plan",
+        "priority",
+        "publish_share",
+        "sequence",
+        "threads",
+        "wires",
+        "woken_threads",
+        "worst_share",
+    )
+
+    def __init__(
+        self, plan: SimulationPlan, seed: int, watched: Collection[int] = (), logged: Collection[int] = ()
+    ) -> None:
+        dice = Random(seed)  # noqa: S311 - dice, not secrets
+        self.plan = plan
+        self.draw_share = dice.random
+        self.is_critical = seed % CRITICAL_INTERVAL == 0
+        self.activities = ActivityStates(plan, dice, watched)
+        self.wires = WireStates(plan, logged)
+        self.threads = ThreadStates(plan, dice)
+        if self.is_critical:
+            self.activities.phase = [0] * len(plan.activities)
+        # Drawn for each run and activity: some runs see mostly the longest times, others mostly what lies below.
+        self.worst_share = [1.0 if self.is_critical else dice.choice((0.2, 0.6, 0.9)) for _ in plan.activities]
+        self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.activities]
+        self.priority = [planned.priority for planned in plan.activities]
+        self.calls = [planned.calls for planned in plan.activities]
+        self.outputs = [
+            # What is published once was delivered at the start, and never again.
+            tuple(
+                (index, output.wires, output.is_conditional, output.patience)
+                for index, output in enumerate(planned.outputs)
+                if planned.kind != ONCE
+            )
+            for planned in plan.activities
+        ]
+        self.heap: list[tuple[int, int, int]] = []
+        """Events: key (time and order), subject, detail."""
+        self.woken_threads: list[int] = []
+        """Threads that got something to do at this moment."""
+        self.changed_processors: set[int] = set()
+        """Processors with a free core or a newly ready thread at this moment."""
+        self.sequence = 0
+        self.answer_wires = [plan.answers.get(wire_index, -1) for wire_index in range(len(plan.wires))]
+        self.event_count = 0
+
+    def draw_time(self, activity: int, low: int, spread: int) -> int:
+        """Draw a time between `low` and `low + spread`; the extremes are drawn more often than what lies between."""
+        drawn = self.draw_share()
+        share = self.worst_share[activity]
+        if drawn < share:
+            return low + spread
+        # One random number is used twice: rescaled to 0..1, its lower half means the shortest time.
+        remainder = (drawn - share) / (1.0 - share)
+        return low if remainder < 0.5 else low + int((remainder - 0.5) * 2.0 * (spread + 1))  # noqa: PLR2004 - half of the rest

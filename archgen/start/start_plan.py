@@ -1,0 +1,94 @@
+"""Decide which files a new project gets, where they go, and which of them exist already."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen import pipeline
+from archgen.pipeline import CheckedProject
+from archgen.products import code_ownership
+from archgen.project import PROJECT_FILE
+from archgen.project.project_loading import load_from_files
+from archgen.start import start_templates
+from archgen.start.start_answers import StartAnswers
+from archgen.syntax import file_patterns
+from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax.overlaid_files import OverlaidFiles
+
+_CODEOWNERS_PATHS = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
+"""Where GitHub and GitLab look for the file; the first that exists counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartPlan:
+    """Files to write (by absolute path), files kept because they exist, and the folder that holds all of them: the
+    repository's.
+    """
+
+    files: Mapping[Path, bytes]
+    existing_files: tuple[Path, ...]
+    repository_folder: Path
+    reviewers_missing: bool
+
+
+def has_other_yaml(folder: Path) -> bool:
+    """Return whether there are YAML files below that are not slices of this project: it then has to name its own."""
+    return bool(file_patterns.expand_pattern(FolderFiles(folder), "**/*.yaml"))
+
+
+def judge_files(files: Mapping[str, bytes], name: str) -> CheckedProject:
+    """Check the files of a project before they are written."""
+    return pipeline.judge_project(load_from_files(OverlaidFiles(Path(name), files), PROJECT_FILE))
+
+
+def plan_files(
+    folder: Path, answers: StartAnswers, yaml_files: Mapping[str, bytes], checked_project: CheckedProject
+) -> StartPlan:
+    """Put the files together: the project's in its folder, what the forge reads at the top of the repository."""
+    # Resolved, so that it can be relative to the repository's folder even through a symbolic link.
+    target = Path(os.path.realpath(folder))
+    repository_folder = _find_repository(target) or target
+    prefix = "" if target == repository_folder else target.relative_to(repository_folder).as_posix()
+    wanted_files = {target / name: data for name, data in {**yaml_files, **_project_files(answers)}.items()}
+    wanted_files |= {repository_folder / name: data for name, data in _forge_files(answers, prefix).items()}
+    reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
+    if any(partner.reviewers for partner in answers.partners):
+        codeowners_path = next(
+            (name for name in _CODEOWNERS_PATHS if os.path.lexists(repository_folder / name)), "CODEOWNERS"
+        )
+        wanted_files[repository_folder / codeowners_path] = code_ownership.make_codeowners(
+            checked_project, prefix
+        ).text.encode()
+    # `lexists`: a broken symbolic link is kept as well.
+    existing_files = tuple(path for path in wanted_files if os.path.lexists(path))
+    return StartPlan(
+        {path: data for path, data in wanted_files.items() if path not in existing_files},
+        existing_files,
+        repository_folder,
+        reviewers_missing,
+    )
+
+
+def _project_files(answers: StartAnswers) -> dict[str, bytes]:
+    return {
+        start_templates.SCHEMA_PATH: start_templates.compact_schema(),
+        ".vscode/settings.json": start_templates.read_plain_file("vscode/settings.json"),
+        ".vscode/extensions.json": start_templates.read_plain_file("vscode/extensions.json"),
+        ".gitignore": start_templates.read_plain_file("gitignore"),
+        ".gitattributes": start_templates.read_plain_file("gitattributes"),
+        "README.md": start_templates.fill_readme(answers),
+    }
+
+
+def _forge_files(answers: StartAnswers, project_path: str) -> dict[str, bytes]:
+    if answers.forge == "github":
+        return {".github/workflows/architecture.yml": start_templates.fill_workflow(project_path)}
+    return {".gitlab-ci.yml": start_templates.fill_pipeline(project_path)} if answers.forge == "gitlab" else {}
+
+
+def _find_repository(folder: Path) -> Path | None:
+    """Return the top of the git repository around a folder, by its `.git`; git itself is not called."""
+    return next((ancestor for ancestor in (folder, *folder.parents) if os.path.lexists(ancestor / ".git")), None)

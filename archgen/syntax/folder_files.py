@@ -1,0 +1,85 @@
+"""Read a project's files from a folder on disk."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal
+
+_FILE_KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a named pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class FolderFiles:
+    """The files below a folder on disk. Implements `ProjectFiles`."""
+
+    root: Path
+    commit: str = ""
+
+    def has_path(self, path: str) -> bool:
+        """Whether there is anything at a path, even a broken link."""
+        return os.path.lexists(self.root / path)
+
+    def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
+        """Walk as `os.walk` does, with folders relative to `top`; links to folders are not entered."""
+        start = self.root / top
+        for folder, folders, file_names in os.walk(start):
+            relative_folder = os.path.relpath(folder, start).replace(os.sep, "/")
+            yield "" if relative_folder == "." else relative_folder, folders, file_names
+
+    def fetch_bytes(self, path: str) -> bytes | FileRefusal:
+        """Return a regular file's bytes, or why it cannot be used.
+
+        It never waits for the other end of a pipe and never follows a link out of the folder.
+        """
+        full_path = self.root / path
+        if not Path(os.path.realpath(full_path)).is_relative_to(os.path.realpath(self.root)):
+            return FileRefusal("this link leads out of the project's folder", "copy the file into the project")
+        try:
+            return _read_regular_file(full_path)
+        except OSError as error:
+            return FileRefusal(_describe_read_error(full_path, error))
+
+
+def _read_regular_file(path: Path) -> bytes | FileRefusal:
+    # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
+    # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with os.fdopen(descriptor, "rb") as stream:
+        mode = os.fstat(descriptor).st_mode
+        if not stat.S_ISREG(mode):
+            return FileRefusal(_describe_file_kind(mode))
+        # One byte more than allowed tells "too large" without trusting st_size, which may grow while it is read.
+        data = stream.read(MAX_BYTES + 1)
+        return data if len(data) <= MAX_BYTES else TOO_LARGE
+
+
+def _describe_file_kind(mode: int) -> str:
+    kind = next((name for test, name in _FILE_KINDS if test(mode)), "no regular file")
+    return f"this is {kind}, not a file"
+
+
+def _describe_read_error(path: Path, error: OSError) -> str:
+    try:
+        mode = path.lstat().st_mode
+    except OSError:
+        return f"the file cannot be read: {_format_os_error(error)}"
+    if stat.S_ISLNK(mode) and not path.exists():
+        return "this is a broken link: what it points to does not exist"
+    if not (stat.S_ISREG(mode) or stat.S_ISLNK(mode)):
+        return _describe_file_kind(mode)
+    return f"the file cannot be read: {_format_os_error(error)}"
+
+
+def _format_os_error(error: OSError) -> str:
+    return (error.strerror or "unknown reason").lower()

@@ -1,0 +1,213 @@
+"""Phrase syntax errors of YAML files: what the parser reports becomes a diagnostic that says what to do.
+
+libyaml and PyYAML's own parser word some problems differently; the texts below match both.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import Span
+
+LONE_SURROGATE = re.compile("[\ud800-\udfff]")
+"""Half of a character beyond U+FFFF (a surrogate), which no text may hold alone. libyaml refuses it by itself."""
+QUOTE_HELP = 'put the text in quotes: "..."'
+_FORBIDDEN_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
+
+
+class ParserProblem(NamedTuple):
+    """What the parser reports: its message, and where, counted from 0.
+
+    `context_start` is the line and column at which the construct that it was reading begins.
+    """
+
+    message: str
+    line: int
+    column: int
+    context: str = ""
+    context_start: tuple[int, int] | None = None
+
+
+class _ErrorText(NamedTuple):
+    """Our text for a problem. `label` is shown where the construct began; with `at_start` the finding itself is."""
+
+    message: str
+    help: str | None = None
+    label: str | None = None
+    at_start: bool = False
+
+
+def find_forbidden_character(file: str, text: str) -> Diagnostic | None:
+    """Report the first character that no YAML file may hold; None if there is none."""
+    match = _FORBIDDEN_CHARACTER.search(text)
+    if match is None:
+        return None
+    lines_before = text[: match.start()].replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    span = Span(file, len(lines_before), len(lines_before[-1]) + 1, len(lines_before), len(lines_before[-1]) + 2)
+    message = f"the control character U+{ord(match[0]):04X} cannot stand in YAML"
+    return Diagnostic("syntax-error", message, span, help="delete it")
+
+
+def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic:
+    """Phrase a problem that the parser reports."""
+    lines = re.split(r"\r\n|\r|\n", text)
+    position = _clamp_position(lines, problem.line, problem.column)
+    error_text = _choose_error_text(lines[position[0]], position[1], problem)
+    context_start = problem.context_start
+    if error_text.at_start and context_start is not None:
+        return Diagnostic(
+            "syntax-error", error_text.message, _span_at(file, lines, context_start), help=error_text.help
+        )
+    labels = (
+        (Label(_span_at(file, lines, context_start), error_text.label),)
+        if error_text.label and context_start and context_start != position
+        else ()
+    )
+    return Diagnostic(
+        "syntax-error", error_text.message, _span_at(file, lines, position), labels=labels, help=error_text.help
+    )
+
+
+def diagnose_duplicate_key(key: str, span: Span, first_span: Span) -> Diagnostic:
+    """Report a key that one mapping has twice."""
+    labels = (Label(first_span, "first written here"),)
+    return Diagnostic(
+        "duplicate-key", f"the key `{key}` is written twice", span, labels=labels, help="keep one of them"
+    )
+
+
+def diagnose_recursive_alias(anchor: str, span: Span, anchor_span: Span) -> Diagnostic:
+    """Report an alias inside the value that it stands for."""
+    label = Label(
+        Span(anchor_span.file, anchor_span.line, anchor_span.column, anchor_span.line, anchor_span.column + 1),
+        "begins here",
+    )
+    message = f"`*{anchor}` stands inside of what it stands for"
+    return Diagnostic("recursive-alias", message, span, labels=(label,), help="write out what is meant")
+
+
+def _clamp_position(lines: list[str], line: int, column: int) -> tuple[int, int]:
+    """Move a position behind the end of the text to the end of its last line that is not blank."""
+    # The parser notices an unclosed bracket at the end of the file, which may be many blank lines below.
+    last_line = len(lines) - 1
+    while last_line > 0 and not lines[last_line].strip():
+        last_line -= 1
+    if line > last_line:
+        return last_line, len(lines[last_line])
+    return line, min(column, len(lines[line]))
+
+
+def _span_at(file: str, lines: list[str], position: tuple[int, int]) -> Span:
+    line, column = _clamp_position(lines, *position)
+    return Span(file, line + 1, column + 1, line + 1, column + 1 + (column < len(lines[line])))
+
+
+def _choose_error_text(line: str, column: int, problem: ParserProblem) -> _ErrorText:
+    message = problem.message
+    if "mapping values are not allowed" in message:
+        return _explain_second_colon(line, column)
+    if "cannot start any token" in message:
+        return _explain_bad_start(line[column : column + 1])
+    if "node content" in message:
+        return _explain_bad_node(line[column : column + 1])
+    if "expected key" in message or "expected <block end>" in message or "'-' indicator" in message:
+        return _explain_misplaced_line(line, column)
+    if "',' or ']'" in message or "',' or '}'" in message:
+        return _explain_unclosed(message, problem)
+    matching_texts = (
+        error_text for needle, error_text in _FIXED_TEXTS if needle in message or needle in problem.context
+    )
+    return next(
+        matching_texts, _ErrorText("this is not YAML", "compare it with the lines around it, or put text in quotes")
+    )
+
+
+_TAB_TEXT = _ErrorText("a tab cannot stand in the indentation", "indent with blanks")
+
+
+def _explain_second_colon(line: str, column: int) -> _ErrorText:
+    if re.search(r":\s", line[:column]):
+        return _ErrorText("a second `: ` in one line: text that holds `: ` must be quoted", QUOTE_HELP)
+    help_line = "check the indentation, and that the key above ends in `:`"
+    return _ErrorText("a key cannot stand here: what is above is text", help_line)
+
+
+def _explain_bad_start(character: str) -> _ErrorText:
+    if character == "\t":
+        return _TAB_TEXT
+    return _ErrorText(
+        f"text cannot begin with `{character}`" if character != "`" else "text cannot begin with a backtick", QUOTE_HELP
+    )
+
+
+def _explain_bad_node(character: str) -> _ErrorText:
+    if character == ":":
+        return _ErrorText("a key is missing before `:`", "write `key: value`")
+    if not character:
+        return _ErrorText(
+            "the text ends where a value should stand", "close what is open: `]` ends a list, `}` a mapping"
+        )
+    return _ErrorText(f"a value cannot begin with `{character}`", QUOTE_HELP)
+
+
+def _explain_misplaced_line(line: str, column: int) -> _ErrorText:
+    if line[:column].strip(" -"):
+        return _ErrorText("the value ends before this", "put the whole text in one pair of quotes")
+    if line[column : column + 1] == "-":
+        return _ErrorText("a list entry stands where a key is expected", "indent the list below its key")
+    help_line = "keys of one mapping begin in the same column, and so do the entries of one list"
+    return _ErrorText("this line does not belong to anything above it", help_line, "what is open begins here")
+
+
+def _explain_unclosed(message: str, problem: ParserProblem) -> _ErrorText:
+    opening, closing = ("[", "]") if "]" in message else ("{", "}")
+    if problem.context_start is not None and problem.context_start[0] != problem.line:
+        return _ErrorText(f"this `{opening}` is not closed", f"write `{closing}` at its end", at_start=True)
+    help_line = f"separate entries with `,`, end with `{closing}`, and quote text that holds `: `, brackets or braces"
+    return _ErrorText(f"`,` or `{closing}` is missing before this", help_line, f"this `{opening}` is open")
+
+
+# Parts of the parser's message or context, and our text; the first match wins. "hexdecimal" is libyaml's spelling.
+_FIXED_TEXTS: tuple[tuple[str, _ErrorText], ...] = (
+    ("tab character", _TAB_TEXT),
+    (
+        "sequence entries are not allowed",
+        _ErrorText("a list cannot begin on the line of its key", "begin it on the next line"),
+    ),
+    ("mapping keys are not allowed", _ErrorText("text cannot begin with `? `", QUOTE_HELP)),
+    (
+        "could not find expected ':'",
+        _ErrorText("a key without `:`", "write `key: value`, or indent the text below its key", at_start=True),
+    ),
+    ("unexpected end of stream", _ErrorText("this quote is never closed", "close it, or take it out", at_start=True)),
+    ("unexpected document", _ErrorText("this quote is never closed", "close it, or take it out", at_start=True)),
+    (
+        "escape c",
+        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
+    ),
+    (
+        "hexdecimal",
+        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
+    ),
+    (
+        "hexadecimal",
+        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
+    ),
+    (
+        "scanning a block scalar",
+        _ErrorText("text cannot begin with `>` or `|`: these open a block of lines", QUOTE_HELP, at_start=True),
+    ),
+    ("scanning an anchor", _ErrorText("text cannot begin with `&`", QUOTE_HELP, at_start=True)),
+    ("scanning an alias", _ErrorText("text cannot begin with `*`", QUOTE_HELP, at_start=True)),
+    (" tag", _ErrorText("text cannot begin with `!`", QUOTE_HELP, at_start=True)),
+    (" directive", _ErrorText("a line cannot begin with `%`", "put the text in quotes", at_start=True)),
+    ("incompatible YAML", _ErrorText("this version of YAML is not read", "take the line out: archgen reads YAML 1.2")),
+    ("found unexpected ':'", _ErrorText("the `:` has no blank after it", "write `key: value`")),
+    (
+        "<document start>",
+        _ErrorText("this does not belong to what is above it", "keys of one mapping begin in the same column"),
+    ),
+    ("did not find expected ':'", _ErrorText("a key without `:`", "write `key: value`", at_start=True)),
+)

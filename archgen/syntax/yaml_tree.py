@@ -1,0 +1,91 @@
+"""The tree of a YAML file: mappings, sequences and scalars, each with its span. Built by `yaml_parser` in one walk.
+
+Nodes are mutable: validation takes wrong values out of the tree, and short forms are replaced in place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
+
+PlainValue = str | int | float | bool | None
+
+
+@dataclass(slots=True)
+class ScalarNode:
+    """A scalar. `text` is what was written, with quotes and blocks resolved.
+
+    `value` is what YAML 1.2's core schema makes of it: quoted and block scalars are text; an empty plain scalar, `~`
+    and `null` are None. `is_plain` is whether it was written without quotes and not as a block.
+    """
+
+    value: PlainValue
+    text: str
+    span: Span
+    is_plain: bool = True
+
+
+@dataclass(slots=True)
+class SequenceNode:
+    """A sequence of nodes, in brackets or line by line."""
+
+    items: list[YamlNode]
+    span: Span
+
+
+@dataclass(slots=True)
+class MappingEntry:
+    """One key of a mapping with its value. `key_span` is the span of the key alone."""
+
+    key: str
+    key_span: Span
+    value: YamlNode
+
+
+@dataclass(slots=True)
+class MappingNode:
+    """A mapping: its entries by key, in the order in which they were written."""
+
+    entries: dict[str, MappingEntry]
+    span: Span
+
+    def get(self, key: str) -> YamlNode | None:
+        """Return the value at a key, or None."""
+        entry = self.entries.get(key)
+        return entry.value if entry else None
+
+    def __iter__(self) -> Iterator[MappingEntry]:
+        """Iterate over the entries (not the keys), in order."""
+        return iter(self.entries.values())
+
+
+YamlNode = ScalarNode | SequenceNode | MappingNode
+
+
+@dataclass(frozen=True, slots=True)
+class IgnoreComment:
+    """A comment `# archgen: ignore[rule, other] why` with the rules that it names."""
+
+    rules: tuple[str, ...]
+    why: str
+    span: Span
+
+
+@dataclass(slots=True)
+class YamlDocument:
+    """One parsed file."""
+
+    file: str
+    root: MappingNode
+    ignores: tuple[IgnoreComment, ...] = ()
+
+
+def node_to_data(node: YamlNode) -> object:
+    """Turn a tree into dicts, lists and plain values as the core schema reads them."""
+    if isinstance(node, MappingNode):
+        return {entry.key: node_to_data(entry.value) for entry in node}
+    if isinstance(node, SequenceNode):
+        return [node_to_data(item) for item in node.items]
+    return node.value

@@ -1,0 +1,245 @@
+"""End to end along chains: the safe bound (reaction time = data age), its terms, and the verdict on the deadline.
+
+F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Literal
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture, Chain, Waypoint
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.chains import chain_regions
+from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
+from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, sum_bounds
+from archgen.timing.system.timing_system import Arc
+
+NO_PATH = TimingValue(None, complete=False, assumptions=("no way leads through all elements",))
+
+
+@dataclass(frozen=True, slots=True)
+class BoundedPath:
+    """One path between two elements: its activities, terms, and bound."""
+
+    through: tuple[str, ...]
+    terms: tuple[ChainTerm, ...]
+    bound: TimingValue
+
+
+@dataclass(frozen=True, slots=True)
+class LateChain:
+    """A chain that may miss its deadline: its bound, and the terms."""
+
+    chain: Chain
+    bound: TimingValue
+    terms: tuple[ChainTerm, ...]
+
+
+def bound_chain(
+    analysis: Analysis, architecture: Architecture, asked_chain: Chain, network: CostNetwork | None = None
+) -> ChainResult:
+    """Bound one chain. Pass a network to share its costs among many chains."""
+    network = network or CostNetwork.of_analysis(analysis)
+    chain_points = chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
+    regions = chain_regions.lay_out_chain(network, chain_points)
+    return _build_result(network, regions, asked_chain)
+
+
+def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainResult]:
+    """Bound all chains of an architecture, in order of appearance."""
+    network = CostNetwork.of_analysis(analysis)
+    return {
+        asked_chain.id: bound_chain(analysis, architecture, asked_chain, network)
+        for asked_chain in architecture.chains.values()
+    }
+
+
+def find_missed_chains(analysis: Analysis, architecture: Architecture) -> Iterator[LateChain]:
+    """Yield the chains that may miss their deadlines; their other figures are left out."""
+    network = CostNetwork.of_analysis(analysis)
+    for asked_chain in architecture.chains.values():
+        if asked_chain.deadline is None or asked_chain.unresolved:
+            continue
+        regions = chain_regions.lay_out_chain(
+            network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
+        )
+        # Only the bound: the three other aims would each cost a graph of their own, and rules need none of them.
+        path_set = _paths_for_aim(network, regions, "bound") if regions else None
+        path = next(path_set.best_paths(), None) if path_set else None
+        if path_set is not None and path is not None:
+            bound = _bound_path_set(network, path_set, path, "bound")
+            if judge_deadline(bound, TimingValue(asked_chain.deadline.value)) == "missed":
+                yield LateChain(asked_chain, bound, build_terms(network, path))
+
+
+def find_paths_between(
+    network: CostNetwork, architecture: Architecture, source: Waypoint, target: Waypoint, aim: PathAim = "bound"
+) -> PathSet | None:
+    """Return all paths from one element to another, None where an element has no activity.
+
+    Extremes, the next ones and their number can be asked of the answer. With the aim `best`, the quickest best case is
+    first.
+    """
+    end_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, (source, target))
+    regions = chain_regions.lay_out_between(network, end_points)
+    return _paths_for_aim(network, regions, aim) if regions else None
+
+
+def list_bounded_paths(network: CostNetwork, path_set: PathSet, limit: int) -> Iterator[BoundedPath]:
+    """Yield the first paths, with their terms."""
+    for path in path_set.best_paths(limit):
+        arcs = [network.arcs[arc_index] for arc_index in path.arcs]
+        names = (network.names[path.start], *(arc.target for arc in arcs))
+        aim: PathAim = "bound" if path_set.longest else "best"
+        yield BoundedPath(names, build_terms(network, path), _path_sum(network, path, aim))
+
+
+def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]:
+    """Return the terms of a path's bound: waiting, response, link, each with its reason and place."""
+    steps = network.steps
+    name = network.names[path.start]
+    start_delay = steps.start_delay(name)
+    chain_terms = [
+        ChainTerm(name, start_delay.value, steps.response_value(name), ZERO_VALUE, start_delay.why, start_delay.at)
+    ]
+    for arc in (network.arcs[arc_index] for arc_index in path.arcs):
+        step_delay = steps.sampling_delay(arc)
+        chain_terms.append(
+            ChainTerm(
+                arc.target,
+                step_delay.value,
+                steps.response_value(arc.target),
+                steps.link_latency(arc),
+                step_delay.why,
+                step_delay.at,
+            )
+        )
+    return tuple(chain_terms)
+
+
+def _build_result(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], asked_chain: Chain
+) -> ChainResult:
+    """Return all figures of a chain, with the terms of its worst path."""
+    deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
+    path_set = _paths_for_aim(network, regions, "bound") if regions else None
+    path = next(path_set.best_paths(), None) if path_set else None
+    if asked_chain.unresolved or path_set is None or path is None:
+        waypoint_ids = tuple(point.id for point in asked_chain.through)
+        no_bound = _unresolved_value(asked_chain.unresolved) if asked_chain.unresolved else NO_PATH
+        return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
+    bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
+    return ChainResult(
+        id=asked_chain.id,
+        through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
+        terms=build_terms(network, path),
+        bound=bound,
+        best=_extreme_value(network, regions, "best"),
+        reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
+        reduced_age=_extreme_value(network, regions, "reduced age"),
+        deadline=deadline,
+        verdict=judge_deadline(bound, deadline),
+    )
+
+
+def _unresolved_value(words: tuple[str, ...]) -> TimingValue:
+    """Return the value of a chain with words that name nothing."""
+    return TimingValue(
+        None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words)
+    )
+
+
+def _note_event_start(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:
+    """Note on a chain that begins with an event that reaction time and data age differ, and by how much."""
+    first_id = network.names[path.start]
+    if network.steps.analysis.system.activities[first_id].behaviour not in {"event", "on_demand"}:
+        return bound
+    gap = network.steps.arrivals.activation_gap(first_id)
+    gap_text = (
+        figure_wording.format_duration(gap.value)
+        if gap.value is not None and is_known_bound(gap)
+        else f"unknown for {first_id}"
+    )
+    assumption = (
+        f"the reaction counts from the event that fires {first_id}; data age is larger by its largest gap ({gap_text})"
+    )
+    return replace(bound, assumptions=(*bound.assumptions, assumption))
+
+
+def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:
+    """Return the largest age of what a chain makes of a sample, until the next one replaces it.
+
+    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be
+    a gap away, which comes on top.
+    """
+    if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
+        return result.bound
+    return sum_bounds((result.bound, network.steps.arrivals.activation_gap(result.through[0])))
+
+
+def judge_deadline(bound: TimingValue, deadline: TimingValue | None) -> Literal["met", "missed", "open"]:
+    """Compare a bound with a deadline. What is known may exceed it before everything is known."""
+    if deadline is None or deadline.value is None:
+        return "open"
+    if is_boundless(bound):
+        return "missed"
+    if bound.value is not None and bound.value > deadline.value:
+        return "missed"
+    return "met" if is_known_bound(bound) else "open"
+
+
+def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:
+    """Return the paths of a route, with the extreme one for an aim first."""
+    graph, start_costs = network.cost_graph(aim)
+    return find_paths(graph, start_costs, regions, longest=aim != "best")
+
+
+def _extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
+    """Return the extreme figure of a route for an aim."""
+    path_set = _paths_for_aim(network, regions, aim)
+    path = next(path_set.best_paths(), None)
+    return _bound_path_set(network, path_set, path, aim) if path else UNKNOWN_VALUE
+
+
+def _path_sum(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:
+    """Return the sum of a path's costs for an aim."""
+    cost_values = list(network.start_costs(network.names[path.start], aim))
+    for arc_index in path.arcs:
+        cost_values += network.step_costs(network.arcs[arc_index], aim)
+    return sum_bounds(cost_values, "at least" if aim == "best" else "at most")
+
+
+def _bound_path_set(network: CostNetwork, path_set: PathSet, path: CostedPath, aim: PathAim) -> TimingValue:
+    """Return the extreme path's sum; it bounds all paths only where the costs of the others are known too."""
+    value = _path_sum(network, path, aim)
+    if path_set.cut_arcs:
+        value = replace(
+            value,
+            assumptions=(
+                *value.assumptions,
+                _cut_arcs_text([network.arcs[arc_index] for arc_index in path_set.cut_arcs]),
+            ),
+        )
+    if aim == "best" or path_set.path_count == 1 or is_boundless(value):
+        return value
+    # Costs of unknown figures count as 0 in the network, so that a path with a gap may seem shorter than it is: if any
+    # arc on any path lacks a figure, the bound is open.
+    other_costs = sum_bounds(
+        [part for arc_index in path_set.arcs_on_paths() for part in network.step_costs(network.arcs[arc_index], aim)]
+    )
+    if other_costs.complete:
+        return value
+    missing = tuple(dict.fromkeys((*value.missing, *other_costs.missing)))
+    return replace(value, complete=False, missing=missing, side="at least")
+
+
+def _cut_arcs_text(arcs: Sequence[Arc]) -> str:
+    pairs = [f"{arc.source} > {arc.target}" for arc in arcs[:3]]
+    more_text = f" and {len(arcs) - 3} more" if len(arcs) > 3 else ""  # noqa: PLR2004 - as many as are named
+    return f"the loops are large: ways that go back along {', '.join(pairs)}{more_text} are left out"

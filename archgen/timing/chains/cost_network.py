@@ -1,0 +1,97 @@
+"""The costs of steps as whole numbers, so that paths through thousands of activities are compared exactly and fast."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import field
+from math import lcm
+from typing import Literal
+
+from archgen.frozen import dataclass
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains.path_search import CostGraph, Hop
+from archgen.timing.chains.step_delays import StepDelays
+from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound
+from archgen.timing.system.timing_system import Arc
+
+PathAim = Literal["bound", "reduced reaction", "reduced age", "best"]
+"""What a path is extreme in: three kinds of longest paths, and `best`, the shortest one."""
+_TIE_BITS = 24
+"""Bits below the figures that break ties by how much is unknown: a path with gaps precedes an equal one without."""
+
+
+@dataclass(frozen=True, slots=True)
+class CostNetwork:
+    """A system's activities as vertices, its arcs with their costs for each aim. Costs are computed on first use."""
+
+    steps: StepDelays
+    names: tuple[str, ...]
+    vertex_of: dict[str, int]
+    _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
+
+    @classmethod
+    def of_analysis(cls, analysis: Analysis) -> CostNetwork:
+        """Prepare an analysis for questions about paths."""
+        names = tuple(analysis.system.activities)
+        return cls(StepDelays.of_analysis(analysis), names, {name: vertex for vertex, name in enumerate(names)})
+
+    @property
+    def arcs(self) -> tuple[Arc, ...]:
+        """Return the system's arcs; `Hop.arc` is an index into them."""
+        return self.steps.analysis.system.arcs
+
+    def cost_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
+        """Return the graph with the costs of an aim, and what each vertex costs as a start."""
+        if aim not in self._graphs:
+            self._graphs[aim] = self._build_graph(aim)
+        return self._graphs[aim]
+
+    def start_costs(self, name: str, aim: PathAim) -> tuple[TimingValue, ...]:
+        """Return what the first activity of a path adds."""
+        if aim == "best":
+            return (self.steps.response_value(name, worst=False),)
+        return (self.steps.start_delay(name).value if aim == "bound" else ZERO_VALUE, self.steps.response_value(name))
+
+    def step_costs(self, arc: Arc, aim: PathAim) -> tuple[TimingValue, ...]:
+        """Return what a step adds: link, sampling (or holding), response."""
+        if aim == "best":
+            return (self.steps.link_latency(arc, worst=False), self.steps.response_value(arc.target, worst=False))
+        wait = self.steps.holding_age(arc) if aim == "reduced age" else self.steps.sampling_wait(arc)
+        return (self.steps.link_latency(arc), wait, self.steps.response_value(arc.target))
+
+    def _build_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
+        """Build the graph of an aim."""
+        starts = [self.start_costs(name, aim) for name in self.names]
+        steps = [self.step_costs(arc, aim) for arc in self.arcs]
+        weigh = _make_scale([*starts, *steps])
+        hops: list[list[Hop]] = [[] for _ in self.names]
+        for arc_index, (arc, costs) in enumerate(zip(self.arcs, steps, strict=True)):
+            hops[self.vertex_of[arc.source]].append(Hop(self.vertex_of[arc.target], weigh(costs), arc_index))
+        return hops, [weigh(costs) for costs in starts]
+
+
+def _make_scale(rows: list[tuple[TimingValue, ...]]) -> Callable[[tuple[TimingValue, ...]], int]:
+    """Return the function that turns figures into one whole number.
+
+    What is boundless outweighs any sum of what is not; unknown figures count only where everything else is equal.
+    """
+    # By identity: step delays share their value objects, and hashing Fractions is slow. The rows keep the values alive,
+    # so that no id is used twice.
+    distinct = {id(value): value for row in rows for value in row}
+    common_denominator = lcm(*(value.value.denominator for value in distinct.values() if value.value is not None))
+    scaled_figures = {
+        key: value.value.numerator * (common_denominator // value.value.denominator) if value.value is not None else 0
+        for key, value in distinct.items()
+    }
+    # More than any sum of figures, ties included: a path visits each arc at most once.
+    largest_sum = max((abs(number) for number in scaled_figures.values()), default=0) * sum(map(len, rows))
+    boundless_weight = 1 << (largest_sum.bit_length() + _TIE_BITS + 1)
+    weights = {
+        key: boundless_weight
+        if is_boundless(value)
+        else (scaled_figures[key] << _TIE_BITS) + (0 if is_known_bound(value) else 1)
+        for key, value in distinct.items()
+    }
+    # It knows the given values only: parts that were not in `rows` raise KeyError.
+    return lambda parts: sum([weights[id(part)] for part in parts])

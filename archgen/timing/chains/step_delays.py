@@ -1,0 +1,212 @@
+"""What each step of a path adds to a latency: waiting to be read, the response, the link; chains are sums of these.
+
+Largest reaction time = largest data age: M. Guenzel et al., "On the Equivalence of Maximum Reaction Time and Maximum
+Data Age for Cause-Effect Chains", ECRTS 2023. For periodic chains the sum is A. Davare et al., "Period Optimization for
+Hard Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each element.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from fractions import Fraction
+
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, is_known_bound, name_missing_element, sum_bounds
+from archgen.timing.system.selective_arcs import is_selective_arc
+from archgen.timing.system.timing_system import Activity, Arc
+
+_SELECTIVE_ASSUMPTIONS = {
+    "data": "{0} publishes {1} for this very input",
+    "request": "{0} calls {1} in this very activation",
+    "answer": "{0} answers {2} on {1} in this very activation",
+}
+"""What is assumed of an activity that does not send at each activation, by the arc's role."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepDelay:
+    """A delay in ns, why there is one, and where that is written."""
+
+    value: TimingValue
+    why: str
+    at: Span
+
+
+@dataclass(frozen=True, slots=True)
+class StepDelays:
+    """The delays of a system's steps. S, H and R are as in docs/timing.md."""
+
+    analysis: Analysis
+    arrivals: TriggerArrivals
+    _latencies: dict[tuple[str | None, int], TimingValue] = field(default_factory=dict)
+
+    @classmethod
+    def of_analysis(cls, analysis: Analysis) -> StepDelays:
+        """Prepare an analysis."""
+        return cls(analysis, TriggerArrivals(analysis))
+
+    def start_delay(self, name: str) -> StepDelay:
+        """Return S0: the gap of an activity that samples the world, 0 where its activation is the stimulus."""
+        activity = self.analysis.system.activities[name]
+        if activity.behaviour == "periodic":
+            gap = self.arrivals.activation_gap(name)
+            return StepDelay(gap, f"samples the world{_gap_text(gap)}", _span_of_keys(activity, "period", "rate"))
+        if activity.behaviour in {"event", "on_demand"}:
+            # An event that `every` or `throttle` lets wait is a stimulus all the same: it waits for others to come.
+            thinning_wait = self.arrivals.thinning_wait(activity)
+            return StepDelay(thinning_wait, f"its event is the stimulus{_thinning_text(activity)}", activity.at)
+        return _undefined_delay(activity)
+
+    def sampling_wait(self, arc: Arc) -> TimingValue:
+        """Return S of a step: how long a sample may lie until the reader takes it, and until it is sent at all."""
+        reading_wait, condition_wait = self._reading_wait(arc), self._condition_wait(arc)
+        # Compared with `is`: adding up is slow, and nearly all arcs have no condition.
+        return reading_wait if condition_wait is ZERO_VALUE else sum_bounds((reading_wait, condition_wait))
+
+    def sampling_delay(self, arc: Arc) -> StepDelay:
+        """Return S of a step with its reason and its place."""
+        reader, value = self.analysis.system.activities[arc.target], self.sampling_wait(arc)
+        if arc.role == "request":
+            return StepDelay(value, f"called by {arc.topic}", arc.at)
+        if self.arrivals.fires_reader(arc):
+            waiting_text = (
+                ", waits for its other triggers"
+                if self.arrivals.other_triggers_gap(reader, arc) is not ZERO_VALUE
+                else ""
+            )
+            return StepDelay(
+                value,
+                f"triggered by {arc.topic}{waiting_text}{_thinning_text(reader)}",
+                _span_of_keys(reader, "trigger"),
+            )
+        if reader.behaviour is None or reader.behaviour == "once":
+            return _undefined_delay(reader)
+        verb_text = "takes the answer of" if arc.role == "answer" else "reads"
+        why = f"{verb_text} {arc.topic}{_gap_text(self.arrivals.activation_gap(reader.id))}"
+        return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
+
+    def holding_age(self, arc: Arc) -> TimingValue:
+        """Return H of a step: how old a sample may have become, since it was sent, when it is used (again)."""
+        reader = self.analysis.system.activities[arc.target]
+        gap = self.arrivals.sent_gap(arc)
+        if not self.arrivals.fires_reader(arc):
+            return gap
+        jitter_wait = self.arrivals.duration_value(reader.jitter) if arc.role == "data" else ZERO_VALUE
+        # All-of uses a sample once, when the set is complete: it is no older than the gap of its output (a newer one
+        # would have replaced it), nor than the wait for the others. Calls make it work again with the same set, so that
+        # both add up.
+        if self.arrivals.waits_for_all(reader):
+            known_gaps = [
+                value for value in (gap, self.arrivals.other_triggers_gap(reader, arc)) if is_known_bound(value)
+            ]
+            sample_age = min(known_gaps, key=lambda value: value.value or Fraction(0)) if known_gaps else gap
+            if any(other_arc.role == "request" for other_arc in self.analysis.system.arcs_into.get(reader.id, ())):
+                sample_age = sum_bounds(
+                    (gap, self.arrivals.other_triggers_gap(reader, arc))
+                )  # a call finds what last came together
+        else:
+            # Any-of: another trigger sends on what this one brought last, which may be a gap old.
+            sample_age = ZERO_VALUE if self.arrivals.is_sole_trigger(arc) else gap
+        return sample_age if jitter_wait is ZERO_VALUE else sum_bounds((sample_age, jitter_wait))
+
+    def response_value(self, name: str, *, worst: bool = True) -> TimingValue:
+        """Return R, the largest response time, or the smallest."""
+        response_time = self.analysis.responses.get(name)
+        value = (response_time.worst if worst else response_time.best) if response_time else UNKNOWN_VALUE
+        if worst and response_time and response_time.tier == "declared":
+            value = replace(value, assumptions=(f"the response of {name} is as declared",))
+        return name_missing_element(value, name)
+
+    def link_latency(self, arc: Arc, *, worst: bool = True) -> TimingValue:
+        """Return a link's largest (or smallest) latency, as it is written; its own queueing is not added."""
+        ticks = arc.worst if worst else arc.best
+        if ticks is None:
+            return TimingValue(None, complete=False, missing=self.arrivals.missing_link_names(arc))
+        if arc.link is None and not ticks:
+            return ZERO_VALUE
+        key = (arc.link if worst else None, ticks)
+        if key not in self._latencies:
+            self._latencies[key] = self._latency_with_notes(arc, ticks, worst=worst)
+        return self._latencies[key]
+
+    def _latency_with_notes(self, arc: Arc, ticks: int, *, worst: bool) -> TimingValue:
+        """Return a latency with what it assumes about the link's queueing."""
+        value = self.arrivals.duration_value(ticks)
+        if worst and arc.link in self.analysis.system.queued_links:
+            return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
+        load = self.analysis.links.get(arc.link or "")
+        queueing = load.queueing.value if load and worst else None
+        if not queueing:
+            return value
+        queueing_text = figure_wording.format_duration(queueing)
+        if value.value is not None and queueing > value.value:
+            assumption = f"link {arc.link} keeps its written latency, though {queueing_text} of traffic can wait for it"
+        else:
+            assumption = f"queueing on link {arc.link} (up to {queueing_text}) is within its latency"
+        return replace(value, assumptions=(assumption,))
+
+    def _reading_wait(self, arc: Arc) -> TimingValue:
+        """Return how long the reader leaves a sample that has arrived."""
+        reader = self.analysis.system.activities[arc.target]
+        if self.arrivals.fires_reader(arc):
+            if arc.role == "request":
+                return ZERO_VALUE
+            others_gap, thinning_wait = (
+                self.arrivals.other_triggers_gap(reader, arc),
+                self.arrivals.thinning_wait(reader),
+            )
+            return others_gap if thinning_wait is ZERO_VALUE else sum_bounds((others_gap, thinning_wait))
+        if reader.behaviour is None or reader.behaviour == "once":
+            return _undefined_delay(reader).value
+        return self.arrivals.activation_gap(reader.id)
+
+    def _condition_wait(self, arc: Arc) -> TimingValue:
+        """Return what an output that is not always published adds: its promised gap, or an assumption."""
+        system = self.analysis.system
+        if is_selective_arc(system, arc):
+            return TimingValue(
+                Fraction(0), assumptions=(_SELECTIVE_ASSUMPTIONS[arc.role].format(arc.source, arc.topic, arc.target),)
+            )
+        source = system.activities[arc.source]
+        if arc.role != "data" or arc.output not in source.conditional:
+            return ZERO_VALUE
+        return self.arrivals.duration_value(source.max_gaps[arc.output])
+
+
+def _undefined_delay(activity: Activity) -> StepDelay:
+    """Return the delay at an activity that nothing later reaches, or whose behaviour is unknown."""
+    if activity.behaviour == "once":
+        return StepDelay(
+            UNBOUNDED_VALUE, "works once, at the start: nothing later reaches it", _span_of_keys(activity, "behaviour")
+        )
+    unknown_delay = TimingValue(None, complete=False, missing=(activity.id,))
+    return StepDelay(unknown_delay, "its behaviour is not known", activity.at)
+
+
+def _gap_text(gap: TimingValue) -> str:
+    """Return the words for a reader's gap, where it is a bound."""
+    return (
+        f" every {figure_wording.format_duration(gap.value)} at the latest"
+        if gap.value is not None and is_known_bound(gap)
+        else ""
+    )
+
+
+def _thinning_text(activity: Activity) -> str:
+    """Return the words for what lets a trigger wait."""
+    phrases = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
+    if activity.throttle:
+        phrases.append("keeps a smallest gap")
+    if activity.jitter:
+        phrases.append("starts late by its jitter")
+    return f"; {', '.join(phrases)}" if phrases else ""
+
+
+def _span_of_keys(activity: Activity, *keys: str) -> Span:
+    """Return where the first of some keys is written, else the activity's place."""
+    return next((activity.places[key] for key in keys if key in activity.places), activity.at)

@@ -1,0 +1,178 @@
+"""What arrives at an activity's triggers: how far apart at most, how close at least, and what fires it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import field, replace
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.timing.analysis import Analysis
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import (
+    is_known_bound,
+    multiply_value,
+    name_missing_element,
+    smallest_value,
+    sum_bounds,
+    unknown_value,
+)
+from archgen.timing.system.timing_system import Activity, Arc
+
+
+@dataclass(frozen=True, slots=True)
+class TriggerArrivals:
+    """Answers questions about the arrivals of an analysis; the gaps of each activity's triggers are cached."""
+
+    analysis: Analysis
+    _gaps_by_activity: dict[str, dict[str, TimingValue]] = field(default_factory=dict)
+
+    def fires_reader(self, arc: Arc) -> bool:
+        """Whether what arrives on an arc triggers its reader."""
+        reader = self.analysis.system.activities[arc.target]
+        if arc.role != "data":
+            return arc.role == "request" and reader.behaviour in {"event", "on_demand"}
+        return reader.behaviour == "event" and arc.input in reader.triggers
+
+    def is_sole_trigger(self, arc: Arc) -> bool:
+        """Whether nothing else fires an arc's reader."""
+        firing_arcs = [
+            other_arc
+            for other_arc in self.analysis.system.arcs_into.get(arc.target, ())
+            if self.fires_reader(other_arc)
+        ]
+        outside_inputs = self.analysis.system.external_inputs.get(arc.target, ())
+        reader = self.analysis.system.activities[arc.target]
+        return len(firing_arcs) == 1 and not any(key in outside_inputs for key in reader.triggers)
+
+    def activation_gap(self, name: str) -> TimingValue:
+        """Return the largest gap between two activations."""
+        pace = self.analysis.paces.get(name)
+        return name_missing_element(pace.gap if pace else UNKNOWN_VALUE, name)
+
+    def sent_gap(self, arc: Arc) -> TimingValue:
+        """Return the largest gap between two messages, where they are sent."""
+        pace = self.analysis.outputs.get((arc.source, arc.output)) or self.analysis.paces.get(arc.source)
+        return name_missing_element(pace.gap if pace else UNKNOWN_VALUE, arc.source)
+
+    def waits_for_all(self, activity: Activity) -> bool:
+        """Whether several triggers must have come before an activity fires."""
+        return activity.mode == "all" and len(self._trigger_gaps(activity)) > 1
+
+    def other_triggers_gap(self, activity: Activity, arc: Arc) -> TimingValue:
+        """Return the largest gap of the other triggers of an all-of activity.
+
+        `ZERO_VALUE` (the very object: callers compare with `is`) for any other activity, and for calls.
+        """
+        if arc.role != "data" or not self.waits_for_all(activity):
+            return ZERO_VALUE
+        return _largest_known(gap for key, gap in self._trigger_gaps(activity).items() if key != arc.input)
+
+    def thinning_wait(self, activity: Activity) -> TimingValue:
+        """Return how long `every`, `throttle` and `jitter` let a trigger wait.
+
+        Every n-th: (n - 1) gaps. A throttle q fires at the first (n-th) trigger that comes q after the last firing, so
+        within q + n gaps of it; what waits came a smallest gap after it at the earliest.
+        """
+        if activity.behaviour != "event" or (activity.every == 1 and not activity.throttle):
+            return self.duration_value(activity.jitter) if activity.behaviour == "event" else ZERO_VALUE
+        gap = self._firing_gap(activity)
+        if not activity.throttle:
+            return sum_bounds((multiply_value(gap, activity.every - 1), self.duration_value(activity.jitter)))
+        wait_terms = (
+            multiply_value(gap, activity.every),
+            self.duration_value(activity.throttle),
+            self.duration_value(activity.jitter),
+        )
+        return _subtract_value(sum_bounds(wait_terms), self._min_trigger_gap(activity))
+
+    def duration_value(self, ticks: int) -> TimingValue:
+        """Return a duration of the system (ticks) in ns."""
+        return TimingValue(ticks * self.analysis.system.tick) if ticks else ZERO_VALUE
+
+    def _firing_gap(self, activity: Activity) -> TimingValue:
+        """Return the largest gap between two occasions to fire."""
+        gaps = self._trigger_gaps(activity).values()
+        merged = _largest_known(gaps) if activity.mode == "all" else _smallest_known(gaps)
+        return name_missing_element(merged, activity.id)
+
+    def _trigger_gaps(self, activity: Activity) -> dict[str, TimingValue]:
+        """Return the largest gap at each trigger, except where something arrives only once, at the start."""
+        gaps = self._gaps_by_activity.get(activity.id)
+        if gaps is None:
+            arcs = [
+                firing_arc
+                for firing_arc in self.analysis.system.arcs_into.get(activity.id, ())
+                if firing_arc.role == "data" and self.fires_reader(firing_arc)
+            ]
+            outside_inputs = self.analysis.system.external_inputs.get(activity.id, ())
+            repeating_inputs = {
+                arc.input for arc in arcs if self.analysis.system.activities[arc.source].behaviour != "once"
+            }
+            keys = dict.fromkeys((*activity.triggers, *(arc.input for arc in arcs)))
+            gaps = self._gaps_by_activity[activity.id] = {
+                key: self._arriving_gap(activity, key in outside_inputs, [arc for arc in arcs if arc.input == key])
+                for key in keys
+                if key in repeating_inputs or key in outside_inputs
+            }
+        return gaps
+
+    def _arriving_gap(self, activity: Activity, is_outside: bool, arcs: Iterable[Arc]) -> TimingValue:  # noqa: FBT001 - told by its name
+        """Return the largest gap at one trigger: the smallest of its sources' gaps."""
+        gaps = [self._gap_on_arc(arc) for arc in arcs]
+        # Something outside may come at any time, or never: it is no bound, and named only if no arc gives one.
+        return _smallest_known(
+            [*gaps, TimingValue(None, complete=False, missing=(activity.id,))] if is_outside else gaps
+        )
+
+    def _gap_on_arc(self, arc: Arc) -> TimingValue:
+        """Return the largest gap of what arrives on an arc: that of the output, and the spread of the link."""
+        spread = (
+            unknown_value(*self.missing_link_names(arc))
+            if arc.worst is None
+            else self.duration_value(arc.worst - (arc.best or 0))
+        )
+        return sum_bounds((self.sent_gap(arc), spread))
+
+    def missing_link_names(self, arc: Arc) -> tuple[str, ...]:
+        """Return what is missing where a link's latency is unknown: the link, or whose host is not written."""
+        if arc.link is not None:
+            return (arc.link,)
+        activities = self.analysis.system.activities
+        unhosted = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
+        return unhosted or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
+
+    def _min_trigger_gap(self, activity: Activity) -> TimingValue:
+        """Return the smallest gap between two triggers: known for a single stream only, else 0 (the safe side)."""
+        arcs = [arc for arc in self.analysis.system.arcs_into.get(activity.id, ()) if self.fires_reader(arc)]
+        if len(arcs) != 1 or arcs[0].worst is None:
+            return ZERO_VALUE
+        pace = self.analysis.outputs.get((arcs[0].source, arcs[0].output))
+        if pace is None or pace.distance.value is None or not is_known_bound(pace.distance, "at least"):
+            return ZERO_VALUE
+        spread = (arcs[0].worst - (arcs[0].best or 0)) * self.analysis.system.tick
+        return TimingValue(max(Fraction(0), pace.distance.value - spread))
+
+
+def _largest_known(values: Iterable[TimingValue]) -> TimingValue:
+    """Return the largest of the gaps, or their causes where one has no bound."""
+    value_list = tuple(values)
+    if not value_list:
+        return ZERO_VALUE
+    open_values = tuple(value for value in value_list if not is_known_bound(value))
+    if open_values:
+        return sum_bounds(tuple(replace(value, value=None) for value in open_values))
+    return max(value_list, key=lambda value: value.value or Fraction(0))
+
+
+def _smallest_known(values: Iterable[TimingValue]) -> TimingValue:
+    """Return the smallest of the gaps, unknown where there are none."""
+    value_list = tuple(values)
+    return smallest_value(value_list) if value_list else UNKNOWN_VALUE
+
+
+def _subtract_value(value: TimingValue, subtrahend: TimingValue) -> TimingValue:
+    """Return a bound less something, where it is complete."""
+    if value.value is None or not value.complete:
+        return value
+    return replace(value, value=value.value - (subtrahend.value or 0))

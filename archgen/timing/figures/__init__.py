@@ -1,0 +1,1 @@
+"""The first stage: exact values that say what they lack, and how they are worded."""

@@ -1,0 +1,81 @@
+"""Figures as people write them: durations, rates, shares, sizes. Only this module rounds; `~` marks rounding."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+
+from archgen.timing.figures.timing_values import TimingValue
+
+_DURATION_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
+_MAX_SHOWN_MS = 10**4
+"""Durations below this many ms are written in ms, above in s."""
+_DECIMALS, _MAX_DECIMALS = 3, 12
+
+
+@lru_cache(4096)
+def format_duration(ns: Fraction) -> str:
+    """Write a duration (ns): in ms from 1 ms to 10 s, then in s; smaller ones in us or ns."""
+    for factor, unit in _DURATION_UNITS:
+        if abs(ns) >= (_MAX_SHOWN_MS * 10**6 if unit == "s" else factor):
+            return f"{format_number(ns / factor)} {unit}"
+    return f"{format_number(ns)} ns" if ns else "0 ms"
+
+
+def format_rate(hertz: Fraction) -> str:
+    """Write a rate in Hz."""
+    return f"{format_number(hertz)} Hz"
+
+
+def format_share(fraction: Fraction) -> str:
+    """Write a fraction in per cent."""
+    tenths = round(1000 * fraction)
+    return f"{format_number(Fraction(tenths, 10)) if tenths else format_number(100 * fraction)} %"
+
+
+def format_size(byte_count: Fraction) -> str:
+    """Write a number of bytes."""
+    for factor, unit in ((10**9, "GB"), (10**6, "MB"), (10**3, "kB")):
+        if byte_count >= factor:
+            return f"{format_number(byte_count / factor)} {unit}"
+    return f"{format_number(byte_count)} B"
+
+
+@lru_cache(4096)
+def format_number(value: Fraction) -> str:
+    """Write a number with at most three decimals, more where it is small; `~` says that it was rounded."""
+    # Small numbers get decimals until three significant digits are shown, so that 0.00042 does not become 0.
+    decimals = _DECIMALS
+    while decimals < _MAX_DECIMALS and value and abs(value) * 10**decimals < 100:  # noqa: PLR2004 - three digits that count
+        decimals += 1
+    scaled = round(value * 10**decimals)
+    if scaled == 0 and value:
+        return f"~{float(value):.2g}"
+    integer_part, remainder = divmod(abs(scaled), 10**decimals)
+    decimal_text = f"{remainder:0{decimals}}".rstrip("0")
+    rounding_mark = "" if scaled == value * 10**decimals else "~"
+    return (
+        rounding_mark + ("-" if scaled < 0 else "") + f"{integer_part}" + (f".{decimal_text}" if decimal_text else "")
+    )
+
+
+def join_first_names(names: tuple[str, ...], limit: int = 6) -> str:
+    """Write the first names separated by commas, and count the others."""
+    first_names = ", ".join(names[:limit])
+    return first_names + (f" and {len(names) - limit} more" if len(names) > limit else "")
+
+
+def name_unknown_reason(value: TimingValue) -> str:
+    """Return why a figure is unknown: `overload`, `unbounded`, `diverged` or `unknown`; empty if it is known."""
+    for word in ("overload", "unbounded", "diverged"):
+        if value.value is None and any(assumption.split(":")[0].strip() == word for assumption in value.assumptions):
+            return word
+    return "" if value.value is not None else "unknown"
+
+
+def describe_value(value: TimingValue, unit: str) -> str:
+    """Write a figure with its side where it is a bound, or why there is none. The unit is "Hz" or "ns"."""
+    if value.value is None:
+        return next(iter(value.assumptions), "unknown") if value.complete else "unknown"
+    text = format_rate(value.value) if unit == "Hz" else format_duration(value.value)
+    return text if value.side == "exact" else f"{value.side} {text}"

@@ -1,0 +1,88 @@
+"""The unit of a project's durations: the largest of which every written duration is a whole multiple.
+
+Response-time analysis in integer ticks is some forty times faster than in Fractions (100 hosts of 100 tasks: 0.2 s
+instead of 8.9 s).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from math import gcd, lcm
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import Timing
+from archgen.model.quantity import Quantity
+
+NS_PER_SECOND = 10**9
+"""Nanoseconds in a second: durations are in ns, rates in Hz."""
+_MAX_DENOMINATOR_BITS = 4096
+"""Largest size in bits of the common denominator. Rates of absurd precision would make each number that long."""
+_FALLBACK_TICKS_PER_NS = 2**64
+"""Ticks per ns where no common unit of reasonable size exists: durations are rounded up then, the safe side."""
+
+
+@dataclass(frozen=True, slots=True)
+class TickUnit:
+    """Converts durations to whole ticks of `tick` ns; `exact` is False where they have to be rounded."""
+
+    tick: Fraction
+    exact: bool = True
+
+    def quantity_to_ticks(self, quantity: Quantity | None) -> int | None:
+        """Return a written duration in ticks, None where it is not written."""
+        return None if quantity is None else self.ns_to_ticks(quantity.value)
+
+    def ns_to_ticks(self, duration: Fraction) -> int:
+        """Return a duration (ns) in ticks, rounded up where the unit is not exact."""
+        return -(-duration.numerator * self.tick.denominator // (duration.denominator * self.tick.numerator))
+
+
+def choose_tick_unit(architecture: Architecture) -> TickUnit:
+    """Return the unit: the greatest common divisor of all durations, divided by all numbers of cores and threads."""
+    durations = {duration for duration in _collect_durations(architecture) if duration}
+    denominator = lcm(*(duration.denominator for duration in durations))
+    # Work is divided by the number of cores (multicore_response): with this divisor such quotients are whole ticks.
+    cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()))
+    threads = lcm(*(container.threads or 1 for container in architecture.containers.values()))
+    core_divisor = lcm(cores, threads)
+    if denominator.bit_length() + core_divisor.bit_length() > _MAX_DENOMINATOR_BITS:
+        return TickUnit(Fraction(1, _FALLBACK_TICKS_PER_NS), exact=False)
+    # gcd of fractions: of the numerators over the common denominator. `or 1`: a project without any duration.
+    numerator = gcd(*(duration.numerator * (denominator // duration.denominator) for duration in durations)) or 1
+    return TickUnit(Fraction(numerator, denominator * core_divisor))
+
+
+def written_period(timing: Timing) -> Fraction | None:
+    """Return the period in ns, written as a period or as a rate; None where neither is written or both are nonsense."""
+    if timing.period is not None and timing.period.value > 0:
+        return timing.period.value
+    if timing.rate is not None and timing.rate.value > 0:
+        return NS_PER_SECOND / timing.rate.value
+    return None
+
+
+def _collect_durations(architecture: Architecture) -> Iterator[Fraction]:
+    """Yield all durations of an architecture, in ns."""
+    for node in architecture.nodes.values():
+        for timing in node.timing.values():
+            yield from _timing_durations(timing)
+    for link in architecture.links.values():
+        yield from _quantity_values((link.best, link.worst))
+        if link.bandwidth is not None and link.bandwidth.value:
+            yield 8 * NS_PER_SECOND / link.bandwidth.value  # the time of one byte: link_queueing counts in these
+
+
+def _timing_durations(timing: Timing) -> Iterator[Fraction]:
+    """Yield the durations of one `timing` mapping, in ns."""
+    yield from _quantity_values((timing.jitter, timing.wcet, timing.bcet, timing.throttle, timing.response))
+    yield from _quantity_values(output.max_gap for output in timing.outputs.values())
+    timing_period = written_period(timing)
+    if timing_period is not None:
+        yield timing_period
+
+
+def _quantity_values(quantities: Iterable[Quantity | None]) -> Iterator[Fraction]:
+    """Yield the values of those quantities that are written."""
+    return (quantity.value for quantity in quantities if quantity is not None)

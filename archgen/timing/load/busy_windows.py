@@ -1,0 +1,266 @@
+"""Busy windows: how long work can hold a processor, in integer ticks.
+
+`longest_busy_period` holds for any work-conserving scheduler. `worst_response` is response-time analysis over all
+activations of a busy period (Lehoczky 1990, with jitter as in Tindell, Burns and Wellings 1994), counted from the
+activation itself (the jitter before it belongs to the event model). `divide_demand` bounds the interference of other
+work on several cores.
+
+The least t with C + W(t) <= t is found by repetition from below. Since eta+(t) >= (t + J)/P for each stream, no t below
+(C + sum of u J)/(1 - sum of u) can be it: the repetition begins there, as far ahead as the average says (M. Sjodin and
+H. Hansson, "Improved Response-Time Analysis Calculations", RTSS 1998, begin so without jitter). Streams of equal period
+and jitter are one term.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals, max_arrivals
+
+_MAX_TERMS = 40_000_000
+"""Terms that one analysis may look at: some seconds' worth."""
+_MAX_TERMS_PER_SEARCH = 6_000_000
+"""Terms that one search may look at, so that one that does not end leaves most of the budget to all others."""
+_TERMS_PER_ACTIVATION = 8
+"""Looking at one more activation takes as long as so many terms."""
+# Fixed-point numbers, not Fractions: the start of a search is only a lower bound, so that rounding down is safe.
+_SHARE_BITS = 64
+_WHOLE_SHARE = 1 << _SHARE_BITS
+"""A whole processor, in the parts that shares are counted in."""
+
+
+class DivergedError(Exception):
+    """The budget is used up: nothing can be said."""
+
+
+class SearchBudget:
+    """How many terms one analysis may still look at: terms and not seconds, so that results can be repeated."""
+
+    def __init__(self, term_count: int = _MAX_TERMS) -> None:
+        """Start with the whole budget."""
+        self._terms_left = term_count
+
+    def start_search(self) -> Callable[[int], None]:
+        """Begin a search: the returned function spends terms, and raises DivergedError after too many."""
+        min_terms_left = max(self._terms_left - _MAX_TERMS_PER_SEARCH, 0)
+
+        def spend(steps: int) -> None:
+            self._terms_left -= steps
+            if self._terms_left < min_terms_left:
+                raise DivergedError
+
+        return spend
+
+
+class ActivityWork(NamedTuple):
+    """What one activity asks of a processor: execution time and event model, and its worst response if it matters."""
+
+    cost: int
+    streams: EventStreams
+    response: int = 0
+
+
+def make_work(cost: int, streams: EventStreams, response: int) -> ActivityWork:
+    """Return work, with its response only where that can have more than one job carried into a window."""
+    # Dropping a response that does not matter keeps works equal while the fixed point goes on, and equal threads need
+    # no second look (`find_responses`).
+    if len(streams) == 1 and response <= _job_separation(streams[0]):
+        return ActivityWork(cost, streams)
+    return ActivityWork(cost, streams, response)
+
+
+def _job_separation(stream: EventStream) -> int:
+    """Return the least time between two jobs of a stream, jitter aside."""
+    return min(stream.period // stream.events_per_period, stream.distance or stream.period)
+
+
+class DemandFunction(NamedTuple):
+    """The most work that comes in a window of a length (a request bound function).
+
+    `term_count` is the cost of a look; at least `scaled_rate` t + `scaled_offset` of it comes, in 2^-64 ticks.
+    """
+
+    within: Callable[[int], int]
+    term_count: int = 0
+    scaled_rate: int = 0
+    scaled_offset: int = 0
+
+
+NO_DEMAND = DemandFunction(lambda _: 0)
+
+
+class GrowingLoad:
+    """The work of activities in a window, sum of eta+(t) C; works can be added, and equal streams are one term."""
+
+    def __init__(self, works: Iterable[ActivityWork] = ()) -> None:
+        """Begin with some work."""
+        self._periodic_costs: dict[tuple[int, int], int] = {}
+        self._general_costs: dict[tuple[int, int, int, int], int] = {}
+        self._late_works: list[ActivityWork] = []
+        self._carried_cost = self._scaled_rate = self._scaled_offset = 0
+        self.add_work(works)
+
+    def add_work(self, works: Iterable[ActivityWork]) -> None:
+        """Add work."""
+        for cost, streams, _ in works:
+            for stream in streams if cost else ():
+                self._note_lower_bound(stream, cost)
+                period, jitter, distance, per_period, batch = stream
+                # Two tables, because nearly all streams are plain ones, and their term is a single division.
+                if distance or per_period != 1:
+                    key = (period, jitter, distance, per_period)
+                    self._general_costs[key] = self._general_costs.get(key, 0) + cost * batch
+                else:
+                    self._periodic_costs[period, jitter] = self._periodic_costs.get((period, jitter), 0) + cost * batch
+
+    def add_carried_work(self, works: Iterable[ActivityWork]) -> None:
+        """Add work of which jobs may be carried into the window: they came before it, and are not done yet.
+
+        One job is, unless responses are longer than the time between two jobs: then everything that came within a
+        response counts.
+        """
+        for work in works:
+            if work.cost and work.streams:
+                first_stream = work.streams[0]
+                if len(work.streams) == 1 and work.response <= _job_separation(first_stream):
+                    self.add_work((work,))
+                    self._carried_cost += work.cost * first_stream.batch_size
+                else:
+                    self._late_works.append(work)
+                    for stream in work.streams:
+                        self._note_lower_bound(stream, work.cost)
+
+    def _note_lower_bound(self, stream: EventStream, cost: int) -> None:
+        """Add a stream to the lower bound of all demand."""
+        scaled_rate, scaled_offset = _lower_bound(stream, cost)
+        self._scaled_rate, self._scaled_offset = self._scaled_rate + scaled_rate, self._scaled_offset + scaled_offset
+
+    def demand_function(self) -> DemandFunction:
+        """Return the demand function. It is a live view: it goes on growing with the load."""
+        # What one look costs, by the three kinds of terms in `_demand_within`.
+        term_count = (
+            len(self._periodic_costs)
+            + 2 * len(self._general_costs)
+            + 12 * sum(len(work.streams) for work in self._late_works)
+            + 1
+        )
+        return DemandFunction(
+            self._demand_within,
+            term_count,
+            self._scaled_rate,
+            self._scaled_offset + (self._carried_cost << _SHARE_BITS),
+        )
+
+    def _demand_within(self, window: int) -> int:
+        """Return the most work in a window."""
+        work_sum = self._carried_cost
+        for (period, jitter), cost in self._periodic_costs.items():
+            work_sum -= -(window + jitter) // period * cost
+        for (period, jitter, distance, per_period), cost in self._general_costs.items():
+            jobs = -(-(window + jitter) * per_period // period)
+            if distance:
+                jobs = min(jobs, -(-window // distance))
+            work_sum += jobs * cost
+        for cost, streams, response in self._late_works:
+            # Never less than one whole batch on top of what comes inside the window.
+            carried_jobs = max_arrivals(streams, window) + max(stream.batch_size for stream in streams)
+            work_sum += cost * max(carried_jobs, max_arrivals(streams, window + response))
+        return work_sum
+
+
+def _lower_bound(stream: EventStream, cost: int) -> tuple[int, int]:
+    """Return a lower bound of a stream's work in a window t: rate and offset of rate t + offset, both rounded down."""
+    period, jitter, distance, per_period, batch = stream
+    scaled_rate = (cost * batch * per_period << _SHARE_BITS) // period
+    if distance:
+        # eta-plus is the smaller of (t + J) / P and t / d, of which the second has no offset: only the rate is sure.
+        return min(scaled_rate, (cost * batch << _SHARE_BITS) // distance), 0
+    return scaled_rate, scaled_rate * jitter
+
+
+def subtract_demand(total: DemandFunction, subtracted: DemandFunction) -> DemandFunction:
+    """Return what is left of some demand without a part of it.
+
+    The part must be contained in the whole term by term, else the lower bound of the difference is none.
+    """
+    other_fields = (
+        total.term_count + subtracted.term_count,
+        total.scaled_rate - subtracted.scaled_rate,
+        total.scaled_offset - subtracted.scaled_offset,
+    )
+    total_within, subtracted_within = total.within, subtracted.within
+    return DemandFunction(lambda window: total_within(window) - subtracted_within(window), *other_fields)
+
+
+def add_demands(first: DemandFunction, second: DemandFunction) -> DemandFunction:
+    """Return the sum of two demands."""
+    other_fields = (
+        first.term_count + second.term_count,
+        first.scaled_rate + second.scaled_rate,
+        first.scaled_offset + second.scaled_offset,
+    )
+    return DemandFunction(lambda window: first.within(window) + second.within(window), *other_fields)
+
+
+def longest_busy_period(demand: DemandFunction, budget: SearchBudget, lower_bound: int = 0) -> int:
+    """Return the least t > 0 in which all work that came is done; `lower_bound` must not be above it."""
+    return _find_fixed_point(0, demand, budget.start_search(), start=lower_bound)
+
+
+def worst_response(work: ActivityWork, interference: DemandFunction, budget: SearchBudget, busy_period: int = 0) -> int:
+    """Return the worst response over all activations of the busy period.
+
+    Where the length of the busy period of all work together is known (`busy_period`), no job ends before it, unless
+    another job has come by then.
+    """
+    arrival_times, spend = earliest_arrivals(work.streams), budget.start_search()
+    arrival, longest, work_done, finish = next(arrival_times, 0), 0, 0, 0
+    while True:
+        spend(_TERMS_PER_ACTIVATION)
+        # The q-th job ends at the least t = q C + W(t). The next one matters only if it comes before that: else the
+        # busy period of this level is over, and the next job begins a new one that cannot be worse.
+        work_done += work.cost
+        next_arrival = next(arrival_times, None)
+        # Must never be above the true end, or the search would step over the least fixed point. If this job ends before
+        # the next one comes, its end is the end of the busy period; else it ends after `next_arrival`.
+        earliest_finish = busy_period if next_arrival is None else min(busy_period, next_arrival + 1)
+        finish = _find_fixed_point(work_done, interference, spend, start=max(finish, earliest_finish))
+        longest = max(longest, finish - arrival)
+        if next_arrival is None or finish <= next_arrival:
+            return longest
+        arrival = next_arrival
+
+
+def divide_demand(demands_and_cores: Iterable[tuple[DemandFunction, int]]) -> DemandFunction:
+    """Divide each part of the other work by the number of cores (or threads) that it must occupy to interfere."""
+    pairs = tuple(demands_and_cores)
+    # The common case, without the cost of a loop at each look.
+    if len(pairs) == 1:
+        (within, term_count, scaled_rate, scaled_offset), divisor = pairs[0][0], pairs[0][1]
+        return DemandFunction(
+            lambda window: -(-within(window) // divisor), term_count, scaled_rate // divisor, scaled_offset // divisor
+        )
+    return DemandFunction(
+        lambda window: sum(-(-demand.within(window) // cores) for demand, cores in pairs),
+        sum(demand.term_count for demand, _ in pairs),
+        sum(demand.scaled_rate // cores for demand, cores in pairs),
+        sum(demand.scaled_offset // cores for demand, cores in pairs),
+    )
+
+
+def _find_fixed_point(own_work: int, demand: DemandFunction, spend: Callable[[int], None], *, start: int = 0) -> int:
+    """Return the least t with own work + demand(t) <= t, searching from `start`."""
+    within, term_count, scaled_rate, scaled_offset = demand
+    lower_bound = (
+        ((own_work << _SHARE_BITS) + scaled_offset) // (_WHOLE_SHARE - scaled_rate) if scaled_rate < _WHOLE_SHARE else 0
+    )
+    # The smallest window is 1 tick: it stands for one just longer than nothing, in which all first jobs come.
+    window = max(start, own_work, lower_bound, 1)
+    while True:
+        spend(term_count + 1)
+        work_sum = own_work + within(window)
+        if work_sum <= window:
+            # At the smallest window the need itself is the answer, which may be 0: work without execution time.
+            return work_sum if window == 1 else window
+        window = work_sum

@@ -1,0 +1,300 @@
+"""Response times on one resource, by tier: any scheduler, fixed priorities, executor, several cores.
+
+A utilisation of one or more on a core is overload; with fixed priorities exactly one is bearable where everything is
+strictly periodic (Burns and Wellings' process set C). No result rests on a figure that nobody wrote.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from itertools import accumulate
+from math import lcm
+from typing import NamedTuple
+
+from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.load.busy_windows import (
+    NO_DEMAND,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    add_demands,
+    longest_busy_period,
+    subtract_demand,
+    worst_response,
+)
+from archgen.timing.load.multicore_response import solve_several_cores
+from archgen.timing.load.thread_work import (
+    DIVERGED_CAUSE,
+    OVERLOAD_CAUSE,
+    UNBOUNDED_CAUSE,
+    EventModels,
+    ThreadWork,
+    WorstResponse,
+    build_thread,
+    find_work,
+    lower_crowded_threads,
+    work_utilisation,
+)
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.timing_system import TimingSystem
+
+
+class AnalysisEffort(NamedTuple):
+    """How much may still be computed, and for whom.
+
+    `stale_ids` are those whose event models have changed, None at first. `previous_threads` holds the threads of
+    several cores as they were when responses were last found; `find_responses` writes to it.
+    """
+
+    budget: SearchBudget
+    stale_ids: frozenset[str] | None = None
+    previous_threads: list[ThreadWork] | None = None
+
+
+def find_dedicated_response(
+    system: TimingSystem, name: str, event_models: EventModels, budget: SearchBudget
+) -> WorstResponse:
+    """Return the response of an activity without a host: its own queue, on a core of its own."""
+    activity = system.activities[name]
+    if activity.response is not None:
+        return WorstResponse(activity.response, "declared")
+    work = find_work(system, name, event_models, {})
+    if isinstance(work, UnknownCause):
+        return WorstResponse(None, "dedicated" if activity.wcet is not None else "unknown", work)
+    if work_utilisation(work.cost, work.streams) >= 1:
+        return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
+    try:
+        return WorstResponse(worst_response(work, NO_DEMAND, budget), "dedicated")
+    except DivergedError:
+        return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
+
+
+_MAX_JOBS_IN_ROUND = 20_000
+"""Most jobs in the hyperperiod of a core that is busy all the time."""
+_OwnAndForeign = tuple[Sequence[ThreadWork], Sequence[ThreadWork]]
+"""The threads of a resource, and the foreign ones."""
+
+
+def find_responses(
+    system: TimingSystem,
+    resource: ProcessingResource,
+    event_models: EventModels,
+    known_responses: Mapping[str, WorstResponse],
+    effort: AnalysisEffort,
+) -> dict[str, WorstResponse]:
+    """Return the responses of what a resource runs.
+
+    `known_responses` are those found so far; they matter on several cores. What has a higher priority than everything
+    stale is left out, and so is everything where nothing changed that counts.
+    """
+    budget, stale_ids, previous_threads = effort
+    all_threads = [
+        build_thread(system, unit, event_models, known_responses) for unit in (*resource.units, *resource.foreign_units)
+    ]
+    all_threads = lower_crowded_threads(system, all_threads, event_models)
+    # On several cores each response rests on all others; if no thread differs from last time, neither does any
+    # response.
+    if previous_threads is not None and resource.cores > 1:
+        if previous_threads == all_threads:
+            return {}
+        previous_threads[:] = all_threads
+    threads, foreign_threads = all_threads[: len(resource.units)], all_threads[len(resource.units) :]
+    one_core = resource.cores == 1 or resource.joined
+    # On one core only what is as urgent or more can interfere: threads above the most urgent stale one keep their
+    # response. Threads without a priority (low None) always wait for everything.
+    if stale_ids is not None and one_core:
+        highest_stale = max(
+            (
+                _highest_priority(thread)
+                for thread in (*threads, *foreign_threads)
+                if not stale_ids.isdisjoint(thread.unit)
+            ),
+            default=-1,
+        )
+        wanted_threads = [
+            thread for thread in threads if thread.lowest_priority is None or thread.lowest_priority <= highest_stale
+        ]
+    else:
+        wanted_threads = threads
+    # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
+    solve_resource = _solve_one_core if one_core else solve_several_cores
+    response_of: dict[str, WorstResponse] = {}
+    thread_responses = solve_resource(system, resource, (threads, foreign_threads), wanted_threads, budget)
+    for thread, response in map(_soften_overload, thread_responses) if resource.joined else thread_responses:
+        for name in thread.unit:
+            # A declared response is taken as it is, whatever the rest of the thread does; its work still interferes
+            # with others.
+            declared = system.activities[name].response
+            response_of[name] = response if declared is None else WorstResponse(declared, "declared")
+            if declared is None and system.activities[name].wcet is None:
+                response_of[name] = WorstResponse(
+                    None, "unknown", unite_causes((UnknownCause((name,)), response.cause))
+                )
+    return response_of
+
+
+def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
+    """Replace overload by unbounded: all of the joined cores may bear what is too much for one."""
+    thread, response = thread_response
+    return thread, response._replace(cause=UNBOUNDED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
+
+
+def _highest_priority(thread: ThreadWork) -> int:
+    """Return the greatest priority of a thread, -1 where it has none."""
+    return -1 if thread.highest_priority is None else thread.highest_priority
+
+
+def _solve_one_core(
+    _: TimingSystem,
+    __: ProcessingResource,
+    threads: _OwnAndForeign,
+    wanted_threads: Sequence[ThreadWork],
+    budget: SearchBudget,
+) -> Iterable[tuple[ThreadWork, WorstResponse]]:
+    """Yield the responses of the wanted threads on one core."""
+    all_threads = (*threads[0], *threads[1])
+    ranked = _RankedThreads(all_threads)
+    any_order_response = (
+        _bound_any_order(all_threads, budget)
+        if any(thread.lowest_priority is None for thread in wanted_threads)
+        else None
+    )
+    for thread in wanted_threads:
+        if any_order_response is not None and thread.lowest_priority is None:
+            is_only = len(all_threads) == 1 and len(thread.unit) > 1
+            # What works only once, at the start, has no events and interferes with nobody, but still takes its own
+            # time.
+            once_cost = sum(work.cost for work in thread.works if not work.streams)
+            response = (
+                _bound_any_order(all_threads, budget, once_cost)
+                if once_cost and any_order_response.value is not None
+                else any_order_response
+            )
+            yield thread, response._replace(tier="executor") if is_only else response
+    previous_response: WorstResponse | None = None
+    # By falling priority: `_RankedThreads` builds each level's load and busy period on the one before.
+    for thread in sorted(
+        (t for t in wanted_threads if t.lowest_priority is not None), key=lambda t: -(t.lowest_priority or 0)
+    ):
+        previous_response = _bound_by_priority(thread, ranked, budget, previous_response)
+        yield thread, previous_response
+
+
+class _RankedThreads:
+    """Threads by falling priority, with the share of a core that each takes together with all above it.
+
+    `cause_of_first` and `busy_period_of_first` must be asked in order of growing counts: they keep what they have added
+    up.
+    """
+
+    def __init__(self, threads: Iterable[ThreadWork]) -> None:
+        self.threads = sorted((t for t in threads if t.highest_priority is not None), key=_rank_key)
+        pairs = [thread.share.as_integer_ratio() for thread in self.threads]
+        self._common_denominator = lcm(*[denominator for _, denominator in pairs])
+        self._cumulated_shares = tuple(
+            accumulate(
+                (numerator * (self._common_denominator // own_denominator) for numerator, own_denominator in pairs),
+                initial=0,
+            )
+        )
+        self.load = GrowingLoad()
+        self._loaded_count = self._busy_period = 0
+        self._causes: list[UnknownCause] = []
+        self._cause_count = 0
+
+    def count_down_to(self, priority: int) -> int:
+        """Return how many threads may have this priority or a higher one."""
+        return bisect_right(self.threads, -priority, key=_rank_key)
+
+    def share_of_first(self, count: int) -> Fraction:
+        """Return the share of a core that the first threads take."""
+        return Fraction(self._cumulated_shares[count], self._common_denominator)
+
+    def cause_of_first(self, count: int) -> UnknownCause | None:
+        """Return what is missing of the first threads, None where nothing is."""
+        new_causes = [thread.cause for thread in self.threads[self._cause_count : count] if thread.cause]
+        self._cause_count = max(count, self._cause_count)
+        if new_causes:
+            self._causes = [unite_causes((*self._causes, *new_causes))]
+        return self._causes[0] if self._causes else None
+
+    def busy_period_of_first(self, count: int, budget: SearchBudget) -> int:
+        """Return the busy period of the first threads. The last one is a lower bound, where the search begins."""
+        if self._loaded_count < count:
+            for thread in self.threads[self._loaded_count : count]:
+                self.load.add_work(thread.works)
+            self._loaded_count = count
+            self._busy_period = longest_busy_period(self.load.demand_function(), budget, self._busy_period)
+        return self._busy_period
+
+
+def _rank_key(thread: ThreadWork) -> int:
+    """Sort key: threads by falling greatest priority."""
+    return -(thread.highest_priority or 0)
+
+
+def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0) -> WorstResponse:
+    """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top."""
+    if sum_fractions(thread.share for thread in threads) >= 1:
+        return WorstResponse(None, "host", OVERLOAD_CAUSE)
+    causes = [thread.cause for thread in threads if thread.cause]
+    if causes:
+        return WorstResponse(None, "host", unite_causes(causes))
+    try:
+        load = GrowingLoad(work for thread in threads for work in thread.works)
+        return WorstResponse(
+            longest_busy_period(
+                add_demands(load.demand_function(), DemandFunction(lambda _: once_cost)), budget, once_cost
+            ),
+            "host",
+        )
+    except DivergedError:
+        return WorstResponse(None, "host", DIVERGED_CAUSE)
+
+
+def _bound_by_priority(
+    thread: ThreadWork, ranked: _RankedThreads, budget: SearchBudget, previous_response: WorstResponse | None
+) -> WorstResponse:
+    """Bound the response of a thread below all that may have its priority or a higher one.
+
+    Where the search for the previous, more urgent one did not end, this one, with more work in it, is not begun.
+    """
+    # A thread competes at its least priority, and others interfere at their greatest: members of one thread wait for
+    # one another, so that any of them may be held up at the level of the least urgent.
+    count = ranked.count_down_to(thread.lowest_priority or 0)
+    tier: ResponseTier = "priorities" if len(thread.unit) == 1 else "executor"
+    share = ranked.share_of_first(count)
+    if share > 1 or (share == 1 and not _settles_at_full_load(ranked.threads[:count])):
+        return WorstResponse(None, tier, OVERLOAD_CAUSE)
+    cause = ranked.cause_of_first(count)
+    if cause is not None:
+        return WorstResponse(None, tier, cause)
+    if previous_response is not None and previous_response.cause == DIVERGED_CAUSE:
+        return WorstResponse(None, tier, DIVERGED_CAUSE)
+    try:
+        busy_period = ranked.busy_period_of_first(count, budget)
+        # Activation by activation, only for a single activity; for an executor the whole busy period is the bound,
+        # since its callbacks may run in any order.
+        if len(thread.works) == 1:
+            interference = subtract_demand(ranked.load.demand_function(), GrowingLoad(thread.works).demand_function())
+            busy_period = worst_response(thread.works[0], interference, budget, busy_period)
+        return WorstResponse(busy_period, tier)
+    except DivergedError:
+        return WorstResponse(None, tier, DIVERGED_CAUSE)
+
+
+def _settles_at_full_load(threads: Iterable[ThreadWork]) -> bool:
+    """Whether work that fills a core is sure to be done at the end of each hyperperiod."""
+    works = [work for thread in threads for work in thread.works if work.cost]
+    streams = [stream for work in works for stream in work.streams]
+    if any(stream.jitter or stream.distance or stream.events_per_period != 1 for stream in streams):
+        return False
+    # Strictly periodic work with a load of exactly 1 is done at each common multiple of the periods. Any jitter would
+    # let the busy period go on for ever.
+    hyperperiod = lcm(*(stream.period for stream in streams))
+    # A longer hyperperiod would not be searched to its end within the budget.
+    return sum(hyperperiod // stream.period for stream in streams) <= _MAX_JOBS_IN_ROUND

@@ -1,0 +1,175 @@
+"""Units with their work: what one thread asks of a processor, its priorities, and what is unknown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from archgen.frozen import dataclass
+from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
+from archgen.timing.load.busy_windows import ActivityWork, make_work
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.timing_system import TimingSystem
+
+
+class WorstResponse(NamedTuple):
+    """A worst response in ticks, or why there is none."""
+
+    value: int | None
+    tier: ResponseTier
+    cause: UnknownCause = UnknownCause()
+
+
+EventModels = Mapping[str, EventStreams | UnknownCause]
+"""The event model of each activity, or why it has none."""
+OVERLOAD_CAUSE, UNBOUNDED_CAUSE, DIVERGED_CAUSE = (
+    UnknownCause(notes=("overload",)),
+    UnknownCause(notes=("unbounded",)),
+    UnknownCause(notes=("diverged",)),
+)
+
+
+@lru_cache(1 << 14)
+def work_utilisation(cost: int, streams: EventStreams) -> Fraction:
+    """Return the share of a core that an activity takes."""
+    numerator, denominator = sum_ratios([stream.max_rate_ratio for stream in streams])
+    return Fraction(numerator * cost, denominator)
+
+
+def find_work(
+    system: TimingSystem, name: str, event_models: EventModels, known_responses: Mapping[str, WorstResponse]
+) -> ActivityWork | UnknownCause:
+    """Return the work of an activity, or what is missing of it."""
+    cost, streams = system.activities[name].wcet, event_models[name]
+    if cost == 0:
+        return ActivityWork(0, () if isinstance(streams, UnknownCause) else streams)
+    if cost is None:  # only what is missing of its events: a note such as `overload` does not say how long it takes
+        event_cause = UnknownCause(streams.missing) if isinstance(streams, UnknownCause) else UnknownCause()
+        return unite_causes((UnknownCause((name,)), event_cause))
+    if isinstance(streams, UnknownCause):
+        return streams
+    response = known_responses.get(name)
+    return make_work(cost, streams, (response.value or 0) if response else 0)
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadWork:
+    """A unit with its work. The priorities are the least and greatest of its members, None for members without one."""
+
+    unit: ThreadUnit
+    works: tuple[ActivityWork, ...]
+    cause: UnknownCause | None
+    lowest_priority: int | None
+    highest_priority: int | None
+    share: Fraction
+    container: str | None
+    boundless: bool = False
+    """Whether no response can be given though nothing is missing: any amount of its work may then be waiting."""
+
+
+def build_thread(
+    system: TimingSystem, unit: ThreadUnit, event_models: EventModels, known_responses: Mapping[str, WorstResponse]
+) -> ThreadWork:
+    """Build a unit's thread from the work of its members."""
+    # What never fires, or only at the start, interferes with nobody, even if its execution time is unknown.
+    idle_ids = {name for name in unit if event_models[name] == () and system.activities[name].wcet is None}
+    works_or_causes = [
+        ActivityWork(0, ()) if name in idle_ids else find_work(system, name, event_models, known_responses)
+        for name in unit
+    ]
+    causes = [item for item in works_or_causes if isinstance(item, UnknownCause)]
+    works = tuple(item for item in works_or_causes if isinstance(item, ActivityWork))
+    priorities = [item for name in unit if (item := system.activities[name].priority) is not None]
+    return ThreadWork(
+        unit,
+        works,
+        unite_causes(causes) if causes else None,
+        _lowest_priority(system, unit),
+        max(priorities, default=None),
+        sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
+        system.activities[unit[0]].container,
+        any(name in known_responses and _has_no_bound(known_responses[name]) for name in unit),
+    )
+
+
+def _has_no_bound(response: WorstResponse) -> bool:
+    """Whether a response has no bound although nothing is missing."""
+    return response.value is None and not response.cause.missing
+
+
+def lower_crowded_threads(
+    system: TimingSystem, threads: Sequence[ThreadWork], event_models: EventModels
+) -> list[ThreadWork]:
+    """Lower the priority of threads that wait for work of less priority than their own.
+
+    In a container with fewer threads than members, each waits for the least urgent member too. And whatever is as
+    urgent as some of the container's members must let pass the work that piled up while its threads were held: more
+    than what comes in a busy period of their priority, but no more than in one of the least urgent member's.
+    """
+    lowest_by_container = _lowest_in_crowded(system, threads, event_models)
+    lowered_threads = [
+        replace(thread, lowest_priority=lowest_by_container[thread.container])
+        if thread.container and thread.container in lowest_by_container
+        else thread
+        for thread in threads
+    ]
+    # Only threads whose priorities differ pass a delay on downwards.
+    priority_spans = {
+        (thread.lowest_priority, thread.highest_priority)
+        for thread in lowered_threads
+        if thread.highest_priority is not None and thread.lowest_priority != thread.highest_priority
+    }
+    return (
+        [
+            replace(thread, lowest_priority=_lowest_reached(thread.lowest_priority, priority_spans))
+            for thread in lowered_threads
+        ]
+        if priority_spans
+        else lowered_threads
+    )
+
+
+def _lowest_in_crowded(
+    system: TimingSystem, threads: Sequence[ThreadWork], event_models: EventModels
+) -> dict[str, int | None]:
+    """Return the least priority in each container that has fewer threads (but several) than members that ever work."""
+    members_by_container: dict[str, list[str]] = {}
+    for thread in threads:
+        if thread.container is not None:
+            members_by_container.setdefault(thread.container, []).extend(
+                name for name in thread.unit if event_models[name] != ()
+            )
+    return {
+        container: _lowest_priority(system, names)
+        for container, names in members_by_container.items()
+        # A single thread is one unit and needs no lowering: its members run one after the other anyway.
+        if 1 < (system.threads.get(container) or 1) < len(names)
+    }
+
+
+def _lowest_reached(priority: int | None, priority_spans: Iterable[tuple[int | None, int | None]]) -> int | None:
+    """Return the least priority among all threads that delay something this urgent, directly or through others."""
+    # None is less than any priority: once something without a priority is reached, the search is over.
+    while priority is not None:
+        reached_levels = [lowest for lowest, highest in priority_spans if highest is not None and highest >= priority]
+        lowest = (
+            None
+            if None in reached_levels
+            else min((priority, *(level for level in reached_levels if level is not None)))
+        )
+        if lowest == priority:
+            break
+        priority = lowest
+    return priority
+
+
+def _lowest_priority(system: TimingSystem, names: Iterable[str]) -> int | None:
+    """Return the least priority of several activities, None where one of them has none."""
+    priorities = [system.activities[name].priority for name in names]
+    written_priorities = [priority for priority in priorities if priority is not None]
+    return min(written_priorities) if len(written_priorities) == len(priorities) else None

@@ -1,0 +1,1 @@
+"""The fourth stage: how often everything works, from sources to sinks."""

@@ -1,0 +1,180 @@
+"""How often activities are activated and outputs published: rates and largest gaps, each with its reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.timing.analysis import EventPace, Reason, ResponseTime
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
+from archgen.timing.figures.value_arithmetic import (
+    UNBOUNDED_VALUE,
+    add_values,
+    is_boundless,
+    unknown_value,
+    value_of_cause,
+)
+from archgen.timing.load.event_propagation import PropagationState
+from archgen.timing.load.event_streams import EventStreams, collapse_streams
+from archgen.timing.rates.activation_rates import find_rate_and_gap, periodic_rate, periodic_reason
+from archgen.timing.rates.rate_table import RateAndGap, RateTable
+from archgen.timing.system.timing_system import Activity
+
+
+def find_rates(state: PropagationState, responses: Mapping[str, ResponseTime]) -> RateTable:
+    """Find the pace of every activity and output, sources first.
+
+    Last comes what the inputs would give those activities that state a period of their own (`RateTable.derived`).
+    """
+    rates = RateTable(state, responses)
+    # Looked at after the loop, since they do not wait for their inputs in the order, which may come later in it.
+    stated_activities: list[Activity] = []
+    for name in state.triggers.order:
+        activity = state.system.activities[name]
+        if activity.period is not None and activity.behaviour != "periodic":
+            stated_activities.append(activity)
+            pace, call_rate = _stated_pace(rates, activity), None
+            rate_and_gap = pace.rate, pace.gap
+        else:
+            rate_and_gap, call_rate, reasons = find_rate_and_gap(rates, activity)
+            pace = _build_pace(rates, activity, rate_and_gap, call_rate, tuple(reasons))
+        rates.paces[name] = pace
+        _find_output_paces(rates, activity, rate_and_gap, call_rate)
+    for activity in stated_activities:
+        rate_and_gap, call_rate, reasons = find_rate_and_gap(rates, activity)
+        rates.derived[activity.id] = _build_pace(rates, activity, rate_and_gap, call_rate, tuple(reasons))
+    return rates
+
+
+def _build_pace(
+    rates: RateTable,
+    activity: Activity,
+    rate_and_gap: RateAndGap,
+    call_rate: TimingValue | None,
+    reasons: tuple[Reason, ...],
+) -> EventPace:
+    """Return the pace of an activity; calls that it answers count as activations."""
+    rate, gap = rate_and_gap
+    total_rate = (
+        rate if call_rate is None else call_rate if activity.behaviour == "on_demand" else add_values((rate, call_rate))
+    )
+    jitter, distance = _event_shape(rates, rates.state.event_models[activity.id])
+    return EventPace(activity.behaviour, total_rate, gap, jitter, distance, activity.period is None, reasons)
+
+
+def _stated_pace(rates: RateTable, activity: Activity) -> EventPace:
+    """Return the pace that an activity states although its inputs fire it."""
+    rate_and_gap = periodic_rate(rates, activity)
+    jitter, distance = _event_shape(rates, rates.state.event_models[activity.id])
+    reasons = (periodic_reason(rates, activity),)
+    return EventPace(activity.behaviour, *rate_and_gap, jitter, distance, inferred=False, reasons=reasons)
+
+
+def _event_shape(rates: RateTable, event_model: EventStreams | UnknownCause) -> tuple[TimingValue, TimingValue]:
+    """Return jitter and smallest gap of an event model, in ns."""
+    if isinstance(event_model, UnknownCause):
+        return value_of_cause(event_model), value_of_cause(event_model)
+    if not event_model:
+        return ZERO_VALUE, UNBOUNDED_VALUE
+    stream = collapse_streams(event_model)
+    # The spacing of a collapsed stream says nothing of the streams it was made of.
+    distance = stream.min_spacing if len(event_model) == 1 else 0
+    return rates.duration_value(stream.jitter), rates.duration_value(distance)
+
+
+def _find_output_paces(
+    rates: RateTable, activity: Activity, rate_and_gap: RateAndGap, call_rate: TimingValue | None
+) -> None:
+    """Find how often each output is published: at each activation, R - B later, unless it is conditional."""
+    pace, name = rates.paces[activity.id], activity.id
+    spread = _response_spread(rates, activity) if activity.outputs else ZERO_VALUE
+    shape = _delayed_shape(rates, activity, pace, spread) if activity.outputs else (ZERO_VALUE, ZERO_VALUE)
+    # Made once for all plain outputs: they are equal.
+    usual_pace: EventPace | None = None
+    if call_rate is not None and activity.behaviour == "event":
+        rate_and_gap = (
+            add_values((rate_and_gap[0], call_rate)),
+            rate_and_gap[1],
+        )  # a call activates it as well, and publishes
+    for key in activity.outputs:
+        is_served = (name, key) in rates.state.system.served_outputs
+        output_rate = (call_rate or unknown_value(name), unknown_value(name)) if is_served else rate_and_gap
+        if key in activity.conditional:
+            rates.outputs[name, key] = _conditional_pace(rates, activity, key, pace, (output_rate[0], spread))
+        elif is_served:
+            rates.outputs[name, key] = _delayed_pace(pace, output_rate, spread, shape)
+        else:
+            usual_pace = usual_pace or _delayed_pace(pace, rate_and_gap, spread, shape)
+            rates.outputs[name, key] = usual_pace
+
+
+def _delayed_shape(
+    rates: RateTable, activity: Activity, pace: EventPace, spread: TimingValue
+) -> tuple[TimingValue, TimingValue]:
+    """Return jitter and smallest gap of what comes up to `spread` later; in ticks, where everything is known."""
+    event_model, worst = rates.state.event_models[activity.id], rates.state.responses[activity.id].value
+    if isinstance(event_model, UnknownCause) or not event_model or worst is None:
+        return add_values((pace.jitter, spread)), _reduced_distance(pace, spread)
+    delay = max(worst - (activity.bcet or 0), 0)
+    stream = collapse_streams(event_model)
+    distance = stream.min_spacing if len(event_model) == 1 else 0
+    return rates.duration_value(stream.jitter + delay), rates.duration_value(max(distance - delay, 0))
+
+
+def _delayed_pace(
+    pace: EventPace, rate_and_gap: RateAndGap, spread: TimingValue, shape: tuple[TimingValue, TimingValue]
+) -> EventPace:
+    """Return the pace of what comes up to `spread` later than it might."""
+    rate, gap = rate_and_gap
+    if spread.value == 0:
+        return EventPace(pace.behaviour, rate, gap, pace.jitter, pace.distance, pace.inferred)
+    gap = gap if gap.value is None else add_values((gap, spread))
+    return EventPace(pace.behaviour, rate, gap, *shape, pace.inferred)
+
+
+def _conditional_pace(
+    rates: RateTable, activity: Activity, key: str, pace: EventPace, rate_and_spread: RateAndGap
+) -> EventPace:
+    """Return the pace of a conditional output: between never and the given rate, with the promised gap, if any."""
+    rate, spread = rate_and_spread
+    promised_ticks = activity.max_gaps.get(key)
+    gap = (
+        UNBOUNDED_VALUE
+        if promised_ticks is None
+        else _promised_gap(rates.duration_value(promised_ticks), pace.gap, spread)
+    )
+    note = "conditional: between none and this"
+    upper_rate = (
+        replace(rate, side="at most", assumptions=(*rate.assumptions, note)) if rate.value is not None else rate
+    )
+    span = activity.places.get("outputs", activity.at)
+    return replace(
+        pace, rate=upper_rate, gap=gap, distance=ZERO_VALUE, reasons=(Reason(f"{key} is conditional", span),)
+    )
+
+
+def _promised_gap(promised_gap: TimingValue, gap: TimingValue, spread: TimingValue) -> TimingValue:
+    """Return the gap that an output promises, unless the activity's own gap is larger.
+
+    Nothing is sent more often than its activity works.
+    """
+    completion_gap = spread if is_boundless(spread) else add_values((gap, spread))
+    if is_boundless(spread) or (completion_gap.value is not None and completion_gap.value > (promised_gap.value or 0)):
+        return completion_gap
+    return replace(promised_gap, assumptions=("promised",))
+
+
+def _response_spread(rates: RateTable, activity: Activity) -> TimingValue:
+    """Return how much later than the earliest an output can be, R - B. A best case that nobody wrote counts as 0."""
+    ticks = rates.state.responses[activity.id].value
+    if ticks is None:
+        return replace(rates.responses[activity.id].worst, value=None)
+    return rates.duration_value(max(ticks - (activity.bcet or 0), 0))
+
+
+def _reduced_distance(pace: EventPace, spread: TimingValue) -> TimingValue:
+    """Return the smallest gap, reduced by a spread."""
+    if pace.distance.value is None:
+        return UNKNOWN_VALUE if not pace.distance.complete else pace.distance
+    return ZERO_VALUE if spread.value is None else TimingValue(max(pace.distance.value - spread.value, Fraction(0)))

@@ -1,0 +1,216 @@
+"""Rate and gap of what inputs fire: any of several, all of several, every n-th, throttled; each with its reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.timing.analysis import Reason
+from archgen.timing.figures.tick_unit import NS_PER_SECOND
+from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause
+from archgen.timing.figures.value_arithmetic import (
+    UNBOUNDED_VALUE,
+    add_values,
+    is_known_bound,
+    largest_value,
+    multiply_value,
+    smallest_value,
+    unknown_value,
+)
+from archgen.timing.load.event_propagation import find_renewed_inputs, input_model, is_always_present
+from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
+from archgen.timing.system.timing_system import Activity, Arc
+
+
+def find_triggered_rate(rates: RateTable, activity: Activity) -> tuple[RateAndGap, list[Reason]]:
+    """Return rate, gap and reasons of an event-driven activity."""
+    inputs = rates.state.triggers.inputs[activity.id]
+    if not inputs:
+        return (unknown_value(activity.id), unknown_value(activity.id)), [
+            Reason("event-driven, but no input fires it", activity.at)
+        ]
+    rate_and_gap, reasons = (
+        _all_of_rate(rates, activity, inputs) if activity.mode == "all" else _any_of_rate(rates, activity, inputs)
+    )
+    # In this order: `every` counts triggers, `throttle` acts on what `every` lets through, `jitter` delays what fires
+    # at last. The event model (event_propagation) is made in the same order.
+    if activity.every > 1:
+        rate_and_gap = (
+            multiply_value(rate_and_gap[0], Fraction(1, activity.every)),
+            multiply_value(rate_and_gap[1], activity.every),
+        )
+        reasons.append(Reason(f"one in {activity.every} fires it", activity.places.get("every", activity.at)))
+    if activity.throttle:
+        rate_and_gap = _throttled_rate(rates, activity, rate_and_gap)
+        gap = activity.throttle * rates.state.system.tick
+        span = activity.places.get("throttle", activity.at)
+        reasons.append(Reason("throttled: at least {0} apart", span, (gap,)))
+    if activity.jitter:
+        rate_and_gap = rate_and_gap[0], add_values((rate_and_gap[1], rates.duration_value(activity.jitter)))
+    return rate_and_gap, reasons
+
+
+def _arriving_rate(rates: RateTable, arc: Arc) -> RateAndGap:
+    """Return what an arc brings: the rate and gap of its producer's output, over a link."""
+    pace = rates.outputs.get((arc.source, arc.output))
+    if pace is None:
+        return unknown_value(arc.source), unknown_value(arc.source)
+    if arc.worst is None:
+        return pace.rate, add_values((pace.gap, unknown_value(arc.link or arc.source)))
+    # A link leaves the rate alone, and widens the gap by the difference of its latencies.
+    spread = arc.worst - (arc.best or 0)
+    return pace.rate, add_values((pace.gap, rates.duration_value(spread))) if spread else pace.gap
+
+
+def _input_rate(
+    rates: RateTable, activity: Activity, key: str, arcs: tuple[Arc, ...]
+) -> tuple[RateAndGap, list[Reason]]:
+    """Return rate, gap and reasons of what arrives at an input: any of its sources fires it."""
+    if len(arcs) == 1 and key not in rates.state.system.external_inputs.get(activity.id, ()):
+        rate, gap = _arriving_rate(rates, arcs[0])
+        return (rate, smallest_value((gap,))), [_arrival_reason(key, arcs[0], (rate, gap))]
+    arriving_rates = [_arriving_rate(rates, arc) for arc in arcs]
+    # Only where one source arrives on several topics does the topic have to be named.
+    is_ambiguous = len(arcs) > 1 and len({arc.source for arc in arcs}) < len(arcs)
+    reasons = [
+        _arrival_reason(key, arc, arriving_rate, f" on {arc.topic}" if is_ambiguous else "")
+        for arc, arriving_rate in zip(arcs, arriving_rates, strict=True)
+    ]
+    if not arcs or key in rates.state.system.external_inputs.get(activity.id, ()):
+        arriving_rates.append((unknown_value(key), unknown_value(key)))
+        reasons.append(Reason(f"how often {key} brings something is not known", activity.at))
+    return (add_values(rate for rate, _ in arriving_rates), smallest_value(gap for _, gap in arriving_rates)), reasons
+
+
+def _arrival_reason(key: str, arc: Arc, rate_and_gap: RateAndGap, topic_text: str = "") -> Reason:
+    """Return the reason for what an arc brings to an input."""
+    rate, gap = rate_and_gap
+    if gap.value is None or not is_known_bound(gap):
+        return Reason("{0} brings {1} from {2}{3}", arc.at, (key, rate, arc.source, topic_text))
+    return Reason(
+        "{0} brings {1} from {2}{3}, at most {4} apart", arc.at, (key, rate, arc.source, topic_text, gap.value)
+    )
+
+
+def _any_of_rate(
+    rates: RateTable, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
+) -> tuple[RateAndGap, list[Reason]]:
+    """Return rate and gap of any-of: the sum of the rates, and the smallest gap."""
+    has_several = len(inputs) > 1
+    reasons = (
+        [Reason("fired by any of its triggers: rates add up, the smallest gap counts", trigger_span(activity))]
+        if has_several
+        else []
+    )
+    input_rates: list[RateAndGap] = []
+    for key, arcs in inputs.items():
+        input_rate, input_reasons = _input_rate(rates, activity, key, arcs)
+        input_rates.append(input_rate)
+        reasons += input_reasons
+    return (add_values(rate for rate, _ in input_rates), smallest_value(gap for _, gap in input_rates)), reasons
+
+
+def _all_of_rate(
+    rates: RateTable, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
+) -> tuple[RateAndGap, list[Reason]]:
+    """Return rate and gap of all-of: the smallest rate, and the largest gap."""
+    reasons = [
+        Reason(
+            "fires when all of its triggers have something new: with the smallest rate, and the largest gap",
+            trigger_span(activity),
+        )
+    ]
+    input_rates: dict[str, RateAndGap] = {}
+    for key, arcs in inputs.items():
+        if is_always_present(rates.state.system, arcs):
+            reasons.append(Reason(f"{key} is sent once and kept: it is always there", activity.at))
+            continue
+        input_rates[key], input_reasons = _input_rate(rates, activity, key, arcs)
+        reasons += input_reasons
+        # An input that closes a ring rests on this very activity: the others decide, and it counts as unknown.
+        if (activity.id, key) in rates.state.triggers.open_inputs:
+            input_rates[key] = unknown_value(activity.id), unknown_value(activity.id)
+    if not input_rates:
+        # Everything is always there: then what feeds such an input again fires, as with any-of.
+        renewed_inputs = find_renewed_inputs(rates.state.system, inputs)
+        rate_and_gap, input_reasons = (
+            _any_of_rate(rates, activity, renewed_inputs) if renewed_inputs else ((ZERO_VALUE, UNBOUNDED_VALUE), [])
+        )
+        return rate_and_gap, reasons + input_reasons
+    return (
+        _slowest_rate(rates, activity, input_rates, inputs),
+        largest_value(gap for _, gap in input_rates.values()),
+    ), reasons
+
+
+def _slowest_rate(
+    rate_table: RateTable,
+    activity: Activity,
+    input_rates: Mapping[str, RateAndGap],
+    inputs: Mapping[str, tuple[Arc, ...]],
+) -> TimingValue:
+    """Return the smallest rate: exact where all inputs are strictly periodic, else an upper bound."""
+    all_rates = [rate for rate, _ in input_rates.values()]
+    known_rates = [rate for rate in all_rates if rate.value is not None and rate.complete]
+    if not known_rates:
+        return largest_value(replace(rate, value=None, complete=False) for rate in all_rates)
+    slowest = min(known_rates, key=lambda rate: rate.value or Fraction(0))
+    # An unknown input may be slower still: what is known bounds the rate from above.
+    if len(known_rates) < len(all_rates):
+        missing = tuple(dict.fromkeys(m for rate in all_rates if rate not in known_rates for m in rate.missing))
+        return replace(slowest, complete=False, missing=missing, side="at most")
+    if len(all_rates) == 1 or _is_strictly_periodic(rate_table, activity, ((key, inputs[key]) for key in input_rates)):
+        return slowest
+    # With jitter an input may miss its partner: all-of then fires less often than the slower input comes.
+    return replace(slowest, side="at most")
+
+
+def _is_strictly_periodic(rates: RateTable, activity: Activity, inputs: Iterable[tuple[str, tuple[Arc, ...]]]) -> bool:
+    """Whether all inputs are strictly periodic, without jitter or smallest distance."""
+    for key, arcs in inputs:
+        source_model = rates.state.event_models[arcs[0].source] if len(arcs) == 1 else ()
+        if source_model and not isinstance(source_model, UnknownCause) and source_model[0].jitter:
+            return False  # jitter only grows on the way: no need to follow it
+        arrival_model = input_model(rates.state, activity, key, arcs)
+        if (
+            isinstance(arrival_model, UnknownCause)
+            or len(arrival_model) != 1
+            or arrival_model[0].jitter
+            or arrival_model[0].distance
+        ):
+            return False
+    return True
+
+
+def _throttled_rate(rates: RateTable, activity: Activity, rate_and_gap: RateAndGap) -> RateAndGap:
+    """Return the rate and gap that a throttle lets through: whole multiples of a period, where there is one."""
+    rate, gap = rate_and_gap
+    tick = rates.state.system.tick
+    min_gap = activity.throttle * tick
+    # The gap becomes less than q + g: after the throttle's time the next trigger is at most one gap away.
+    wider_gap = add_values((gap, TimingValue(min_gap))) if gap.value is not None else gap
+    if not rate.value:
+        return rate, wider_gap
+    # With a known event model of one stream, `throttle_streams` has rounded the period up already. Where that model is
+    # unknown but the rate exact, its triggers are assumed to come regularly, and the assumption is stated.
+    event_model = rates.state.event_models[activity.id]
+    if (
+        activity.period is None
+        and not isinstance(event_model, UnknownCause)
+        and len(event_model) == 1
+        and event_model[0].events_per_period == 1
+    ):
+        stream = event_model[0]
+        period = stream.period * tick
+        if NS_PER_SECOND / period <= NS_PER_SECOND / min_gap:
+            return replace(rate, value=min(rate.value, NS_PER_SECOND / period)), wider_gap
+    elif isinstance(event_model, UnknownCause) and rate.side == "exact" and rate.complete:
+        period = NS_PER_SECOND / rate.value
+        period_count = -(-min_gap // period)
+        note = "what fires it is taken to come regularly"
+        return replace(
+            rate, value=1 / (period_count * period) * NS_PER_SECOND, assumptions=(*rate.assumptions, note)
+        ), wider_gap
+    bound = min(rate.value, NS_PER_SECOND / min_gap)
+    return replace(rate, value=bound, side="at most" if rate.complete else rate.side), wider_gap

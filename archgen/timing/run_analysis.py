@@ -1,0 +1,93 @@
+"""The whole analysis: of an architecture, or of a system in which some figures were changed."""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, Reason
+from archgen.timing.load.host_loads import build_response_times, find_host_loads
+from archgen.timing.load.link_queueing import settle_links
+from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
+from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
+from archgen.timing.rates.output_rates import find_rates
+from archgen.timing.rates.service_waiting import find_service_loads
+from archgen.timing.system.core_placement import find_resources
+from archgen.timing.system.system_builder import build_system as build
+from archgen.timing.system.timing_system import TimingSystem
+
+
+def analyse_architecture(architecture: Architecture, *, judging: bool = False) -> Analysis:
+    """Analyse an architecture, chains aside.
+
+    With `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
+    """
+    system, notes = build(architecture)
+    if not judging:
+        return analyse_system(system, notes)
+    # Rules are run again and again for versions of one project that mostly leave timing as it was. Only the last
+    # analysis is kept, and it is used again only where every figure and every place is the same.
+    global _last_judged  # noqa: PLW0603 - what was found last, for who judges many versions of one project
+    if _last_judged is None or not _is_same_system(_last_judged, system, notes):
+        _last_judged = analyse_system(system, notes, judging=True)
+    return _last_judged
+
+
+def analyse_for_chains(architecture: Architecture) -> Analysis:
+    """Analyse what chains rest on and no more, for callers that ask the same of many versions of one project."""
+    system, notes = build(architecture)
+    return analyse_system(system, notes, judging=True)
+
+
+_last_judged: Analysis | None = None
+
+
+def _is_same_system(analysis: Analysis, system: TimingSystem, notes: tuple[Reason, ...]) -> bool:
+    """Whether an analysis is that of this system: every figure is equal, and written at the same place."""
+    # Spans take no part in the equality of systems (`compare=False`), but findings point to them.
+    return (
+        analysis.system == system
+        and list(map(_activity_spans, analysis.system.activities.values()))
+        == list(map(_activity_spans, system.activities.values()))
+        and list(map(_arc_spans, analysis.system.arcs)) == list(map(_arc_spans, system.arcs))
+        and [(note, note.at) for note in analysis.notes] == [(note, note.at) for note in notes]
+    )
+
+
+_activity_spans = attrgetter("at", "places")
+_arc_spans = attrgetter("at", "queue_at")
+
+
+def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judging: bool = False) -> Analysis:
+    """Analyse a system, chains aside."""
+    # The order of the stages: links and event models in ticks, responses in ns, rates, and then what rests on all of
+    # them.
+    system, trigger_graph, state = settle_links(system)
+    resource_list = find_resources(system)
+    responses = build_response_times(state, resource_list)
+    rates = find_rates(state, responses)
+    edge_context = EdgeContext(state, rates.paces, rates.outputs, responses)
+    return Analysis(
+        system=system,
+        paces={name: rates.paces[name] for name in system.activities},
+        outputs={
+            (activity.id, key): rates.outputs[activity.id, key]
+            for activity in system.activities.values()
+            for key in activity.outputs
+        },
+        responses=responses,
+        hosts=find_host_loads(system, resource_list, rates.paces, responses),
+        links=find_link_loads(state, rates),
+        topics={} if judging else find_topic_loads(system, rates.outputs),
+        edges=find_edge_fits(edge_context, judging=judging),
+        endless=trigger_graph.endless_rings,
+        deadlocked=trigger_graph.deadlocked_rings,
+        diverged=tuple(
+            name
+            for name in system.activities
+            if name in state.diverged or "diverged" in responses[name].worst.assumptions
+        ),
+        derived=rates.derived,
+        services=find_service_loads(state, rates.paces, responses),
+        notes=notes,
+    )

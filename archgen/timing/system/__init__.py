@@ -1,0 +1,1 @@
+"""The second stage: the architecture as activities, arcs, cores and messages."""

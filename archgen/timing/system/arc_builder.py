@@ -1,0 +1,153 @@
+"""Build the arcs: along which data passes between activities, over which link, and how long that takes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Link
+from archgen.model.node import Endpoint, Topic
+from archgen.model.qos_profiles import QOS_PROFILES
+from archgen.timing.figures.tick_unit import TickUnit
+from archgen.timing.system import message_sizes
+from archgen.timing.system.activity_builder import ActivityNames, activity_of_endpoint, endpoint_key
+from archgen.timing.system.timing_system import Activity, Arc
+
+LinkRoute = tuple[str | None, int | None, int | None]
+"""A link (None on one host), with its best and worst latency in ticks (None where unknown)."""
+_SAME_HOST: LinkRoute = (None, 0, 0)
+_NO_LINK: LinkRoute = (None, None, None)
+
+
+def build_arcs(
+    architecture: Architecture,
+    activity_names: ActivityNames,
+    activities_by_id: Mapping[str, Activity],
+    tick_unit: TickUnit,
+) -> tuple[Arc, ...]:
+    """Join writers with readers, topic by topic; services and actions in both directions."""
+    joiner = _ArcJoiner(
+        architecture,
+        activity_names,
+        activities_by_id,
+        # Cached by pair of hosts: there are far more arcs than pairs.
+        cache(_RouteFinder(architecture, tick_unit)),
+        {(edge.output, edge.input): edge.at for edge in architecture.edges},
+        message_sizes.make_writer_query(architecture),
+    )
+    return tuple(arc for topic in architecture.topics.values() for arc in joiner.join_topic(topic))
+
+
+@dataclass(frozen=True, slots=True)
+class _ArcJoiner:
+    """The look-ups that each pair of a writer and a reader needs."""
+
+    architecture: Architecture
+    activity_names: ActivityNames
+    activities_by_id: Mapping[str, Activity]
+    find_route: Callable[[str | None, str | None], LinkRoute]
+    spans: Mapping[tuple[str, str], Span]
+    size_of: Callable[[Endpoint, message_sizes.MessageRole], int | None]
+
+    def join_topic(self, topic: Topic) -> Iterator[Arc]:
+        """Yield the arcs of one topic, service or action."""
+        for reader in topic.readers:
+            for writer in topic.writers:
+                # A shared topic would join all nodes with all others: only what an input names counts.
+                if topic.shared and writer.port not in reader.sources:
+                    continue
+                if topic.flow == "topic":
+                    yield self._data_arc(topic, writer, reader, self.size_of(writer, "data"))
+                else:
+                    # The server is the writer of a service, so that the arc from writer to reader is the answer.
+                    answer_arc = self._data_arc(topic, writer, reader, None)
+                    yield replace(self._request_arc(answer_arc), size=self.size_of(writer, "request"))
+                    yield replace(answer_arc, role="answer", size=self.size_of(writer, "answer"))
+
+    def _data_arc(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
+        """Return the arc from a writer to a reader."""
+        source, target = (
+            activity_of_endpoint(self.architecture, self.activity_names, endpoint) for endpoint in (writer, reader)
+        )
+        link, best, worst = self.find_route(self.activities_by_id[source].host, self.activities_by_id[target].host)
+        port = self.architecture.inputs.get(reader.port or "")
+        qos = reader.qos
+        return Arc(
+            source=source,
+            output=endpoint_key(writer),
+            target=target,
+            input=endpoint_key(reader),
+            topic=topic.name,
+            flow=topic.flow,
+            link=link,
+            best=best,
+            worst=worst,
+            depth=None if qos.history == "keep_all" else qos.depth,
+            size=size,
+            optional=bool(port and port.optional),
+            depth_written=qos.written and qos.depth != QOS_PROFILES[qos.profile].depth,
+            at=self._span_of_arc(writer, reader),
+            queue_at=qos.at,
+        )
+
+    def _request_arc(self, answer_arc: Arc) -> Arc:
+        """Return the arc from client to server that belongs to an answer."""
+        link, best, worst = self.find_route(
+            self.activities_by_id[answer_arc.target].host, self.activities_by_id[answer_arc.source].host
+        )
+        return replace(
+            answer_arc,
+            source=answer_arc.target,
+            output=answer_arc.input,
+            target=answer_arc.source,
+            input=answer_arc.output,
+            role="request",
+            link=link,
+            best=best,
+            worst=worst,
+        )
+
+    def _span_of_arc(self, writer: Endpoint, reader: Endpoint) -> Span:
+        """Return the reference that joins the two; where they only meet on a topic, the place of the reader."""
+        span = self.spans.get((writer.port or "", reader.port or ""))
+        if span is not None:
+            return span
+        port = self.architecture.inputs.get(reader.port or "")
+        return reader.at if reader.at != NO_SPAN or port is None else port.at
+
+
+class _RouteFinder:
+    """Finds the link between two hosts: of several the one with the least worst latency."""
+
+    def __init__(self, architecture: Architecture, tick_unit: TickUnit) -> None:
+        self._tick_unit = tick_unit
+        self._links_of_host: dict[str, dict[str, Link]] = defaultdict(dict)
+        for link in architecture.links.values():
+            for host in link.connects:
+                self._links_of_host[host][link.id] = link
+
+    def __call__(self, source_host: str | None, target_host: str | None) -> LinkRoute:
+        """Return the link between two hosts and its latency.
+
+        Where neither end has a host, both are taken to be on one; where only one has, the latency is unknown.
+        """
+        if source_host == target_host:
+            return _SAME_HOST
+        if source_host is None or target_host is None:
+            return _NO_LINK
+        target_links = self._links_of_host[target_host]
+        common_links = [link for link_id, link in self._links_of_host[source_host].items() if link_id in target_links]
+        if not common_links:
+            return _NO_LINK
+        link = min(common_links, key=_latency_order)
+        return link.id, self._tick_unit.quantity_to_ticks(link.best), self._tick_unit.quantity_to_ticks(link.worst)
+
+
+def _latency_order(link: Link) -> tuple[bool, object]:
+    """Sort key for links: by worst latency, those without one last."""
+    return (link.worst is None, link.worst.value if link.worst else 0)

@@ -1,0 +1,78 @@
+"""Strongly connected components and loops, without recursion (R. Tarjan, 1972, with an explicit stack)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import Generic, TypeVar
+
+T = TypeVar("T", bound=Hashable)
+
+
+def find_strong_components(elements: Iterable[T], successors: Callable[[T], Iterable[T]]) -> list[tuple[T, ...]]:
+    """Return the strong components, each behind all that lead to it; members are in the order of `elements`."""
+    order = list(elements)
+    position = {element: index for index, element in enumerate(order)}
+    search = _TarjanSearch(successors)
+    for element in order:
+        if element not in search.numbers:
+            search.search_from(element)
+    # Tarjan closes a component only after all that it leads to, so that the reverse is a topological order.
+    return [
+        tuple(sorted(component, key=lambda one: position.get(one, len(position))))
+        for component in reversed(search.components)
+    ]
+
+
+def find_rings(successors: Mapping[T, Sequence[T]]) -> list[tuple[T, ...]]:
+    """Return the components that hold a loop, in order of appearance."""
+    all_components = find_strong_components(successors, lambda element: successors.get(element, ()))
+    position = {element: index for index, element in enumerate(successors)}
+    looped_rings = (ring for ring in all_components if len(ring) > 1 or ring[0] in successors.get(ring[0], ()))
+    return sorted(looped_rings, key=lambda ring: position[ring[0]])
+
+
+class _TarjanSearch(Generic[T]):
+    """One depth-first search."""
+
+    def __init__(self, successors: Callable[[T], Iterable[T]]) -> None:
+        self.numbers: dict[T, int] = {}
+        self.components: list[list[T]] = []
+        self._successors = successors
+        self._low_links: dict[T, int] = {}
+        self._open_stack: list[T] = []
+        self._on_stack: set[T] = set()
+
+    def search_from(self, start: T) -> None:
+        # Recursion would end at Python's limit: paths through an architecture can be thousands of activities long.
+        """Search everything that can be reached from an element and has not been searched yet."""
+        path: list[tuple[T, Iterator[T]]] = [self._enter_element(start)]
+        while path:
+            current, successors = path[-1]
+            for successor in successors:
+                if successor not in self.numbers:
+                    path.append(self._enter_element(successor))
+                    break
+                if successor in self._on_stack:
+                    self._low_links[current] = min(self._low_links[current], self.numbers[successor])
+            else:
+                path.pop()
+                if path:
+                    parent = path[-1][0]
+                    self._low_links[parent] = min(self._low_links[parent], self._low_links[current])
+                if self._low_links[current] == self.numbers[current]:
+                    self._close_component(current)
+
+    def _enter_element(self, element: T) -> tuple[T, Iterator[T]]:
+        """Assign the next number to an element, and put it on the stack."""
+        self._low_links[element] = self.numbers[element] = len(self.numbers)
+        self._open_stack.append(element)
+        self._on_stack.add(element)
+        return element, iter(self._successors(element))
+
+    def _close_component(self, root: T) -> None:
+        """Take a complete component, whose root is the given element, off the stack."""
+        members: list[T] = []
+        while not members or members[-1] != root:
+            members.append(self._open_stack.pop())
+        self._on_stack.difference_update(members)
+        self.components.append(members)

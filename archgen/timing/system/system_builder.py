@@ -1,0 +1,73 @@
+"""Build a timing system from an architecture: activities and the arcs between them, all durations in one unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Reason
+from archgen.timing.figures.tick_unit import choose_tick_unit
+from archgen.timing.system import message_sizes
+from archgen.timing.system.activity_builder import activity_of_endpoint, build_activities, endpoint_key, name_activities
+from archgen.timing.system.arc_builder import build_arcs
+from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
+
+_BITS_PER_BYTE = 8
+
+
+def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason, ...]]:
+    """Build the system of a linked architecture, with notes on what had to be assumed."""
+    tick_unit = choose_tick_unit(architecture)
+    activity_names = name_activities(architecture)
+    activities_by_id = build_activities(architecture, activity_names, tick_unit)
+    all_arcs = build_arcs(architecture, activity_names, activities_by_id, tick_unit)
+    notes = (
+        ()
+        if tick_unit.exact
+        else (Reason("the rates have no common measure of reasonable size: periods are rounded up"),)
+    )
+    timing_system = TimingSystem(
+        tick=tick_unit.tick,
+        activities=activities_by_id,
+        arcs=all_arcs,
+        arcs_into=group_arcs((arc.target, arc) for arc in all_arcs),
+        arcs_from=group_arcs((arc.source, arc) for arc in all_arcs),
+        external_inputs=dict(_external_inputs(architecture, activities_by_id)),
+        optional_inputs=frozenset(port.id for port in architecture.inputs.values() if port.optional),
+        cores={host.id: host.cores for host in architecture.hosts.values()},
+        threads={container.id: container.threads for container in architecture.containers.values()},
+        bandwidths={
+            link.id: link.bandwidth.value / _BITS_PER_BYTE if link.bandwidth else None
+            for link in architecture.links.values()
+        },
+        served_outputs=frozenset(
+            (activity_of_endpoint(architecture, activity_names, endpoint), endpoint_key(endpoint))
+            for endpoint in architecture.endpoints
+            if endpoint.use == "serves"
+        ),
+        topic_writers={
+            name: tuple(
+                (activity_of_endpoint(architecture, activity_names, endpoint), endpoint_key(endpoint))
+                for endpoint in topic.writers
+            )
+            for name, topic in architecture.topics.items()
+            if topic.flow == "topic"
+        },
+        topic_sizes=message_sizes.find_topic_sizes(architecture),
+    )
+    return timing_system, notes
+
+
+def _external_inputs(
+    architecture: Architecture, activities_by_id: Mapping[str, Activity]
+) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the inputs that something feeds from outside of the architecture."""
+    for activity in activities_by_id.values():
+        ports = (architecture.inputs.get(port) for port in activity.inputs)
+        # An input whose `from` names something that does not exist counts as fed from outside: the wrong name is
+        # reported elsewhere, and an input that nothing feeds would keep an all-of reader from ever firing.
+        external_ports = tuple(
+            p.id for p in ports if p and (p.external or p.physical or (p.from_written and not p.connections))
+        )
+        if external_ports:
+            yield activity.id, external_ports

@@ -1,0 +1,125 @@
+"""What timing works on: activities (what a node does for one component) and the arcs along which data passes.
+
+All durations are integers of one unit for each project (`TimingSystem.tick`, in ns): exact, and fast. None is unknown.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import field
+from fractions import Fraction
+from typing import Literal
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
+from archgen.model.declared_timing import ActivityBehaviour
+from archgen.model.node import FlowKind
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """One activity: a node's id, or `node.component` (the component's own name) where a node implements several.
+
+    `behaviour` is as written or inferred (`behaviour_inferred`), None where neither is possible. `triggers` are the
+    keys of the inputs that fire it (see `Arc.input`), `mode` whether any or all of them do; other inputs are sampled.
+    Durations are in ticks. `wcet` and `bcet` None are unknown; `response` is a declared worst case.
+    """
+
+    id: str
+    node: str
+    component: str | None
+    behaviour: ActivityBehaviour | None
+    behaviour_inferred: bool = False
+    period: int | None = None
+    """As written, as a period or as a rate."""
+    jitter: int = 0
+    wcet: int | None = None
+    bcet: int | None = None
+    response: int | None = None
+    mode: Literal["any", "all"] = "any"
+    triggers: tuple[str, ...] = ()
+    every: int = 1
+    throttle: int = 0
+    conditional: frozenset[str] = frozenset()
+    """Keys of outputs that are not published at each activation."""
+    max_gaps: Mapping[str, int] = field(default_factory=dict)
+    """The largest gap promised for a conditional output."""
+    calls: Mapping[str, Fraction] = field(default_factory=dict)
+    """Calls in each activation, by input key; 1 where nothing is written."""
+    priority: int | None = None
+    host: str | None = None
+    container: str | None = None
+    core: int | None = None
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    # Not compared either: moving text in a file changes no figure.
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """Data from one activity's output to another's input (a topic), or between client and server (both ways).
+
+    `output` and `input` are keys: a port's complete id, or the absolute name of an internal topic. A service or action
+    has one arc from client to server (`role` request: it triggers the server) and one back (`answer`: it triggers
+    nobody). `best` and `worst` are the link's latency in ticks: 0 on one host, None where unknown. `depth` is the
+    reader's queue (None: unlimited), `size` the message's bytes.
+    """
+
+    source: str
+    output: str
+    target: str
+    input: str
+    topic: str
+    flow: FlowKind
+    role: Literal["data", "request", "answer"] = "data"
+    link: str | None = None
+    best: int | None = 0
+    worst: int | None = 0
+    depth: int | None = None
+    size: int | None = None
+    optional: bool = False
+    depth_written: bool = False
+    """Whether the reader asks for another depth than its profile has."""
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    queue_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    """Where the reader's quality of service is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimingSystem:
+    """All activities and arcs of an architecture. `tick` is the unit of all durations, in ns."""
+
+    tick: Fraction
+    activities: Mapping[str, Activity]
+    arcs: tuple[Arc, ...]
+    arcs_into: Mapping[str, tuple[Arc, ...]]
+    arcs_from: Mapping[str, tuple[Arc, ...]]
+    external_inputs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Keys of the inputs of each activity that are fed from outside of the architecture."""
+    optional_inputs: frozenset[str] = frozenset()
+    """Input keys that need not be connected: nobody waits for one that is not."""
+    cores: Mapping[str, int | None] = field(default_factory=dict)
+    """Cores of each host, None where not written."""
+    threads: Mapping[str, int | None] = field(default_factory=dict)
+    """Threads of each container, None where not written."""
+    bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
+    """Bandwidth of each link in B/s, None where not written."""
+    served_outputs: frozenset[tuple[str, str]] = frozenset()
+    """Outputs (activity, key) that are services or actions."""
+    topic_writers: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
+    """Who publishes on each topic: activities and output keys."""
+    topic_sizes: Mapping[str, int | None] = field(default_factory=dict)
+    """Bytes of a message on each topic, None where unknown."""
+    queued_links: frozenset[str] = frozenset()
+    """Links whose latency is not written, but was computed from bandwidth and traffic."""
+
+
+def group_arcs(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
+    """Group arcs by a name, such as that of one of their ends."""
+    arcs_by_name: dict[str, list[Arc]] = defaultdict(list)
+    for name, arc in pairs:
+        arcs_by_name[name].append(arc)
+    return {name: tuple(arc_list) for name, arc_list in arcs_by_name.items()}

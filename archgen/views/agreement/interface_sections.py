@@ -1,0 +1,177 @@
+"""The section of one interface: terms, ends, fields of the message, chains, requirements, open points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from archgen.views import inline_text
+from archgen.views.agreement import message_fields
+from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.term_changes import SIGNED_KINDS, AgreementChanges, InterfaceRecord, TermChange
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.shapes import drop_empty_columns as tidy
+from archgen.views.timing import value_format
+
+_MAX_VALUE_LENGTH = 400
+"""Maximal number of characters of a value in a table of changes."""
+
+
+@dataclass(frozen=True, slots=True)
+class SectionWriter:
+    """Writes sections. The fields of a message are at its first interface, later ones refer to it."""
+
+    lookup: Lookup
+    changes: AgreementChanges | None = None
+    anchors_by_message: dict[str, str] = field(default_factory=dict)
+
+    def write_section(self, record: InterfaceRecord, anchor: str, mark: Inlines) -> Section:
+        """Return the section of one interface."""
+        interface_terms = record.terms
+        blocks = [
+            *self._change_blocks(record, mark),
+            Facts((*interface_terms.facts, *_further_facts(interface_terms))),
+            self._ends_table(interface_terms),
+            *(Paragraph(inline_text.to_inlines(sentence), "note") for sentence in interface_terms.shared_notes),
+            *self._field_blocks(interface_terms, anchor),
+            *self._chain_tables(interface_terms),
+        ]
+        return Section(anchor, interface_terms.title, tuple(blocks))
+
+    def write_removed(self, record: InterfaceRecord, anchor: str) -> Section:
+        """Return the section of a removed interface, as it was."""
+        removed_notice = Paragraph(inline_text.to_inlines(Text(SIGNED_KINDS["removed"], change="removed")), "error")
+        return Section(
+            anchor, record.terms.title, (removed_notice, Facts(record.terms.facts), self._ends_table(record.terms))
+        )
+
+    def _change_blocks(self, record: InterfaceRecord, mark: Inlines) -> Iterator[Block]:
+        """Yield what happened to the interface since the earlier revision, old beside new."""
+        if not self.changes or not mark:
+            return
+        change_kind = self.changes.change_kind(record.key)
+        since_run = Text(f" since {self.changes.earlier_revision}")
+        yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
+        rows = tuple(_change_row(change) for change in self.changes.changes_of(record.key))
+        if rows:
+            columns = (Column("Term", 0.9), Column("Change", 0.6), Column("Was", 1.3), Column("Is now", 1.3))
+            interface = record.terms.interface
+            yield Table(
+                f"table:changes/{interface.key}/{interface.pair[0]}",
+                f"{record.terms.title}: what changed",
+                columns,
+                rows,
+            )
+
+    def _ends_table(self, interface_terms: InterfaceTerms) -> Table:
+        undecided = (
+            ()
+            if interface_terms.interface.flow == "physical"
+            else inline_text.to_inlines(Text("not decided yet", muted=True))
+        )
+        rows = tuple(self._end_row(interface_end, undecided) for interface_end in interface_terms.ends)
+        columns = (
+            Column("Side", 0.7),
+            Column("Partner", 0.9),
+            Column("Component · port", 1.5),
+            Column("Node", 1.2),
+            Column("QoS", 1.3),
+        )
+        name = f"table:ends/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
+        return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows))
+
+    def _end_row(self, end: InterfaceEnd, undecided: Inlines) -> tuple[Inlines, ...]:
+        component = inline_text.to_inlines(end.component.title) if end.component else ()
+        port = inline_text.to_inlines(" · ", Text(end.port, code=True)) if end.port else ()
+        return (
+            inline_text.to_inlines(Text(end.role, strong=not end.is_taker)),
+            inline_text.to_inlines(partner_titles(self.lookup, end.owners))
+            if end.owners
+            else inline_text.to_inlines(Text("nobody", muted=True)),
+            (*component, *port),
+            self._node_runs(end.node) if end.node else undecided,
+            inline_text.to_inlines(end.qos) if end.qos else (),
+        )
+
+    def _node_runs(self, name: str) -> Inlines:
+        node = self.lookup.architecture.nodes[name]
+        host = self.lookup.architecture.hosts.get(node.host or "")
+        details = " · ".join(part for part in (node.status or "", f"on {host.title}" if host else "") if part)
+        return inline_text.join_lines(
+            [
+                inline_text.to_inlines(Text(name, code=True)),
+                *([inline_text.to_inlines(Text(details, muted=True))] if details else []),
+            ]
+        )
+
+    def _field_blocks(self, interface_terms: InterfaceTerms, anchor: str) -> Iterator[Block]:
+        message = interface_terms.interface.message
+        if message is None:
+            return
+        if message in self.anchors_by_message:
+            first_link = Text("the first interface that carries it", ref=self.anchors_by_message[message])
+            yield Paragraph(
+                inline_text.to_inlines("The fields of ", Text(message, code=True), " stand at ", first_link, ".")
+            )
+            return
+        # The writer is stateful: sections must be written in the order of the document.
+        self.anchors_by_message[message] = anchor
+        if interface_terms.field_rows:
+            yield message_fields.field_table(message, interface_terms.field_rows)
+        else:
+            remark = (
+                "has no fields."
+                if interface_terms.field_rows is not None
+                else "is not held: its fields cannot be shown."
+            )
+            lead = "" if interface_terms.field_rows is not None else "The definition of "
+            yield Paragraph(inline_text.to_inlines(lead, Text(message, code=True), f" {remark}"))
+
+    def _chain_tables(self, interface_terms: InterfaceTerms) -> Iterator[Block]:
+        rows = tuple(
+            (
+                inline_text.to_inlines(self.lookup.architecture.chains[chain.id].title),
+                inline_text.to_inlines(value_format.display_duration(chain.bound)),
+                inline_text.to_inlines(value_format.display_duration(chain.deadline)) if chain.deadline else (),
+                inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
+            )
+            for chain in interface_terms.chains
+        )
+        if rows:
+            columns = (Column("Chain", 1.8), Column("At the latest", 0.9, "right"), Column("Deadline", 0.8, "right"))
+            name = f"table:through/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
+            caption = f"{interface_terms.title}: chains that pass through it"
+            yield tidy(Table(name, caption, (*columns, Column("Verdict", 0.7)), rows))
+
+
+def _change_row(change: TermChange) -> tuple[Inlines, ...]:
+    return (
+        inline_text.to_inlines(change.name),
+        inline_text.to_inlines(Text(SIGNED_KINDS[change.kind], change=change.kind)),
+        inline_text.to_inlines(shorten_value(change.before)) if change.before is not None else (),
+        inline_text.to_inlines(shorten_value(change.after)) if change.after is not None else (),
+    )
+
+
+def shorten_value(text: str) -> str:
+    """Shorten a long value, with the number of omitted characters."""
+    return (
+        text
+        if len(text) <= _MAX_VALUE_LENGTH
+        else f"{text[:_MAX_VALUE_LENGTH]} … ({len(text) - _MAX_VALUE_LENGTH} more characters)"
+    )
+
+
+def _further_facts(interface_terms: InterfaceTerms) -> Iterator[tuple[str, Inlines]]:
+    """Yield the requirements behind the interface, and its open points."""
+    if interface_terms.requirements:
+        yield "Requirements", inline_text.join_lines(interface_terms.requirements)
+    if interface_terms.findings:
+        yield (
+            "Open points",
+            inline_text.join_lines(
+                inline_text.message_to_inlines(f"{finding.severity}: {finding.message}")
+                for finding in interface_terms.findings
+            ),
+        )

@@ -1,0 +1,220 @@
+"""Find the interfaces between two partners: each output of one that the other reads, with all its readers.
+
+An end belongs to the owners of its component, and to those of the nodes that carry the port if they differ. If both
+ends of a flow belong to both partners, it is theirs together and not between them. Topics that join nodes of both
+without a connection (/tf, for instance) are interfaces too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Input, Output
+from archgen.model.message_types import flow_of
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.views.lookup import Lookup
+
+InterfaceFlow = Literal["topic", "service", "action", "physical"]
+PartnerPair = tuple[str, str]
+"""Ids of two partners; for an interface: the giver, then the taker."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerInterface:
+    """What one partner gives another: an output, or (`output` is None) a topic that only their nodes share.
+
+    `key` is the output's complete id, or the topic's name. `giver_endpoints` and `taker_endpoints` are endpoints of
+    nodes, the latter only of this partner; `inputs` are the taker's ports; `other_inputs` those of everybody else.
+    """
+
+    key: str
+    pair: PartnerPair
+    flow: InterfaceFlow
+    output: Output | None = None
+    inputs: tuple[Input, ...] = ()
+    other_inputs: tuple[Input, ...] = ()
+    giver_endpoints: tuple[Endpoint, ...] = ()
+    taker_endpoints: tuple[Endpoint, ...] = ()
+    type: str | None = None
+    message: str | None = None
+
+    @property
+    def anchor(self) -> str:
+        """Return the anchor of its section; it includes the giver, since a topic may flow both ways."""
+        return f"interface:{self.key}:{self.pair[0]}"
+
+    @property
+    def topic_names(self) -> tuple[str, ...]:
+        """Return the topics (services, actions) that carry it."""
+        return tuple(dict.fromkeys(endpoint.name for endpoint in self.giver_endpoints))
+
+
+def find_interfaces_between(lookup: Lookup, first_partner: str, second_partner: str) -> tuple[PartnerInterface, ...]:
+    """Return the interfaces between two partners, those the first one gives before those of the second."""
+    finder = _InterfaceFinder(lookup, (first_partner, second_partner))
+    interfaces = [*finder.find_output_interfaces(), *finder.find_topic_interfaces()]
+    return tuple(
+        interface for giver in (first_partner, second_partner) for interface in interfaces if interface.pair[0] == giver
+    )
+
+
+def foreign_owners(architecture: Architecture, node: Node) -> tuple[str, ...]:
+    """Return a node's owners if somebody wrote others than those of its components."""
+    component_owners = {owner for component in node.implements for owner in architecture.components[component].owners}
+    return node.owners if set(node.owners) != component_owners else ()
+
+
+@dataclass(frozen=True, slots=True)
+class _InterfaceFinder:
+    lookup: Lookup
+    pair: PartnerPair
+    _endpoints_by_port: dict[str, list[Endpoint]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for endpoint in self.lookup.architecture.endpoints:
+            if endpoint.port is not None:
+                self._endpoints_by_port.setdefault(
+                    f"{endpoint.use in {'publishes', 'serves'}} {endpoint.port}", []
+                ).append(endpoint)
+
+    def find_output_interfaces(self) -> Iterator[PartnerInterface]:
+        """Yield an interface for each output and direction: the connections between components."""
+        architecture = self.lookup.architecture
+        readers: dict[tuple[str, PartnerPair], dict[str, None]] = {}
+        other_readers: dict[str, dict[str, None]] = {}
+        for edge in architecture.edges:
+            direction = self._find_direction(architecture.outputs[edge.output], architecture.inputs[edge.input])
+            if direction:
+                readers.setdefault((edge.output, direction), {})[edge.input] = None
+            else:
+                other_readers.setdefault(edge.output, {})[edge.input] = None
+        output_order = {output: position for position, output in enumerate(architecture.outputs)}
+        for (output, direction), inputs in sorted(
+            readers.items(), key=lambda reader_entry: output_order[reader_entry[0][0]]
+        ):
+            yield self._make_output_interface(
+                architecture.outputs[output], direction, list(inputs), list(other_readers.get(output, ()))
+            )
+
+    def _make_output_interface(
+        self, output: Output, direction: PartnerPair, input_ids: Iterable[str], other_ids: Iterable[str]
+    ) -> PartnerInterface:
+        architecture = self.lookup.architecture
+        partner_inputs = [architecture.inputs[input_id] for input_id in input_ids]
+        message = architecture.message_of(output)
+        return PartnerInterface(
+            output.id,
+            direction,
+            "physical" if output.physical else flow_of(message),
+            output,
+            tuple(partner_inputs),
+            tuple(architecture.inputs[input_id] for input_id in other_ids),
+            self._writing_endpoints(output),
+            tuple(endpoint for port in partner_inputs for endpoint in self._reading_endpoints(port, output)),
+            output.type,
+            message,
+        )
+
+    def _writing_endpoints(self, output: Output) -> tuple[Endpoint, ...]:
+        return tuple(self._endpoints_by_port.get(f"True {output.id}", ()))
+
+    def _reading_endpoints(self, port: Input, output: Output) -> tuple[Endpoint, ...]:
+        return tuple(
+            endpoint
+            for endpoint in self._endpoints_by_port.get(f"False {port.id}", ())
+            if output.id in endpoint.sources
+        )
+
+    def _find_direction(self, output: Output, port: Input) -> PartnerPair | None:
+        """Return who gives whom: by the components' owners, else by those of their nodes as well."""
+        architecture = self.lookup.architecture
+        giver, taker = architecture.components[output.component], architecture.components[port.component]
+        if set(self.pair) <= set(giver.owners) and set(self.pair) <= set(taker.owners):
+            return None
+        return self._direction_between(giver.owners, taker.owners) or self._direction_between(
+            (*giver.owners, *self._foreign_node_owners(self._writing_endpoints(output))),
+            (*taker.owners, *self._foreign_node_owners(self._reading_endpoints(port, output))),
+        )
+
+    def _foreign_node_owners(self, endpoints: Iterable[Endpoint]) -> Iterator[str]:
+        architecture = self.lookup.architecture
+        return (
+            owner for endpoint in endpoints for owner in foreign_owners(architecture, architecture.nodes[endpoint.node])
+        )
+
+    def _direction_between(self, givers: Collection[str], takers: Collection[str]) -> PartnerPair | None:
+        first, second = self.pair
+        # Owned together at both ends: nothing flows between them.
+        if {first, second} <= set(givers) and {first, second} <= set(takers):
+            return None
+        if first in givers and second in takers:
+            return first, second
+        return (second, first) if second in givers and first in takers else None
+
+    def find_topic_interfaces(self) -> Iterator[PartnerInterface]:
+        """Yield an interface for each topic that joins nodes of both partners without a connection."""
+        for topic in self.lookup.architecture.topics.values():
+            endpoints_by_direction: dict[PartnerPair, tuple[dict[int, Endpoint], dict[int, Endpoint]]] = {}
+            for writer in filter(self._is_of_pair, topic.writers):
+                for reader in filter(self._is_of_pair, topic.readers):
+                    direction = self._direction_of_pair(writer, reader)
+                    if direction:
+                        givers, takers = endpoints_by_direction.setdefault(direction, ({}, {}))
+                        # By object identity: endpoints are not hashable by value, and each must be listed once.
+                        givers[id(writer)], takers[id(reader)] = writer, reader
+            for direction, (givers, takers) in endpoints_by_direction.items():
+                yield self._make_topic_interface(topic, direction, tuple(givers.values()), tuple(takers.values()))
+
+    def _direction_of_pair(self, writer: Endpoint, reader: Endpoint) -> PartnerPair | None:
+        # What is connected as ports is an interface of the output already.
+        if writer.node == reader.node or (writer.port is not None and writer.port in reader.sources):
+            return None
+        return self._direction_between(self._endpoint_owners(writer), self._endpoint_owners(reader))
+
+    def _is_of_pair(self, endpoint: Endpoint) -> bool:
+        return not set(self.pair).isdisjoint(self._endpoint_owners(endpoint))
+
+    def _endpoint_owners(self, endpoint: Endpoint) -> tuple[str, ...]:
+        architecture = self.lookup.architecture
+        written_owners = (
+            architecture.components[endpoint.component].owners
+            if endpoint.component
+            else architecture.nodes[endpoint.node].owners
+        )
+        return (*written_owners, *foreign_owners(architecture, architecture.nodes[endpoint.node]))
+
+    def _make_topic_interface(
+        self, topic: Topic, direction: PartnerPair, givers: tuple[Endpoint, ...], takers: tuple[Endpoint, ...]
+    ) -> PartnerInterface:
+        message = topic.messages[0] if len(topic.messages) == 1 else None
+        type_ = topic.types[0] if len(topic.types) == 1 else None
+        return PartnerInterface(
+            topic.name,
+            direction,
+            topic.flow,
+            giver_endpoints=givers,
+            taker_endpoints=takers,
+            type=type_,
+            message=message,
+        )
+
+
+def components_at_ends(
+    lookup: Lookup, interface: PartnerInterface
+) -> tuple[tuple[Component, ...], tuple[Component, ...]]:
+    """Return the giving and the taking components, each once."""
+    architecture = lookup.architecture
+    giving_ids = (
+        [interface.output.component]
+        if interface.output
+        else [endpoint.component for endpoint in interface.giver_endpoints]
+    )
+    taking_ids = [endpoint.component for endpoint in (interface.inputs or interface.taker_endpoints)]
+    components_by_id: Mapping[str, Component] = architecture.components
+    return (
+        tuple(components_by_id[name] for name in dict.fromkeys(giving_ids) if name),
+        tuple(components_by_id[name] for name in dict.fromkeys(taking_ids) if name),
+    )

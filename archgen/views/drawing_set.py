@@ -1,0 +1,39 @@
+"""All drawings of an architecture, graphs and charts alike, by id."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from archgen.model.selector_evaluation import Selection
+from archgen.views import graphs
+from archgen.views.chart_shapes import Drawing
+from archgen.views.lookup import Lookup
+from archgen.views.timing import chain_charts
+
+
+def make_drawings(
+    lookup: Lookup, selection: Selection | None, level: Literal["functional", "implementation"]
+) -> dict[str, Drawing]:
+    """Make the drawings of one level, or of a selection; of charts only those that show something selected."""
+    element_graphs = graphs.make_all_graphs(lookup.architecture, selection, lookup.findings, lookup.timing)
+    timing_charts = chain_charts.make_timing_charts(lookup)
+    drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs} | {
+        chart.id: chart for chart in timing_charts
+    }
+    # Charts of chains stay: the report on the functional level has a chapter on chains, too.
+    return (
+        drawings_by_id
+        if level == "implementation"
+        else {
+            drawing_id: drawing
+            for drawing_id, drawing in drawings_by_id.items()
+            if not _is_implementation_drawing(drawing_id)
+        }
+    )
+
+
+def _is_implementation_drawing(drawing_id: str) -> bool:
+    """Whether a drawing shows nodes, hosts or timing, which the functional level leaves out."""
+    return drawing_id in {"ros", "hosts", "timing", "load"} or drawing_id.startswith(
+        ("implementation/", "timing/", "load/")
+    )

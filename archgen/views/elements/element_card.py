@@ -1,0 +1,312 @@
+"""An element's card: what `archgen show` prints for one element of any kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group, Input, Output
+from archgen.model.node import Node, Topic
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+
+
+@dataclass(frozen=True, slots=True)
+class ElementCard:
+    """Kind, id and title of an element, where it is defined, its facts, and lists below subheadings."""
+
+    kind: str
+    id: str
+    title: str
+    span: Span
+    facts: tuple[tuple[str, str], ...]
+    lists: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+
+def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
+    """Return all elements by kind; the keys appear as headings of cards."""
+    a = architecture
+    return {
+        # An id that several kinds share is found in this order.
+        "group": a.groups,
+        "component": a.components,
+        "output": a.outputs,
+        "input": a.inputs,
+        "node": a.nodes,
+        "topic": a.topics,
+        "type": a.types,
+        "requirement": a.requirements,
+        "use case": a.use_cases,
+        "partner": a.partners,
+        "host": a.hosts,
+        "container": a.containers,
+        "link": a.links,
+        "chain": a.chains,
+        "view": a.views,
+        "policy": a.policies,
+    }
+
+
+def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:
+    """Return each element's id with the kinds of element that have it."""
+    result: dict[str, list[str]] = {}
+    for kind, elements in _elements_by_kind(lookup.architecture).items():
+        for element_id in elements:
+            result.setdefault(element_id, []).append(kind)
+    return result
+
+
+def find_elements(lookup: Lookup, name: str) -> list[tuple[str, str]]:
+    """Find the elements that a name may mean, as (kind, id) pairs.
+
+    Full ids win; then ids that end in the name; then titles of groups and components, ignoring case.
+    """
+    kinds_of = kinds_by_id(lookup)
+    if name in kinds_of:
+        return [(kind, name) for kind in kinds_of[name]]
+    folded_name = name.casefold()
+    # `.` ends a group or component in an id, `/` a namespace in a topic or node: `scan` finds `/lidar/scan`.
+    suffix_matches = [
+        (kind, key) for key, kinds in kinds_of.items() if key.endswith((f".{name}", f"/{name}")) for kind in kinds
+    ]
+    if suffix_matches:
+        return suffix_matches
+    return [
+        (kind, key)
+        for key, kinds in kinds_of.items()
+        for kind in kinds
+        if _element_title(lookup, kind, key).casefold() == folded_name
+    ]
+
+
+def _element_title(lookup: Lookup, kind: str, element_id: str) -> str:
+    """Return the title of a group or component, the id of anything else."""
+    architecture = lookup.architecture
+    if kind == "group":
+        return architecture.groups[element_id].title
+    return architecture.components[element_id].title if kind == "component" else element_id
+
+
+def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
+    """Make the card of one element."""
+    architecture = lookup.architecture
+    if kind == "group":
+        return _group_card(architecture.groups[element_id])
+    if kind == "component":
+        return _component_card(lookup, architecture.components[element_id])
+    if kind in {"input", "output"}:
+        return _port_card(
+            lookup, architecture.inputs[element_id] if kind == "input" else architecture.outputs[element_id]
+        )
+    if kind == "node":
+        return _node_card(lookup, architecture.nodes[element_id])
+    if kind == "topic":
+        return _topic_card(lookup, architecture.topics[element_id])
+    return _generic_card(lookup, kind, element_id)
+
+
+def _group_card(group: Group) -> ElementCard:
+    facts = [
+        ("owner", ", ".join(group.owners) or "?"),
+        ("tags", ", ".join(group.tags)),
+        ("description", group.description or ""),
+    ]
+    component_lines = tuple(f"{c.name}: {c.title}" for c in group.components.values())
+    return ElementCard(
+        "group", group.id, group.title, group.at, _known_facts(facts), (("components", component_lines),)
+    )
+
+
+def _component_card(lookup: Lookup, component: Component) -> ElementCard:
+    facts = [
+        ("group", component.group),
+        ("owner", ", ".join(component.owners) or "?"),
+        ("role", component.role or "?"),
+        ("functionality", " ".join((component.functionality or "?").split())),
+        ("requirements", "; ".join(use.text for use in component.requirements)),
+        ("timing", inline_text.format_short_timing(component.timing)),
+        ("tags", ", ".join(component.tags)),
+    ]
+    architecture = lookup.architecture
+    inputs = tuple(
+        f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}" for port in component.inputs.values()
+    )
+    outputs = tuple(
+        f"{port.name} ({port.type or '?'}) -> {', '.join(_list_readers(lookup, port)) or 'nobody'}"
+        for port in component.outputs.values()
+    )
+    nodes = tuple(
+        f"{node.id} ({architecture.nodes[node.id].at if node.written else 'still to be decided'})"
+        for node in lookup.nodes_of.get(component.id, ())
+    )
+    lists = (
+        ("inputs", inputs),
+        ("outputs", outputs),
+        ("nodes", nodes),
+        ("findings", tuple(_format_findings(lookup, component.id))),
+    )
+    return ElementCard("component", component.id, component.title, component.at, _known_facts(facts), lists)
+
+
+def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:
+    """Describe where an input gets its data: connections with their types, then what is outside."""
+    for connection in port.connections:
+        wildcard = "" if connection.kind == "output" else ".*"
+        types = dict.fromkeys(lookup.architecture.outputs[output].type or "?" for output in connection.outputs)
+        yield f"{connection.target}{wildcard} ({', '.join(types)})"
+    if port.external:
+        yield f"outside: {port.external}"
+
+
+def _list_readers(lookup: Lookup, port: Output) -> list[str]:
+    """Return who reads an output."""
+    readers = [connection.input for connection in lookup.readers_of.get(port.id, ())]
+    return readers + ([f"outside: {port.external}"] if port.external else [])
+
+
+def _format_findings(lookup: Lookup, element_id: str) -> Iterator[str]:
+    """Format the findings about an element."""
+    for finding in lookup.findings_of.get(element_id, ()):
+        yield f"{finding.severity}[{finding.rule}]: {finding.message}"
+
+
+def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
+    facts = [
+        ("component", port.component),
+        ("type", port.type or ("?" if isinstance(port, Output) else "")),
+        ("medium", "physical" if port.physical else "digital"),
+        ("description", port.description or ""),
+    ]
+    if isinstance(port, Output):
+        facts.append(("message", lookup.architecture.message_of(port) or ("" if port.physical else "?")))
+        readers = ("readers", tuple(_list_readers(lookup, port)))
+        return ElementCard("output", port.id, port.name, port.at, _known_facts(facts), (readers,))
+    return ElementCard(
+        "input",
+        port.id,
+        port.name,
+        port.at,
+        _known_facts(facts),
+        (("sources", tuple(_describe_sources(lookup, port))),),
+    )
+
+
+def _node_card(lookup: Lookup, node: Node) -> ElementCard:
+    facts = [
+        ("implements", ", ".join(node.implements)),
+        ("owner", ", ".join(node.owners) or "?"),
+        ("ROS name", node.full_name),
+        ("kind", ", ".join(node.kinds)),
+        ("status", node.status or "?"),
+        ("package", node.package or "?"),
+        ("executable", node.executable or ""),
+        ("host", node.host or "?"),
+        ("container", node.container or ""),
+        (
+            "timing",
+            "; ".join(filter(None, (inline_text.format_short_timing(timing) for timing in node.timing.values()))),
+        ),
+    ]
+    lines = tuple(
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {endpoint.name} ({endpoint.message or '?'})"
+        for endpoint in lookup.endpoints_of.get(node.id, ())
+    )
+    lists = (("topics, services and actions", lines), ("findings", tuple(_format_findings(lookup, node.id))))
+    return ElementCard("node", node.id, node.title, node.at, _known_facts(facts), lists)
+
+
+def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
+    """Make the card of a topic, service or action."""
+    facts = [
+        ("message", ", ".join(topic.messages) or "?"),
+        ("types", ", ".join(topic.types)),
+        ("size", lookup.format_size(topic)),
+    ]
+    endpoints_by_role = (("from", topic.writers), ("to", topic.readers))
+    lists = tuple(
+        (name, tuple(f"{endpoint.node} ({inline_text.format_qos(endpoint.qos)})" for endpoint in endpoints))
+        for name, endpoints in endpoints_by_role
+    )
+    # Nothing declares a topic by itself: its first endpoint that stands in a file has to do.
+    span = next(
+        (endpoint.at for endpoint in (*topic.writers, *topic.readers) if endpoint.at.file), Span("", 0, 0, 0, 0)
+    )
+    return ElementCard(topic.flow, topic.name, topic.name, span, _known_facts(facts), lists)
+
+
+def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
+    """Make the card of a kind without a card of its own: fields that exist, and who uses the element."""
+    architecture = lookup.architecture
+    element = _elements_by_kind(architecture)[kind][element_id]
+    facts = [
+        # One list of field names serves all these kinds; those that an element lacks are empty and dropped.
+        (
+            key,
+            lookup.format_size(element)
+            if kind == "type" and key == "size"
+            else _format_fact(getattr(element, key, None)),
+        )
+        for key in (
+            "message",
+            "size",
+            "comment",
+            "description",
+            "use_cases",
+            "host",
+            "cores",
+            "threads",
+            "connects",
+            "bandwidth",
+            "deadline",
+            "show",
+        )
+    ]
+    lists: list[tuple[str, tuple[str, ...]]] = []
+    if kind == "type":
+        lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
+    elif kind == "requirement":
+        lists.append(
+            ("served by", tuple(component.id for component in lookup.components_for_requirement.get(element_id, ())))
+        )
+    elif kind == "partner":
+        facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
+        elements_by_kind = (
+            ("groups", architecture.groups),
+            ("components", architecture.components),
+            ("nodes", architecture.nodes),
+        )
+        lists += [
+            (kind, owned_ids)
+            for kind, elements in elements_by_kind
+            if (owned_ids := _owned_elements(elements.values(), element_id))
+        ]
+    elif kind in {"host", "container"}:
+        # `kind` names the node's field here: `Node.host` or `Node.container`.
+        lists.append(
+            ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
+        )
+    elif kind == "chain":
+        lists.append(("through", tuple(point.id for point in architecture.chains[element_id].through)))
+    return ElementCard(
+        kind, element_id, getattr(element, "title", element_id), element.at, _known_facts(facts), tuple(lists)
+    )
+
+
+def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:
+    """Return the ids of the elements that a partner owns, alone or with others."""
+    return tuple(item.id for item in elements if partner_id in item.owners)
+
+
+def _format_fact(value: object) -> str:
+    """Format a field's value on one line."""
+    if value is None:
+        return ""
+    return ", ".join(map(str, value)) if isinstance(value, tuple) else " ".join(str(value).split())
+
+
+def _known_facts(facts: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Drop facts without a value."""
+    return tuple((name, value) for name, value in facts if value)

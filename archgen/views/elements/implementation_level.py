@@ -1,0 +1,149 @@
+"""The implementation level in documents: a node, its endpoints, its parameters and where it runs."""
+
+from __future__ import annotations
+
+from archgen.model.node import Endpoint, Node
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.timing import element_timing
+
+_USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
+"""Endpoints are listed in the direction of the data: inputs, outputs, then services and actions."""
+_USE_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
+
+
+def make_implementation_blocks(lookup: Lookup, component_id: str) -> tuple[Block, ...]:
+    """Return the figure of a component's nodes with their neighbours."""
+    title = lookup.architecture.components[component_id].title
+    return (
+        Figure(
+            f"figure:implementation/{component_id}",
+            f"implementation/{component_id}",
+            f"{title}: implementation",
+            f"The nodes that implement {title} with their topics, services and actions.",
+        ),
+    )
+
+
+def make_node_blocks(lookup: Lookup, node: Node) -> tuple[Block, ...]:
+    """Describe a node: facts, endpoints and parameters."""
+    blocks: list[Block] = []
+    if not node.written:
+        blocks.append(
+            Paragraph(
+                inline_text.to_inlines("Nobody has decided yet which node implements this: a planned one stands in."),
+                "note",
+            )
+        )
+    blocks.append(Facts(tuple(_node_facts(lookup, node))))
+    if node.description:
+        blocks.append(Markdown(node.description))
+    endpoints = lookup.endpoints_of.get(node.id, ())
+    if endpoints:
+        blocks.append(_endpoint_table(node, endpoints))
+    else:
+        blocks.append(Paragraph(inline_text.to_inlines(Text("It uses no topic, service or action.", muted=True))))
+    if node.parameters:
+        blocks.append(_parameter_table(node))
+    return tuple(blocks)
+
+
+def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
+    """Return a node's facts, without those that have no value."""
+    architecture = lookup.architecture
+    kind = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
+    rows = [
+        (
+            "Implements",
+            inline_text.join_inlines(
+                (inline_text.component_link(architecture.components[c]),) for c in node.implements
+            ),
+        ),
+        ("ROS name", inline_text.to_inlines(Text(node.full_name, code=True))),
+        ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
+        ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
+        ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
+        ("Runs on", _location_cell(node)),
+        ("Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)),
+        ("Tags", inline_text.to_inlines(", ".join(node.tags)) if node.tags else ()),
+        ("Links", inline_text.link_urls(node.urls.items())),
+    ]
+    for component, timing in node.timing.items():
+        # One timing for each activity; the key is "" for a node that implements no component.
+        name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
+        sentence = inline_text.format_timing_sentence(timing)
+        rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
+    rows += element_timing.make_node_facts(lookup, node)
+    return [(name, value) for name, value in rows if value]
+
+
+def _program_parts(node: Node) -> Inlines:
+    """Return the executable and the plugin of a node, each after a comma."""
+    parts = (("executable", node.executable), ("plugin", node.plugin))
+    return tuple(part for name, value in parts if value for part in (Text(f", {name} "), Text(value, code=True)))
+
+
+def _location_cell(node: Node) -> Inlines:
+    """Return the host of a node, and the container whose process it shares."""
+    host = _link_or_empty(node.host, "host") or inline_text.UNKNOWN_INLINES
+    return (*host, Text(", in the process "), *_link_or_empty(node.container, "container")) if node.container else host
+
+
+def _link_or_empty(element_id: str | None, kind: str) -> Inlines:
+    """Link to an element by its id; empty for None."""
+    return inline_text.to_inlines(Text(element_id, ref=f"{kind}:{element_id}")) if element_id else ()
+
+
+def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
+    rows = tuple(
+        (
+            inline_text.to_inlines(_USE_LABELS[endpoint.use]),
+            inline_text.to_inlines(inline_text.topic_link(endpoint.name), *_internal_mark(endpoint)),
+            inline_text.to_inlines(Text(endpoint.message, code=True))
+            if endpoint.message
+            else inline_text.UNKNOWN_INLINES,
+            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" else (),
+        )
+        for endpoint in sorted(endpoints, key=lambda e: _USE_ORDER[e.use])
+    )
+    columns = (Column("Use", 0.7), Column("Name", 1.9), Column("Message", 2.0), Column("Port", 0.8), Column("QoS", 1.3))
+    return Table(f"table:endpoints/{node.id}", f"{node.id}: topics, services and actions", columns, rows)
+
+
+def _internal_mark(endpoint: Endpoint) -> Inlines:
+    return (Text(" internal", muted=True),) if endpoint.internal else ()
+
+
+def _parameter_table(node: Node) -> Table:
+    rows = tuple(
+        (inline_text.to_inlines(Text(name, code=True)), inline_text.to_inlines(Text(value, code=True)))
+        for name, value in _flatten_parameters(node)
+    )
+    columns = (Column("Parameter"), Column("Value"))
+    return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows)
+
+
+def _flatten_parameters(node: Node) -> list[tuple[str, str]]:
+    """Return nested parameters as (dotted name, text) pairs, as `ros2 param list` shows them."""
+    rows: list[tuple[str, str]] = []
+    # A stack taken from its end: it is filled in reverse, so that parameters keep the order of the file.
+    pending: list[tuple[str, object]] = list(node.parameters.items())[::-1]
+    while pending:
+        name, value = pending.pop()
+        # An empty mapping has no leaf to show, so it is written as a value.
+        if isinstance(value, dict) and value:
+            pending += [(f"{name}.{key}", item) for key, item in reversed(list(value.items()))]
+        else:
+            rows.append((name, _format_parameter(value)))
+    return rows
+
+
+def _format_parameter(value: object) -> str:
+    """Format a parameter in YAML's spelling."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return f"[{', '.join(_format_parameter(item) for item in value)}]"
+    return "" if value is None else str(value)

@@ -1,0 +1,227 @@
+"""The picture of changed components and their connections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from archgen.compare import Comparison
+from archgen.views.changes.change_wording import CHANGE_SIGNS
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
+from archgen.views.graphs.changes.group_folding import fold_to_budget
+from archgen.views.graphs.changes.merged_versions import (
+    ChangeNotes,
+    MergedEdge,
+    collect_change_notes,
+    describe_changed_flows,
+    merged_edges,
+)
+from archgen.views.graphs.changes.picture_budget import PictureBudget
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.shapes import Box, Cluster, ElementChange, Graph
+
+GRAPH_ID = "changes/components"
+_MAX_NAMES = 12
+
+
+@dataclass(frozen=True, slots=True)
+class _OverlaidComponents:
+    """The two versions, laid over each other."""
+
+    comparison: Comparison
+    old_lookup: Lookup
+    new_lookup: Lookup
+    change_notes: ChangeNotes
+    lines: Sequence[ConnectionLine]
+
+    @property
+    def changed_components(self) -> frozenset[str]:
+        """Return the components that changed themselves."""
+        return frozenset(self.change_notes.component_changes)
+
+    def group_of(self, name: str) -> str:
+        """Return the group of a component, by common ids."""
+        item = self.new_lookup.architecture.components.get(name)
+        return item.group if item else self.comparison.matched_ids.common_id("group", name.partition(".")[0])
+
+
+def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Graph | None:
+    """Draw what changed and its surroundings; None if no component and no connection changed."""
+    before, after = comparison.before.architecture, comparison.after.architecture
+    change_notes = collect_change_notes(comparison)
+    overlay = _OverlaidComponents(
+        comparison,
+        make_lookup(before),
+        make_lookup(after, comparison.new_findings),
+        change_notes,
+        tuple(_connection_lines(comparison, change_notes)),
+    )
+    ends = {end for line in overlay.lines if line.change for end in line.ends}
+    changed_ids = {name for name in overlay.changed_components | ends if _component_exists(overlay, name)}
+    if not changed_ids:
+        return None
+    neighbours = {
+        end for line in overlay.lines if not changed_ids.isdisjoint(line.ends) for end in line.ends
+    } - changed_ids
+    nearest_neighbours = {
+        end for line in overlay.lines if not overlay.changed_components.isdisjoint(line.ends) for end in line.ends
+    } - changed_ids
+    # `neighbours` includes those behind a changed connection only; they are counted, but never drawn.
+    shown_components = (
+        changed_ids | nearest_neighbours
+        if len(changed_ids | nearest_neighbours) <= budget.boxes_with_neighbours
+        else changed_ids
+    )
+    drawn_lines = [
+        line
+        for line in overlay.lines
+        if shown_components.issuperset(line.ends)
+        and (line.change or _is_worth_drawing(line, overlay, shown_components, changed_ids))
+    ]
+    undrawn_count = len(neighbours - shown_components)
+    notes = (f"{count_noun(undrawn_count, 'unchanged neighbour')} not drawn.",) if undrawn_count else ()
+    graph = Graph(
+        GRAPH_ID,
+        "What changed: components and connections",
+        "framed",
+        tuple(_draw_boxes(overlay, shown_components)),
+        bundle_arrows(drawn_lines),
+        tuple(_draw_frames(overlay, shown_components)),
+        direction=after.layout.direction or "left-right",
+        notes=notes,
+        alt=_alternative_text(overlay),
+    )
+    graph = fold_to_budget(graph, budget)
+    return add_legend_keys(replace(graph, asked=sum(arrow.count for arrow in graph.arrows)))
+
+
+def _is_worth_drawing(
+    line: ConnectionLine, overlay: _OverlaidComponents, shown_components: set[str], changed_ids: set[str]
+) -> bool:
+    """Whether an unchanged connection is worth its line: it touches a changed component, or joins two drawn anyway."""
+    return (
+        not overlay.changed_components.isdisjoint(line.ends)
+        or (shown_components == changed_ids and changed_ids.issuperset(line.ends))
+        or len(shown_components) <= len(changed_ids)
+    )
+
+
+def _component_exists(overlay: _OverlaidComponents, name: str) -> bool:
+    return name in overlay.new_lookup.architecture.components or _old_component_id(overlay, name) is not None
+
+
+def _old_component_id(overlay: _OverlaidComponents, name: str) -> str | None:
+    """Return the old id of a component, None if it is new."""
+    old_id = overlay.comparison.matched_ids.old_ids.get("component", {}).get(name, name)
+    return old_id if old_id in overlay.old_lookup.architecture.components else None
+
+
+def _connection_lines(comparison: Comparison, change_notes: ChangeNotes) -> Iterator[ConnectionLine]:
+    """Yield all connections of both versions with their change, except those that may not have been read."""
+    old_edges = merged_edges(comparison.before.architecture, comparison.matched_ids)
+    new_edges = merged_edges(comparison.after.architecture, type(comparison.matched_ids)())
+    may_be_unread = comparison.versions.may_be_unread
+    for key in (*new_edges, *(key for key in old_edges if key not in new_edges)):
+        edge = new_edges.get(key) or old_edges[key]
+        if key in new_edges and key in old_edges:
+            sentences = tuple(describe_changed_flows(comparison.after.architecture, edge, change_notes))
+            yield _connection_line(edge, "changed" if sentences else None, sentences)
+        # In a part that could not be read: not known to be removed or added.
+        elif may_be_unread(("output", edge.output_id)) or may_be_unread(("input", edge.input_id)):
+            yield from [_connection_line(edge, None, ())] if key in new_edges else []
+        elif edge.input_id in change_notes.sentences or not change_notes.component_changes.keys().isdisjoint(
+            (edge.tail, edge.head)
+        ):
+            yield _connection_line(
+                edge, "added" if key in new_edges else "removed", tuple(change_notes.sentences.get(edge.input_id, ()))
+            )
+
+
+def _connection_line(edge: MergedEdge, change: ElementChange | None, sentences: tuple[str, ...]) -> ConnectionLine:
+    connection_text = f"{edge.output_id} → {edge.input_id}" + (f" ({edge.label})" if edge.label else "")
+    sentence = "\n".join((f"{CHANGE_SIGNS[change]} {connection_text}" if change else connection_text, *sentences))
+    return ConnectionLine(edge.tail, edge.head, edge.style, edge.label, change, sentence, optional=edge.optional)
+
+
+def _draw_boxes(overlay: _OverlaidComponents, shown_components: set[str]) -> Iterator[Box]:
+    """Yield the components in the order of the second version, removed ones at the end of their group."""
+    component_order = {name: position for position, name in enumerate(overlay.new_lookup.architecture.components)}
+    group_order = {name: position for position, name in enumerate(overlay.new_lookup.architecture.groups)}
+    last_position = len(component_order)
+    for name in sorted(
+        shown_components,
+        key=lambda name: (
+            group_order.get(overlay.group_of(name), last_position),
+            component_order.get(name, last_position),
+            name,
+        ),
+    ):
+        yield _draw_box(overlay, name)
+
+
+def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
+    change = overlay.change_notes.component_changes.get(name)
+    component = overlay.new_lookup.architecture.components.get(name)
+    component_box = (
+        element_boxes.component_box(overlay.new_lookup, component) if component else _draw_removed_box(overlay, name)
+    )
+    group_id = overlay.group_of(name)
+    plain_box = replace(
+        component_box, id=name, style="component", colour=None, cluster=group_id, ref=f"changes:{group_id}"
+    )
+    if change is None:
+        return replace(plain_box, emphasis="neighbour", badge=None)
+    tooltip_lines = (*overlay.change_notes.sentences.get(name, ()), component_box.tooltip)
+    return replace(
+        plain_box,
+        title=f"{CHANGE_SIGNS[change]} {component_box.title}",
+        change=change,
+        tooltip="\n".join(tooltip_lines),
+    )
+
+
+def _draw_removed_box(overlay: _OverlaidComponents, name: str) -> Box:
+    return replace(
+        element_boxes.component_box(
+            overlay.old_lookup, overlay.old_lookup.architecture.components[_old_component_id(overlay, name) or name]
+        ),
+        badge=None,
+    )
+
+
+def _draw_frames(overlay: _OverlaidComponents, shown_components: set[str]) -> Iterator[Cluster]:
+    group_change_kinds = {
+        (change.element_kind, change.element_id): change.kind
+        for change in overlay.comparison.changes
+        if change.element_kind == "group"
+    }
+    known_groups = {**overlay.old_lookup.architecture.groups, **overlay.new_lookup.architecture.groups}
+    for name in dict.fromkeys(box.cluster for box in _draw_boxes(overlay, shown_components) if box.cluster):
+        title = known_groups[name].title if name in known_groups else name
+        change_kind = group_change_kinds.get(("group", name))
+        sign = f"{CHANGE_SIGNS[change_kind]} " if change_kind and change_kind != "changed" else ""
+        yield Cluster(name, f"{sign}{title}", emphasis="neighbour", ref=f"changes:{name}", tooltip=title)
+
+
+def _alternative_text(overlay: _OverlaidComponents) -> str:
+    titles = {
+        name: _draw_box(overlay, name).title
+        for name in sorted(overlay.changed_components)
+        if _component_exists(overlay, name)
+    }
+    titles_by_kind: Mapping[str, list[str]] = {
+        # Without the sign and the blank that `_draw_box` puts before the title.
+        kind: [titles[name][2:] for name in titles if overlay.change_notes.component_changes[name] == kind]
+        for kind in ("added", "removed", "changed", "renamed")
+    }
+    phrases = [
+        f"{kind}: {', '.join(names[:_MAX_NAMES])}{', ...' if len(names) > _MAX_NAMES else ''}"
+        for kind, names in titles_by_kind.items()
+        if names
+    ]
+    counts = {kind: sum(line.change == kind for line in overlay.lines) for kind in ("added", "removed", "changed")}
+    phrases += [f"{count_noun(count, 'connection')} {kind}" for kind, count in counts.items() if count]
+    return "; ".join(phrases) + "."

@@ -1,0 +1,123 @@
+"""List what runs between components, as pictures count it: each connection, by the components at its ends.
+
+Data runs from the producer to the reader. A service or action is drawn from its client to its server, with an arrow
+of its own. A connection to a whole group is one flow for each component of the group that it takes something from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Connection
+from archgen.model.message_types import flow_of
+from archgen.views.shapes import Arrow
+
+FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentFlow:
+    """One connection between two components. `tail` and `head` are complete ids, in the direction of drawing."""
+
+    connection: Connection
+    tail: str
+    head: str
+    style: FlowStyle
+    types: tuple[str, ...]
+    optional: bool
+    sentence: str
+
+    @property
+    def label(self) -> str:
+        """The label beside the arrow: the type, or the number of types."""
+        if len(self.types) == 1:
+            return self.types[0]
+        return f"* {len(self.types)} types" if self.types else ""
+
+
+def list_flows(architecture: Architecture) -> tuple[ComponentFlow, ...]:
+    """Return all flows, in the order of the connections."""
+    return tuple(
+        flow for connection in architecture.connections for flow in _flows_of_connection(architecture, connection)
+    )
+
+
+def list_flows_at(architecture: Architecture, component_ids: Collection[str]) -> list[ComponentFlow]:
+    """Return the flows that begin or end at some components, in the order of the connections."""
+    inputs, outputs = architecture.inputs, architecture.outputs
+    # Connections are filtered before flows are made of them: every group's picture asks, so all of it stays linear.
+    touching = (
+        connection
+        for connection in architecture.connections
+        if inputs[connection.input].component in component_ids
+        or any(outputs[each].component in component_ids for each in connection.outputs if each in outputs)
+    )
+    candidates = (flow for connection in touching for flow in _flows_of_connection(architecture, connection))
+    return [flow for flow in candidates if flow.tail in component_ids or flow.head in component_ids]
+
+
+def _flows_of_connection(architecture: Architecture, connection: Connection) -> Iterable[ComponentFlow]:
+    port = architecture.inputs[connection.input]
+    outputs = [architecture.outputs[each] for each in connection.outputs if each in architecture.outputs]
+    for producer in dict.fromkeys(output.component for output in outputs):
+        producer_outputs = [output for output in outputs if output.component == producer]
+        style = flow_style(architecture, producer_outputs[0].id)
+        is_call = style in {"service", "action"}
+        names = ", ".join(output.name for output in producer_outputs)
+        types = tuple(dict.fromkeys(output.type for output in producer_outputs if output.type))
+        yield ComponentFlow(
+            connection,
+            port.component if is_call else producer,
+            producer if is_call else port.component,
+            style,
+            types,
+            port.optional,
+            f"{architecture.components[producer].title} · {names}"
+            f"{' (' + ', '.join(types) + ')' if types else ''}"
+            f" → {architecture.components[port.component].title} · {port.name}",
+        )
+
+
+def flow_style(architecture: Architecture, output_id: str) -> FlowStyle:
+    """Return the style of arrow for what an output carries."""
+    output = architecture.outputs[output_id]
+    if output.physical:
+        return "physical"
+    flow = flow_of(architecture.message_of(output))
+    return "data" if flow == "topic" else flow
+
+
+def merge_flows(
+    flows: Iterable[ComponentFlow],
+    find_ends: Callable[[ComponentFlow], tuple[str, str]],
+    *,
+    labels: bool,
+    by_style: bool = True,
+) -> tuple[Arrow, ...]:
+    """Merge flows with the same ends (and of the same style, if asked) into one arrow each."""
+    bundles: dict[tuple[str, str, FlowStyle], list[ComponentFlow]] = {}
+    for flow in flows:
+        tail, head = find_ends(flow)
+        bundles.setdefault((tail, head, flow.style if by_style else "data"), []).append(flow)
+    return tuple(
+        Arrow(
+            f"{tail}>{head}" + (f":{style}" if style != "data" else ""),
+            tail,
+            head,
+            label=_bundle_label(bundle) if labels else "",
+            style=style,
+            count=len(bundle),
+            optional=by_style and all(flow.optional for flow in bundle),
+            flows=tuple(flow.sentence for flow in bundle),
+        )
+        for (tail, head, style), bundle in bundles.items()
+    )
+
+
+def _bundle_label(bundle: list[ComponentFlow]) -> str:
+    """Return the types of a bundle, each on a line; of more than three the rest is counted."""
+    names = list(dict.fromkeys(flow.label for flow in bundle if flow.label))
+    return "\n".join(names) if len(names) <= 3 else "\n".join([*names[:2], f"and {len(names) - 2} more types"])  # noqa: PLR2004

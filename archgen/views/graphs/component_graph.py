@@ -1,0 +1,203 @@
+"""Draw one component at the functional level: its ports as rows, where each comes from and goes to.
+
+Arrows end at the port. A type is written once for all arrows out of an output. A whole component or group as source is
+one box with an asterisk on its arrow. Partners outside of the architecture are dashed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.message_types import flow_of
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun, format_short_timing
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Arrow, Box, Graph
+
+DrawnNeighbour = tuple[Box, Arrow]
+MAX_NEIGHBOURS = 40
+"""With more neighbours they are folded by group."""
+
+
+def draw_component(lookup: Lookup, component_id: str) -> Graph:
+    """Draw one component with its ports and neighbours."""
+    component = lookup.architecture.components[component_id]
+    drawn = [*_draw_inputs(lookup, component), *_draw_outputs(lookup, component)]
+    is_folded = len({box.id for box, _ in drawn}) > MAX_NEIGHBOURS
+    if is_folded:
+        drawn = _fold_neighbours(lookup, drawn)
+    neighbours = {box.id: box for box, _ in drawn}
+    arrows = tuple(arrow for _, arrow in drawn)
+    graph = Graph(
+        f"components/{component_id}",
+        component.title,
+        "flow",
+        (_subject_box(lookup, component), *neighbours.values()),
+        arrows,
+        direction="left-right",
+        notes=("Neighbours are folded: a box for each group.",) if is_folded else (),
+        alt=_describe_component(component, [box.title for box in neighbours.values()]),
+        asked=sum(arrow.count for arrow in arrows),
+    )
+    return add_legend_keys(graph)
+
+
+def _subject_box(lookup: Lookup, component: Component) -> Box:
+    summary_words = (
+        component.role or "",
+        element_boxes.join_owner_titles(lookup, component.owners),
+        format_short_timing(component.timing),
+    )
+    box = element_boxes.component_box(
+        lookup, component, lines=tuple(x for x in (" · ".join(word for word in summary_words if word),) if x)
+    )
+    return replace(
+        box,
+        emphasis="subject",
+        cluster=None,
+        style="component",
+        ports_in=tuple((f"in {port.name}", port.name) for port in component.inputs.values()),
+        ports_out=tuple((f"out {port.name}", port.name) for port in component.outputs.values()),
+    )
+
+
+def _draw_inputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
+    for port in component.inputs.values():
+        if port.external is not None:
+            yield _draw_external(port, component, "left")
+        for connection in port.connections:
+            yield _draw_connection(lookup, component, port, connection)
+
+
+def _draw_connection(lookup: Lookup, component: Component, port: Input, connection: Connection) -> DrawnNeighbour:
+    architecture = lookup.architecture
+    outputs = [architecture.outputs[each] for each in connection.outputs]
+    types = list(dict.fromkeys(output.type for output in outputs if output.type))
+    if connection.kind == "group":
+        group_box = element_boxes.group_box(lookup, connection.target)
+        box = replace(
+            group_box, id=f"<{group_box.id}", emphasis="neighbour", side="left", lines=("whole group", *types[:6])
+        )
+    else:
+        producer = architecture.components[_component_of_port(connection.target)]
+        box = element_boxes.neighbour_box(lookup, producer, "left")
+        # `<` and `>` before an id: a neighbour that feeds and reads is two boxes, one at each side, so nothing runs
+        # backwards.
+        box = replace(box, id=f"<{box.id}")
+    takes_all = connection.kind != "output"
+    label = (
+        f"* {count_noun(len(types), 'type')}"
+        if takes_all and len(types) != 1
+        else f"{'* ' * takes_all}{types[0] if types else ''}"
+    )
+    style = output_style(architecture, outputs[0]) if outputs else "data"
+    arrow = Arrow(
+        f"{connection.target}>{port.id}",
+        box.id,
+        component.id,
+        label,
+        head_port=f"in {port.name}",
+        style=style,  # type: ignore[arg-type]
+        optional=port.optional,
+        flows=tuple(
+            f"{architecture.components[output.component].title} · {output.name} → {port.name}" for output in outputs
+        ),
+        ref=f"type:{types[0]}" if len(types) == 1 else None,
+    )
+    return box, _point_to_server(arrow)
+
+
+def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
+    for output in component.outputs.values():
+        style = output_style(lookup.architecture, output)
+        label = output.type or ""
+        if output.external is not None:
+            yield _draw_external(output, component, "right")
+            label = ""
+        for connection in lookup.readers_of.get(output.id, ()):
+            reader = lookup.architecture.components[_component_of_port(connection.input)]
+            box = replace(element_boxes.neighbour_box(lookup, reader, "right"), id=f">{reader.id}")
+            arrow = Arrow(
+                f"{output.id}>{connection.input}",
+                component.id,
+                box.id,
+                label,
+                tail_port=f"out {output.name}",
+                style=style,  # type: ignore[arg-type]
+                optional=lookup.architecture.inputs[connection.input].optional,
+                flows=(f"{output.name} → {reader.title} · {connection.input.rsplit('.', 1)[1]}",),
+                ref=f"type:{output.type}" if output.type else None,
+            )
+            # The type is written beside the first arrow only; the next ones out of the same output have no label.
+            yield box, _point_to_server(arrow)
+            label = ""
+
+
+def _point_to_server(arrow: Arrow) -> Arrow:
+    """Reverse a service or action: from the client, which has it as an input, to the server."""
+    if arrow.style not in {"service", "action"}:
+        return arrow
+    ends = {"tail": arrow.head, "head": arrow.tail, "tail_port": arrow.head_port, "head_port": arrow.tail_port}
+    return replace(arrow, **ends)  # type: ignore[arg-type]
+
+
+def _draw_external(port: Input | Output, component: Component, side: str) -> DrawnNeighbour:
+    is_left = side == "left"
+    box = Box(
+        f"external {side} {port.id}",
+        port.external or "outside",
+        style="physical" if port.physical else "external",
+        emphasis="normal",
+        side="left" if is_left else "right",
+        tooltip=f"{port.external}\noutside the architecture",
+    )
+    arrow = Arrow(
+        f"external {side} {port.id}",
+        box.id if is_left else component.id,
+        component.id if is_left else box.id,
+        port.type or "",
+        tail_port=None if is_left else f"out {port.name}",
+        head_port=f"in {port.name}" if is_left else None,
+        style="physical" if port.physical else "data",
+        flows=(f"{port.external} → {port.name}" if is_left else f"{port.name} → {port.external}",),
+    )
+    return box, arrow
+
+
+def _fold_neighbours(lookup: Lookup, drawn: list[DrawnNeighbour]) -> list[DrawnNeighbour]:
+    """Fold the neighbours of one group at one side into one box."""
+    folded = []
+    for box, arrow in drawn:
+        group = box.id[1:].split(".", 1)[0]
+        # Only neighbours have the sign; boxes outside of the architecture stay single.
+        if box.id[0] not in "<>" or group not in lookup.architecture.groups:
+            folded.append((box, arrow))
+            continue
+        name = f"{box.id[0]}{group}"
+        group_box = replace(
+            element_boxes.group_box(lookup, group), id=name, emphasis="neighbour", side=box.side, style="fold"
+        )
+        ends = {"tail": name} if arrow.tail == box.id else {"head": name}
+        folded.append((group_box, replace(arrow, **ends)))  # type: ignore[arg-type]
+    return folded
+
+
+def output_style(architecture: Architecture, output: Output) -> str:
+    """Return the style of arrow for what an output carries."""
+    if output.physical:
+        return "physical"
+    flow = flow_of(architecture.message_of(output))
+    return "data" if flow == "topic" else flow
+
+
+def _component_of_port(port_id: str) -> str:
+    return ".".join(port_id.split(".")[:2])
+
+
+def _describe_component(component: Component, neighbours: list[str]) -> str:
+    sentence = f"{component.title} with {count_noun(len(component.inputs), 'input')} and {count_noun(len(component.outputs), 'output')}."
+    return sentence + (f" It exchanges data with {', '.join(dict.fromkeys(neighbours))}." if neighbours else "")

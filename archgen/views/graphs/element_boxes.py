@@ -1,0 +1,104 @@
+"""Make the boxes and frames of the model's elements, the same in every picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Literal
+
+from archgen.model.component import Component
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Box, Cluster
+
+_SEVERITIES: tuple[Literal["error", "warning", "note"], ...] = ("error", "warning", "note")
+
+
+def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...] = ()) -> Box:
+    """Return the box of a component, in the hue of its group."""
+    return Box(
+        component.id,
+        component.title,
+        lines,
+        style=_component_style(component),
+        colour=group_hue(lookup, component.group),
+        cluster=component.group,
+        ref=f"component:{component.id}",
+        tooltip=_component_tooltip(lookup, component),
+        badge=worst_severity(lookup, component.id),
+    )
+
+
+def _component_style(component: Component) -> Literal["component", "source", "sink", "reactive"]:
+    return "component" if component.role is None or component.role == "filter" else component.role
+
+
+def _component_tooltip(lookup: Lookup, component: Component) -> str:
+    lines = [f"{component.title} ({component.id})", f"Group: {lookup.architecture.groups[component.group].title}"]
+    lines += [f"Role: {component.role}"] if component.role else []
+    lines += [f"Owner: {join_owner_titles(lookup, component.owners)}"] if component.owners else []
+    lines += [component.functionality] if component.functionality else []
+    return "\n".join(lines)
+
+
+def join_owner_titles(lookup: Lookup, partner_ids: Iterable[str]) -> str:
+    """Join the titles of partners; empty where there are none."""
+    # An owner that is no declared partner is a finding, not an error: it is shown as written.
+    partners = lookup.architecture.partners
+    return ", ".join(partners[partner].title if partner in partners else partner for partner in partner_ids)
+
+
+def group_hue(lookup: Lookup, group: str) -> int:
+    """Return a group's colour, an index of the palette's ten hues."""
+    # Ten as in `palette.HUES`, which views must not import: emitters are above them.
+    return lookup.group_hues[group] % 10
+
+
+def worst_severity(lookup: Lookup, element_id: str) -> Literal["error", "warning", "note"] | None:
+    """Return the severity of an element's worst finding."""
+    severities = {str(finding.severity) for finding in lookup.findings_of.get(element_id, ())}
+    return next((each for each in _SEVERITIES if each in severities), None)
+
+
+def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:
+    """Return the box of a component of another group: grey, with its group's title below its own."""
+    return replace(
+        component_box(lookup, component, lines=(lookup.architecture.groups[component.group].title,)),
+        id=component.id + suffix,
+        style="component",
+        emphasis="neighbour",
+        cluster=None,
+        side=side,
+        badge=None,
+    )
+
+
+def group_box(lookup: Lookup, group_id: str, *, lines: Iterable[str] = ()) -> Box:
+    """Return a group as one box."""
+    group = lookup.architecture.groups[group_id]
+    count = count_noun(len(group.components), "component")
+    summary_lines = [line for line in (join_owner_titles(lookup, group.owners), count) if line]
+    return Box(
+        group_id,
+        group.title,
+        (*summary_lines, *lines),
+        style="group",
+        colour=group_hue(lookup, group_id),
+        ref=f"group:{group_id}",
+        tooltip="\n".join(
+            [f"{group.title} ({group_id})", *summary_lines, *(c.title for c in group.components.values())]
+        ),
+    )
+
+
+def group_frame(lookup: Lookup, group_id: str, *, is_subject: bool = False, is_neighbour: bool = False) -> Cluster:
+    """Return a group as a frame round its components."""
+    group = lookup.architecture.groups[group_id]
+    return Cluster(
+        group_id,
+        group.title,
+        colour=group_hue(lookup, group_id),
+        emphasis="subject" if is_subject else "neighbour" if is_neighbour else "normal",
+        ref=f"group:{group_id}",
+        tooltip=group.title,
+    )

@@ -1,0 +1,116 @@
+"""Draw one group: its components in the middle, grey neighbours at the left where they feed it, at the right where they
+read.
+
+A neighbour that does both is at both sides, so that nothing runs backwards. Above `MAX_FLOWS` flows the neighbours are
+folded, a box for each of their groups.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Literal
+
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Arrow, Box, Graph
+
+MAX_FLOWS = 45
+"""With more flows the neighbours are folded by group."""
+
+
+def draw_group(lookup: Lookup, group_id: str) -> Graph:
+    """Draw one group with its neighbours."""
+    group = lookup.architecture.groups[group_id]
+    own_ids = {component.id for component in group.components.values()}
+    touching_flows = list_flows_at(lookup.architecture, own_ids)
+    is_folded = len(touching_flows) > MAX_FLOWS
+    placed_flows = [_place_flow(flow, own_ids, is_folded=is_folded) for flow in touching_flows]
+    neighbour_boxes = _draw_neighbours(lookup, placed_flows, own_ids, is_folded=is_folded)
+    # By identity: hashing a flow would hash its connection with all that it holds.
+    ends = {id(flow): (tail, head) for flow, tail, head in placed_flows}
+    arrows = merge_flows(touching_flows, lambda flow: ends[id(flow)], labels=not is_folded)
+    arrows = tuple(_label_arrow(lookup, arrow, own_ids, group_id, is_folded=is_folded) for arrow in arrows)
+    graph = Graph(
+        f"groups/{group_id}",
+        group.title,
+        "group",
+        # Without a hue: all of them are in the same group, and its frame has it.
+        (
+            *(replace(element_boxes.component_box(lookup, each), colour=None) for each in group.components.values()),
+            *neighbour_boxes,
+        ),
+        arrows,
+        (element_boxes.group_frame(lookup, group_id),),
+        direction=group.layout.direction or lookup.architecture.layout.direction or "left-right",
+        notes=("Neighbours are folded: a box for each group, with the number of flows.",) if is_folded else (),
+        alt=_describe_group(lookup, group_id, touching_flows, own_ids),
+        asked=len(touching_flows),
+    )
+    return add_legend_keys(graph)
+
+
+def _place_flow(flow: ComponentFlow, own_ids: set[str], *, is_folded: bool) -> tuple[ComponentFlow, str, str]:
+    """Return a flow with the ids of the boxes that it joins: neighbours are at the left where they feed, at the right
+    where they read.
+    """
+    tail = flow.tail if flow.tail in own_ids else _neighbour_id(flow.tail, "<", is_folded=is_folded)
+    head = flow.head if flow.head in own_ids else _neighbour_id(flow.head, ">", is_folded=is_folded)
+    return flow, tail, head
+
+
+def _neighbour_id(component: str, side: str, *, is_folded: bool) -> str:
+    return side + (component.split(".", 1)[0] if is_folded else component)
+
+
+def _draw_neighbours(
+    lookup: Lookup, placed_flows: Sequence[tuple[ComponentFlow, str, str]], own_ids: set[str], *, is_folded: bool
+) -> Iterable[Box]:
+    names = dict.fromkeys(end for _, tail, head in placed_flows for end in (tail, head) if end not in own_ids)
+    for box_id in names:
+        side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
+        if is_folded:
+            members = {flow.tail if side == "left" else flow.head for flow, *ends in placed_flows if box_id in ends}
+            titles = [c.title for c in lookup.architecture.components.values() if c.id in members]
+            yield replace(
+                element_boxes.group_box(lookup, box_id[1:]),
+                id=box_id,
+                emphasis="neighbour",
+                side=side,
+                lines=_shorten_titles(titles),
+            )
+        else:
+            component = lookup.architecture.components[box_id[1:]]
+            yield replace(element_boxes.neighbour_box(lookup, component, side), id=box_id)
+
+
+def _shorten_titles(titles: Sequence[str]) -> tuple[str, ...]:
+    """Shorten the list of components that a folded group stands for; the tooltip of the group has them all."""
+    return tuple(titles) if len(titles) <= 6 else (*titles[:5], f"and {len(titles) - 5} more")  # noqa: PLR2004
+
+
+def _label_arrow(lookup: Lookup, arrow: Arrow, own_ids: set[str], group_id: str, *, is_folded: bool) -> Arrow:
+    inside = arrow.tail in own_ids and arrow.head in own_ids
+    label = str(arrow.count) if is_folded and arrow.count > 1 else arrow.label
+    return replace(arrow, label=label, colour=element_boxes.group_hue(lookup, group_id) if inside else None)
+
+
+def _describe_group(lookup: Lookup, group_id: str, touching_flows: Sequence[ComponentFlow], own_ids: set[str]) -> str:
+    group = lookup.architecture.groups[group_id]
+    titles = {key: each.title for key, each in lookup.architecture.groups.items()}
+    feeders = _group_titles(titles, [flow.tail for flow in touching_flows if flow.tail not in own_ids])
+    readers = _group_titles(titles, [flow.head for flow in touching_flows if flow.head not in own_ids])
+    inside = sum(flow.tail in own_ids and flow.head in own_ids for flow in touching_flows)
+    sentences = [
+        f"{group.title} with {count_noun(len(own_ids), 'component')} and {count_noun(inside, 'flow')} among them."
+    ]
+    sentences += [f"It is fed by {', '.join(feeders)}."] if feeders else []
+    sentences += [f"It is read by {', '.join(readers)}."] if readers else []
+    return " ".join(sentences)
+
+
+def _group_titles(titles: dict[str, str], components: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(titles[each.split(".", 1)[0]] for each in components))

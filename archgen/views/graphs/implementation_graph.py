@@ -1,0 +1,155 @@
+"""Draw one component at the implementation level: its nodes in the middle, topics as boxes between them and others.
+
+Publishers and clients are at the left, subscribers and servers at the right. The topic's box replaces a label at the
+arrow: it never overlaps another, and it is a link. Where a component takes all topics of a neighbour, one box with an
+asterisk stands for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from archgen.model.node import Endpoint, Topic
+from archgen.views.graphs import node_boxes
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Arrow, Box, Graph
+
+_MIN_STARRED = 3
+"""From this many topics on, if all are taken, an asterisk stands for them."""
+_MAX_LISTED_TOPICS = 8
+"""How many topics the asterisk's box lists."""
+
+
+@dataclass(frozen=True, slots=True)
+class _TopicArrow:
+    """One arrow between a node (its id; of a neighbour with `<` or `>`, its side, before it) and a topic."""
+
+    node: str
+    topic: str
+    style: str
+    to_topic: bool
+
+
+def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
+    """Draw the nodes of one component, what they publish and subscribe to, and with whom."""
+    component = lookup.architecture.components[component_id]
+    subject_ids = {node.id for node in lookup.nodes_of.get(component_id, ())}
+    # A node may use a topic at several endpoints: still one arrow.
+    topic_arrows = list(dict.fromkeys(_list_topic_arrows(lookup, subject_ids)))
+    star_of_topic = _find_stars(lookup, topic_arrows)
+    drawn_arrows = [replace(end, topic=star_of_topic.get(end.topic, end.topic)) for end in topic_arrows]
+    arrows = tuple(_draw_arrow(end) for end in dict.fromkeys(drawn_arrows))
+    topics = {box.id: box for box in _draw_topics(lookup, topic_arrows, star_of_topic, subject_ids)}
+    neighbour_boxes = {
+        end.node: _neighbour_box(lookup, end.node) for end in drawn_arrows if end.node not in subject_ids
+    }
+    subject_boxes = tuple(
+        node_boxes.node_box(lookup, lookup.architecture.nodes[each], is_subject=True) for each in sorted(subject_ids)
+    )
+    graph = Graph(
+        f"implementation/{component_id}",
+        f"{component.title}: implementation",
+        "flow",
+        (*subject_boxes, *topics.values(), *neighbour_boxes.values()),
+        arrows,
+        alt=_describe_implementation(component.title, sorted(subject_ids), [box.title for box in topics.values()]),
+        asked=len(arrows),
+    )
+    return add_legend_keys(graph, *(["star"] if star_of_topic else []))
+
+
+def _list_topic_arrows(lookup: Lookup, subject_ids: set[str]) -> Iterator[_TopicArrow]:
+    endpoints = [each for subject in sorted(subject_ids) for each in lookup.endpoints_of.get(subject, ())]
+    for name in dict.fromkeys(endpoint.name for endpoint in endpoints):
+        topic = lookup.architecture.topics.get(name)
+        if topic is not None:
+            yield from _arrows_at_topic(topic, subject_ids)
+
+
+def _arrows_at_topic(topic: Topic, subject_ids: set[str]) -> Iterator[_TopicArrow]:
+    """Yield the arrows at a topic: into it from publishers and clients, out of it to subscribers and servers."""
+    entering, leaving = (topic.writers, topic.readers) if topic.flow == "topic" else (topic.readers, topic.writers)
+    own_entering = [each for each in entering if each.node in subject_ids]
+    own_leaving = [each for each in leaving if each.node in subject_ids]
+    # Others that write are drawn only where the component reads, and the reverse: co-publishers are not its neighbours.
+    for endpoint in entering if own_leaving else own_entering:
+        yield _TopicArrow(_place_node(endpoint, subject_ids, "<"), topic.name, _endpoint_style(endpoint), to_topic=True)
+    for endpoint in leaving if own_entering else own_leaving:
+        yield _TopicArrow(
+            _place_node(endpoint, subject_ids, ">"), topic.name, _endpoint_style(endpoint), to_topic=False
+        )
+
+
+def _place_node(endpoint: Endpoint, subject_ids: set[str], side: str) -> str:
+    return endpoint.node if endpoint.node in subject_ids else side + endpoint.node
+
+
+def _endpoint_style(endpoint: Endpoint) -> str:
+    if endpoint.flow != "topic":
+        return endpoint.flow
+    return "internal" if endpoint.internal else "data"
+
+
+def _find_stars(lookup: Lookup, topic_arrows: list[_TopicArrow]) -> dict[str, str]:
+    """Find the neighbours all of whose topics go to the same nodes. Map each such topic to its common name."""
+    star_of_topic: dict[str, str] = {}
+    for neighbour in dict.fromkeys(end.node for end in topic_arrows if end.node[0] == "<" and end.style == "data"):
+        node = neighbour[1:]
+        published = {e.name for e in lookup.endpoints_of.get(node, ()) if e.use == "publishes" and not e.internal}
+        drawn_topics = {end.topic for end in topic_arrows if end.node == neighbour and end.style == "data"}
+        nodes_of_topic = {name: {end.node for end in topic_arrows if end.topic == name} for name in drawn_topics}
+        same_nodes = all(user == next(iter(nodes_of_topic.values())) for user in nodes_of_topic.values())
+        # All of the neighbour's topics, and each used by the same nodes: else the asterisk would show flows that are
+        # not there.
+        if len(published) >= _MIN_STARRED and published == drawn_topics and same_nodes:
+            star_of_topic.update(dict.fromkeys(sorted(drawn_topics), f"* {node}"))
+    return star_of_topic
+
+
+def _draw_topics(
+    lookup: Lookup, topic_arrows: list[_TopicArrow], star_of_topic: dict[str, str], subject_ids: set[str]
+) -> Iterator[Box]:
+    for name in dict.fromkeys(end.topic for end in topic_arrows):
+        topic = lookup.architecture.topics[name]
+        if name not in star_of_topic:
+            own_endpoints = [each for each in (*topic.writers, *topic.readers) if each.node in subject_ids]
+            yield replace(node_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
+    for star in dict.fromkeys(star_of_topic.values()):
+        names = [name for name, stands in star_of_topic.items() if stands == star]
+        shown_lines = (
+            names
+            if len(names) <= _MAX_LISTED_TOPICS
+            else [*names[: _MAX_LISTED_TOPICS - 1], f"and {len(names) - _MAX_LISTED_TOPICS + 1} more"]
+        )
+        yield Box(
+            f"topic {star}",
+            f"* all topics of {star[2:]}",
+            tuple(shown_lines),
+            style="topic",
+            ref=f"node:{star[2:]}",
+            tooltip="\n".join(names),
+        )
+
+
+def _neighbour_box(lookup: Lookup, name: str) -> Box:
+    return node_boxes.neighbour_node_box(
+        lookup, lookup.architecture.nodes[name[1:]], "left" if name[0] == "<" else "right"
+    )
+
+
+def _draw_arrow(topic_arrow: _TopicArrow) -> Arrow:
+    box = f"topic {topic_arrow.topic}"
+    tail, head = (topic_arrow.node, box) if topic_arrow.to_topic else (box, topic_arrow.node)
+    sentence = f"{topic_arrow.node.lstrip('<>')} {'to' if topic_arrow.to_topic else 'from'} {topic_arrow.topic}"
+    return Arrow(f"{tail}>{head}", tail, head, style=topic_arrow.style, flows=(sentence,))  # type: ignore[arg-type]
+
+
+def _describe_implementation(title: str, subjects: list[str], topics: list[str]) -> str:
+    sentence = f"{title} is implemented by {', '.join(subjects)}." if subjects else f"No node implements {title}."
+    return (
+        f"{sentence} It uses {count_noun(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}"
+        + (f": {', '.join(topics)}." if topics else " topics.")
+    )

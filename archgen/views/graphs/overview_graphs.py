@@ -1,0 +1,88 @@
+"""Draw the whole: the groups, and all groups with their components (the first and the widest picture)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.component_flows import ComponentFlow, list_flows, merge_flows
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Arrow, Graph
+
+
+def draw_overview(lookup: Lookup) -> Graph:
+    """Draw the groups, with one arrow for all that flows from one to another."""
+    architecture = lookup.architecture
+    between = _flows_between_groups(lookup)
+    arrows = _colour_by_source(lookup, merge_flows(between, _groups_of_flow, labels=False, by_style=False))
+    graph = Graph(
+        "overview",
+        f"{architecture.project.title}: groups",
+        "overview",
+        tuple(element_boxes.group_box(lookup, group) for group in architecture.groups),
+        arrows,
+        direction=architecture.layout.direction or "left-right",
+        alt=_describe_flows(lookup, f"{count_noun(len(architecture.groups), 'group')} of components", arrows),
+        asked=len(between),
+    )
+    return add_legend_keys(graph)
+
+
+def draw_components(lookup: Lookup) -> Graph:
+    """Draw all groups with their components: flows inside a group one by one, between groups merged and counted."""
+    architecture = lookup.architecture
+    inside = [flow for flow in list_flows(architecture) if _group_of(flow.tail) == _group_of(flow.head)]
+    between = _flows_between_groups(lookup)
+    arrows = merge_flows(inside, lambda flow: (flow.tail, flow.head), labels=False)
+    arrows += _colour_by_source(lookup, merge_flows(between, _groups_of_flow, labels=False, by_style=False))
+    counted = (
+        f"{count_noun(len(architecture.components), 'component')} in {count_noun(len(architecture.groups), 'group')}"
+    )
+    graph = Graph(
+        "components",
+        f"{architecture.project.title}: all components",
+        "two-step",
+        tuple(element_boxes.component_box(lookup, component) for component in architecture.components.values()),
+        arrows,
+        tuple(element_boxes.group_frame(lookup, group) for group in architecture.groups),
+        direction=architecture.layout.direction or "left-right",
+        alt=_describe_flows(lookup, counted, arrows),
+        asked=len(inside) + len(between),
+    )
+    return add_legend_keys(graph)
+
+
+def _flows_between_groups(lookup: Lookup) -> list[ComponentFlow]:
+    """Return the flows between groups. A connection to a whole group counts once."""
+    flow_by_source: dict[tuple[int, str], ComponentFlow] = {}
+    for flow in list_flows(lookup.architecture):
+        if _group_of(flow.tail) != _group_of(flow.head):
+            # By identity of the connection, and by source: one connection may take from several groups.
+            flow_by_source.setdefault((id(flow.connection), _group_of(flow.tail)), flow)
+    return list(flow_by_source.values())
+
+
+def _group_of(component_id: str) -> str:
+    return component_id.split(".", 1)[0]
+
+
+def _groups_of_flow(flow: ComponentFlow) -> tuple[str, str]:
+    return _group_of(flow.tail), _group_of(flow.head)
+
+
+def _colour_by_source(lookup: Lookup, arrows: tuple[Arrow, ...]) -> tuple[Arrow, ...]:
+    """Colour each arrow with the hue of the group that it comes from."""
+    return tuple(replace(arrow, colour=element_boxes.group_hue(lookup, arrow.tail)) for arrow in arrows)
+
+
+def _describe_flows(lookup: Lookup, subject: str, arrows: tuple[Arrow, ...]) -> str:
+    strongest = sorted((arrow for arrow in arrows if arrow.tail in lookup.architecture.groups), key=lambda a: -a.count)
+    titles = {key: group.title for key, group in lookup.architecture.groups.items()}
+    strongest_words = "; ".join(f"{titles[a.tail]} to {titles[a.head]} ({a.count})" for a in strongest[:5])
+    return (
+        f"{subject}. Most runs from {strongest_words}."
+        if strongest_words
+        else f"{subject}. Nothing runs between groups yet."
+    )

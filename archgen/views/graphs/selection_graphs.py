@@ -1,0 +1,237 @@
+"""Draw a part: what a selector names, with its neighbours in grey, at either level. The project's views are such parts.
+
+A small part is one flow with a label at each arrow. A large one has frames, and its neighbours are folded by group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+
+from archgen.model.architecture import View
+from archgen.model.component import Component
+from archgen.model.selector_evaluation import Selection
+from archgen.views.graphs import element_boxes, node_boxes, ros_graph
+from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
+from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Arrow, Box, Graph
+
+_SMALL_PICTURE = (26, 45)
+"""The most boxes and arrows of a small picture."""
+_TITLES_PER_BOX = 3
+
+
+def draw_functional_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str]) -> Graph:
+    """Draw selected components and their neighbours."""
+    components = [component for component in lookup.architecture.components.values() if component.id in component_ids]
+    touching_flows = list_flows_at(lookup.architecture, component_ids)
+    neighbour_ids = dict.fromkeys(
+        end for flow in touching_flows for end in (flow.tail, flow.head) if end not in component_ids
+    )
+    is_small = len(components) + len(neighbour_ids) <= _SMALL_PICTURE[0] and len(touching_flows) <= _SMALL_PICTURE[1]
+    graph = (_draw_small_part if is_small else _draw_large_part)(
+        lookup, components, touching_flows, list(neighbour_ids)
+    )
+    summary = (
+        f"{count_noun(len(components), 'component')}: {', '.join(component.title for component in components[:12])}"
+    )
+    return fold_graph(
+        add_legend_keys(
+            replace(
+                graph,
+                id=graph_id,
+                title=title,
+                direction=lookup.architecture.layout.direction or "left-right",
+                alt=f"{summary}{', ...' if len(components) > 12 else ''}. {count_noun(len(neighbour_ids), 'neighbour')} in grey.",  # noqa: PLR2004
+            )
+        )
+    )
+
+
+def _draw_small_part(
+    lookup: Lookup,
+    components: Sequence[Component],
+    touching_flows: Sequence[ComponentFlow],
+    neighbour_ids: Sequence[str],
+) -> Graph:
+    architecture = lookup.architecture
+    titles = {group.id: group.title for group in architecture.groups.values()}
+    chosen_boxes = [
+        replace(element_boxes.component_box(lookup, each, lines=(titles[each.group],)), cluster=None)
+        for each in components
+    ]
+    neighbour_boxes = [
+        element_boxes.neighbour_box(lookup, architecture.components[each], None) for each in neighbour_ids
+    ]
+    arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
+    return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows))
+
+
+def _draw_large_part(
+    lookup: Lookup,
+    components: Sequence[Component],
+    touching_flows: Sequence[ComponentFlow],
+    neighbour_ids: Sequence[str],
+) -> Graph:
+    component_ids = {component.id for component in components}
+    groups = dict.fromkeys(component.group for component in components)
+    outside_groups = dict.fromkeys(each.split(".", 1)[0] for each in neighbour_ids)
+
+    def find_home(component_id: str) -> str:
+        group = component_id.split(".", 1)[0]
+        return group if component_id in component_ids else f"around {group}"
+
+    def find_ends(flow: ComponentFlow) -> tuple[str, str]:
+        tail, head = find_home(flow.tail), find_home(flow.head)
+        return (flow.tail, flow.head) if tail == head else (tail, head)
+
+    neighbour_boxes = [
+        _neighbour_group_box(lookup, group, [c for c in neighbour_ids if c.split(".", 1)[0] == group])
+        for group in outside_groups
+    ]
+    inner_arrows = merge_flows(
+        [flow for flow in touching_flows if find_home(flow.tail) == find_home(flow.head)], find_ends, labels=False
+    )
+    outer_arrows = merge_flows(
+        [flow for flow in touching_flows if find_home(flow.tail) != find_home(flow.head)],
+        find_ends,
+        labels=False,
+        by_style=False,
+    )
+    coloured_arrows = tuple(_colour_outer_arrow(lookup, arrow) for arrow in outer_arrows)
+    return Graph(
+        "",
+        "",
+        "two-step",
+        (*(element_boxes.component_box(lookup, each) for each in components), *neighbour_boxes),
+        (*inner_arrows, *coloured_arrows),
+        tuple(element_boxes.group_frame(lookup, group) for group in groups),
+        asked=len(touching_flows),
+    )
+
+
+def _colour_outer_arrow(lookup: Lookup, arrow: Arrow) -> Arrow:
+    return (
+        replace(arrow, colour=element_boxes.group_hue(lookup, arrow.tail))
+        if arrow.tail in lookup.group_hues
+        else replace(arrow, faded=True)
+    )
+
+
+def _neighbour_group_box(lookup: Lookup, group: str, member_ids: Sequence[str]) -> Box:
+    """Return the neighbours in one group as one grey box."""
+    titles = [lookup.architecture.components[each].title for each in member_ids]
+    shown_titles = (
+        titles
+        if len(titles) <= _TITLES_PER_BOX + 1
+        else [*titles[:_TITLES_PER_BOX], f"and {len(titles) - _TITLES_PER_BOX} more"]
+    )
+    group_box = element_boxes.group_box(lookup, group)
+    return replace(
+        group_box, id=f"around {group}", emphasis="neighbour", lines=tuple(shown_titles), tooltip="\n".join(titles)
+    )
+
+
+def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[str]) -> Graph:
+    """Draw selected nodes with what runs to and from them. A small part has its topics as boxes."""
+    node_flows = [
+        each
+        for each in node_boxes.list_node_flows(lookup.architecture)
+        if each.tail in node_ids or each.head in node_ids
+    ]
+    neighbour_ids = dict.fromkeys(end for each in node_flows for end in (each.tail, each.head) if end not in node_ids)
+    topics = dict.fromkeys(each.topic.name for each in node_flows)
+    if len(node_ids) + len(neighbour_ids) + len(topics) > _SMALL_PICTURE[1]:
+        return ros_graph.draw_nodes(lookup, graph_id, title, node_ids)
+    all_nodes = lookup.architecture.nodes
+    chosen_boxes = [
+        node_boxes.node_box(lookup, node, is_subject=False) for node in all_nodes.values() if node.id in node_ids
+    ]
+    neighbour_boxes = [
+        replace(node_boxes.node_box(lookup, all_nodes[each]), emphasis="neighbour", badge=None)
+        for each in neighbour_ids
+    ]
+    arrows = {}
+    for each in node_flows:
+        style = "data" if each.topic.flow == "topic" else each.topic.flow
+        box = f"topic {each.topic.name}"
+        # Several flows share a topic's box: its arrows are drawn once, with the sentence of the last flow.
+        for tail, head in ((each.tail, box), (box, each.head)):
+            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))
+            arrows[arrow.id] = arrow
+    graph = Graph(
+        graph_id,
+        title,
+        "flow",
+        (
+            *chosen_boxes,
+            *(node_boxes.topic_box(lookup.architecture.topics[topic]) for topic in topics),
+            *neighbour_boxes,
+        ),
+        tuple(arrows.values()),
+        direction=lookup.architecture.layout.direction or "left-right",
+        alt=f"{count_noun(len(chosen_boxes), 'node')} with {count_noun(len(topics), 'topic')} and {count_noun(len(neighbour_boxes), 'neighbour')} in grey.",
+        asked=len(arrows),
+    )
+    return fold_graph(add_legend_keys(graph))
+
+
+def draw_view(lookup: Lookup, project_view: View, selection: Selection) -> Graph:
+    """Draw one of the project's views."""
+    name = f"views/{project_view.id}"
+    if project_view.level == "implementation":
+        graph = draw_implementation_part(lookup, name, project_view.title, selection.nodes)
+    else:
+        graph = draw_functional_part(lookup, name, project_view.title, selection.components)
+    if project_view.layout.direction:
+        graph = replace(graph, direction=project_view.layout.direction)
+    return (
+        colour_graph(lookup, graph, project_view.colour)
+        if project_view.colour and project_view.colour != "group"
+        else graph
+    )
+
+
+def colour_graph(lookup: Lookup, graph: Graph, criterion: str) -> Graph:
+    """Colour a graph by another criterion than the group (`owner`, `role`, ...), and say so in the legend."""
+    values = {
+        box.id: value
+        for box in graph.boxes
+        if (value := _colour_value(lookup, box, criterion)) and box.emphasis != "neighbour"
+    }
+    hues = {value: at % 10 for at, value in enumerate(dict.fromkeys(values.values()))}
+    coloured_boxes = tuple(
+        replace(box, colour=hues[values[box.id]] if box.id in values else None) if box.emphasis != "neighbour" else box
+        for box in graph.boxes
+    )
+    # Hues of groups would be read as values of the criterion, so frames and arrows lose theirs.
+    plain_clusters = tuple(replace(cluster, colour=None) for cluster in graph.clusters)
+    arrows = tuple(replace(arrow, colour=None) for arrow in graph.arrows)
+    legend = tuple((hue, f"{criterion}: {value}") for value, hue in hues.items())
+    return replace(graph, boxes=coloured_boxes, clusters=plain_clusters, arrows=arrows, legend_colours=legend)
+
+
+def _colour_value(lookup: Lookup, box: Box, criterion: str) -> str | None:
+    component = lookup.architecture.components.get(box.id)
+    node = lookup.architecture.nodes.get(box.id)
+    item = component or node
+    if item is None:
+        return None
+    # Functions, so that only the one that is asked for is evaluated.
+    values: dict[str, Callable[[], str | None]] = {
+        "owner": lambda: element_boxes.join_owner_titles(lookup, item.owners) or None,
+        "role": lambda: component.role if component else None,
+        "status": lambda: node.status if node else _component_status(lookup, box.id),
+        "host": lambda: node.host if node else None,
+        "package": lambda: node.package if node else None,
+        "tag": lambda: ", ".join(item.tags) or None,
+    }
+    return values.get(criterion, lambda: None)()
+
+
+def _component_status(lookup: Lookup, component_id: str) -> str | None:
+    statuses = dict.fromkeys(node.status for node in lookup.nodes_of.get(component_id, ()) if node.status)
+    return ", ".join(statuses) or None

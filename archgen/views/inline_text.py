@@ -1,0 +1,226 @@
+"""Runs of inline text for documents: links to elements, and values written out in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import chain
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.declared_timing import Timing
+from archgen.model.node import Node, Qos
+from archgen.views.shapes import Inlines, Text
+
+BEHAVIOUR_WORDS = {
+    "periodic": "periodic",
+    "event": "event-driven",
+    "on_demand": "on demand",
+    "once": "once, at the start",
+}
+NODE_KIND_WORDS = {
+    "node": "node",
+    "lifecycle": "lifecycle node",
+    "composable": "composable node",
+    "driver": "driver",
+    "nodelet": "nodelet",
+}
+ENDPOINT_USE_WORDS = {"publishes": "publishes", "subscribes": "subscribes to", "serves": "serves", "calls": "calls"}
+UNKNOWN_INLINES: Inlines = (Text("not known yet", muted=True),)
+
+
+def to_inlines(*parts: str | Text) -> Inlines:
+    """Turn strings and ready `Text` runs into one sequence of inlines."""
+    return tuple(Text(part) if isinstance(part, str) else part for part in parts)
+
+
+def message_to_inlines(message: str, *, muted: bool = False) -> Inlines:
+    """Turn a finding's message into inlines; what it quotes in backticks becomes code."""
+    parts = _BACKTICKED.split(message)
+    # `split` with one capturing group alternates: even positions are plain text, odd ones the quoted names.
+    return tuple(Text(part, code=index % 2 == 1, muted=muted) for index, part in enumerate(parts) if part)
+
+
+_BACKTICKED = re.compile(r"`([^`]+)`")
+
+
+def value_or_unknown(value: str | None) -> Inlines:
+    """Return the value as inlines, or "not known yet"."""
+    return (Text(value),) if value else UNKNOWN_INLINES
+
+
+def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
+    """Join inlines with a separator, as `str.join` does."""
+    runs = list(items)
+    return tuple(chain.from_iterable((Text(separator), *run) if index else run for index, run in enumerate(runs)))
+
+
+def join_lines(items: Iterable[Inlines]) -> Inlines:
+    """Put each run of inlines on a line of its own."""
+    result: list[Text] = []
+    for index, run in enumerate(items):
+        # A break belongs to the run that follows it, so each item needs at least one run of text.
+        first, *other_parts = run
+        result += [_with_line_break(first) if index else first, *other_parts]
+    return tuple(result)
+
+
+def _with_line_break(part: Text) -> Text:
+    """Return the run with a line break before it."""
+    return replace(part, line_break=True)
+
+
+def group_link(architecture: Architecture, group_id: str) -> Text:
+    """Link to a group, by its title."""
+    return Text(architecture.groups[group_id].title, ref=f"group:{group_id}")
+
+
+def component_link(component: Component) -> Text:
+    """Link to a component, by its title."""
+    return Text(component.title, ref=f"component:{component.id}")
+
+
+def node_link(node: Node) -> Text:
+    """Link to a node, by its id."""
+    return Text(node.id, ref=f"node:{node.id}", code=True)
+
+
+def type_link(type_name: str | None) -> Inlines:
+    """Link to a conceptual type; "not known yet" for None."""
+    return (Text(type_name, ref=f"type:{type_name}"),) if type_name else UNKNOWN_INLINES
+
+
+def topic_link(topic_name: str) -> Text:
+    """Link to a topic, service or action."""
+    return Text(topic_name, ref=f"topic:{topic_name}", code=True)
+
+
+def requirement_link(architecture: Architecture, requirement_id: str) -> Inlines:
+    """Link to a requirement by its id, followed by its title."""
+    declared_requirement = architecture.requirements.get(requirement_id)
+    if declared_requirement is None:
+        return (Text(requirement_id), Text(" (not declared)", muted=True))
+    # Callers take `[:1]` for the link without the title, so the link must stay the first run.
+    return (Text(requirement_id, ref=f"requirement:{requirement_id}"), Text(f" {declared_requirement.title}"))
+
+
+def partner_link(architecture: Architecture, partner_id: str | None) -> Inlines:
+    """Link to a partner, by its title."""
+    if partner_id is None:
+        return UNKNOWN_INLINES
+    declared_partner = architecture.partners.get(partner_id)
+    return (Text(declared_partner.title if declared_partner else partner_id, ref=f"partner:{partner_id}"),)
+
+
+def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
+    """Link to the owners of an element; "not known yet" where it has none."""
+    return join_inlines(partner_link(architecture, owner) for owner in owners) or UNKNOWN_INLINES
+
+
+def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
+    """Link to a port's component, followed by the port's own name: ports have no page of their own."""
+    component = architecture.components[port.component]
+    return (component_link(component), Text(" · "), Text(port.name, code=True))
+
+
+def describe_source(architecture: Architecture, connection: Connection) -> Inlines:
+    """Describe what a connection reads: one output, all outputs of a component, or all of a group."""
+    if connection.kind == "output":
+        return port_link(architecture, architecture.outputs[connection.target])
+    if connection.kind == "component":
+        return (component_link(architecture.components[connection.target]), Text(" · all outputs"))
+    return (group_link(architecture, connection.target), Text(" · all of the group"))
+
+
+def link_urls(named_urls: Iterable[tuple[str, str]]) -> Inlines:
+    """Write (name, address) pairs as links."""
+    return join_inlines(
+        # Any other scheme (`javascript:`, `file:`) stays text that nobody can click.
+        (Text(name, url=address) if address.startswith(("https://", "http://")) else Text(f"{name}: {address}"),)
+        for name, address in named_urls
+    )
+
+
+def format_qos(qos: Qos) -> str:
+    """Describe a quality of service: the profile's name, then its settings."""
+    parts = [qos.reliability.replace("_", " ")]
+    if qos.durability == "transient_local":
+        parts.append("transient local (latched)")
+    parts.append("keep all" if qos.history == "keep_all" else f"depth {qos.depth}" if qos.depth is not None else "")
+    parts += [f"deadline {qos.deadline}" if qos.deadline else "", f"lifespan {qos.lifespan}" if qos.lifespan else ""]
+    if qos.liveliness != "automatic":
+        parts.append("manual liveliness")
+    parts.append(f"lease {qos.lease_duration}" if qos.lease_duration else "")
+    settings_text = ", ".join(part for part in parts if part)
+    return f"{qos.profile.replace('_', ' ')}: {settings_text}"
+
+
+def format_qos_cell(qos: Qos) -> Inlines:
+    """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
+    return (Text(format_qos(qos)),) if qos.written else (Text("default", muted=True),)
+
+
+def format_timing_sentence(timing: Timing | None) -> str:
+    """Write everything a `timing` section says on one line; empty for None."""
+    if timing is None:
+        return ""
+    execution_range = f"{timing.bcet} to {timing.wcet}" if timing.bcet and timing.wcet else ""
+    parts = (
+        BEHAVIOUR_WORDS[timing.behaviour] if timing.behaviour else "",
+        f"period {timing.period}" if timing.period else "",
+        f"{timing.rate}" if timing.rate else "",
+        f"jitter {timing.jitter}" if timing.jitter else "",
+        f"triggered by {_describe_trigger(timing)}" if timing.trigger else "",
+        f"fires at each {timing.every}th" if timing.every else "",
+        f"at least {timing.throttle} apart" if timing.throttle else "",
+        f"execution {execution_range}" if execution_range else "",
+        f"execution up to {timing.wcet}" if timing.wcet and not execution_range else "",
+        f"execution at least {timing.bcet}" if timing.bcet and not execution_range else "",
+        f"declared response {timing.response}" if timing.response else "",
+        f"publishes only at times: {', '.join(_format_timed_outputs(timing))}" if timing.outputs else "",
+        f"calls for each activation: {', '.join(_format_calls(timing))}" if timing.calls else "",
+        f"priority {timing.priority}" if timing.priority is not None else "",
+        f"core {timing.core}" if timing.core is not None else "",
+    )
+    return "; ".join(part for part in parts if part)
+
+
+def _format_calls(timing: Timing) -> list[str]:
+    """Format `calls` as "port count"; ports by the last part of their id."""
+    return [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
+
+
+def _describe_trigger(timing: Timing) -> str:
+    """Describe which inputs trigger an activation."""
+    if timing.trigger is None:
+        return ""
+    if timing.trigger.inputs is None:
+        return f"{timing.trigger.mode} of the inputs"
+    names = ", ".join(name.rsplit(".", 1)[-1] for name in timing.trigger.inputs)
+    return f"{timing.trigger.mode} of {names}"
+
+
+def _format_timed_outputs(timing: Timing) -> list[str]:
+    """Format the outputs that are not published at every activation."""
+    return [
+        f"{name.rsplit('.', 1)[-1]}" + (f" (at least each {output.max_gap})" if output.max_gap else "")
+        for name, output in timing.outputs.items()
+    ]
+
+
+def format_short_timing(timing: Timing | None) -> str:
+    """Write rate or period and worst-case execution time for a table cell: `10 Hz, up to 80 ms`."""
+    if timing is None:
+        return ""
+    rate = timing.rate or timing.period
+    timing_parts = [str(rate) if rate else BEHAVIOUR_WORDS.get(timing.behaviour, "") if timing.behaviour else ""]
+    timing_parts.append(f"up to {timing.wcet}" if timing.wcet else "")
+    return ", ".join(part for part in timing_parts if part)
+
+
+def count_noun(count: int, noun: str) -> str:
+    """Count a noun with a regular plural: `1 node`, `2 nodes`, `3 activities`."""
+    if count == 1:
+        return f"1 {noun}"
+    return f"{count} {noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{count} {noun}s"

@@ -1,0 +1,142 @@
+"""Look-ups that every view needs, built once for an architecture and its findings."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.message_types import ConceptualType
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.timing.system import message_sizes
+from archgen.views.timing.timing_lookup import TimingLookup
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentScope:
+    """What a document shows: full ids of components and nodes, or None for everything."""
+
+    components: frozenset[str] | None = None
+    nodes: frozenset[str] | None = None
+    selector_text: str = ""
+    """The selector as the user wrote it."""
+
+    def shows_component(self, component_id: str) -> bool:
+        """Whether a component is shown."""
+        return self.components is None or component_id in self.components
+
+    def shows_node(self, node_id: str) -> bool:
+        """Whether a node is shown."""
+        return self.nodes is None or node_id in self.nodes
+
+
+@dataclass(frozen=True, slots=True)
+class Lookup:
+    """An architecture with its look-ups; all keys are full ids, mappings keep the order of the architecture."""
+
+    architecture: Architecture
+    findings: tuple[Diagnostic, ...] = ()
+    scope: DocumentScope = field(default_factory=DocumentScope)
+    readers_of: Mapping[str, tuple[Connection, ...]] = field(default_factory=dict)
+    """Connections that read an output, by the output's id."""
+    nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
+    """Nodes that implement a component, by the component's id."""
+    endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
+    """Endpoints of a node, by the node's id."""
+    findings_of: Mapping[str, tuple[Diagnostic, ...]] = field(default_factory=dict)
+    """Findings by the element they concern; findings about a port are listed under its component."""
+    components_for_requirement: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
+    """Components that serve a requirement, by the requirement's id."""
+    outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
+    """Outputs by the name of their conceptual type."""
+    physical_types: frozenset[str] = frozenset()
+    """Types that only physical ports use: they need no message."""
+    group_hues: Mapping[str, int] = field(default_factory=dict)
+    """Position of each group in the architecture: the base of its colour."""
+    # A closure over the interfaces: it has no useful equality or repr, so both leave it out.
+    message_size: message_sizes.SizeQuery = field(kw_only=True, compare=False, repr=False)
+    """Size of a message on the wire, by message and type."""
+    timing: TimingLookup | None = None
+    """Results of the timing analysis; None for the many views that need no timing."""
+
+    def shown_groups(self) -> list[str]:
+        """Return the ids of the groups with at least one shown component, in order; without a scope, of all."""
+        groups = self.architecture.groups.values()
+        if self.scope.components is None:
+            return [group.id for group in groups]
+        # A selection holds components and nodes, never groups: a group is shown as soon as one of its components is.
+        return [g.id for g in groups if any(c.id in self.scope.components for c in g.components.values())]
+
+    def shown_components(self, group_id: str) -> list[Component]:
+        """Return the shown components of a group, in order."""
+        group_components = self.architecture.groups[group_id].components.values()
+        return [component for component in group_components if self.scope.shows_component(component.id)]
+
+    def shown_nodes(self) -> list[Node]:
+        """Return the shown nodes, in order."""
+        return [node for node in self.architecture.nodes.values() if self.scope.shows_node(node.id)]
+
+    def format_size(self, carrier: ConceptualType | Topic) -> str:
+        """Return the message size of a type or topic as text: as written, else as computed, else empty."""
+        if carrier.size is not None:
+            return str(carrier.size)
+        messages = carrier.messages if isinstance(carrier, Topic) else (carrier.message,)
+        # No single size would be right for a topic with several messages.
+        return str(self.message_size(messages[0], None)) if len(messages) == 1 else ""
+
+
+def make_lookup(
+    architecture: Architecture,
+    findings: Iterable[Diagnostic] = (),
+    scope: DocumentScope | None = None,
+    timing_lookup: TimingLookup | None = None,
+) -> Lookup:
+    """Build all look-ups, each in one pass over the architecture."""
+    all_findings = tuple(findings)
+    components, nodes = architecture.components.values(), architecture.nodes.values()
+    return Lookup(
+        architecture,
+        all_findings,
+        scope or DocumentScope(),
+        readers_of=_group_values(
+            (o, connection) for connection in architecture.connections for o in connection.outputs
+        ),
+        nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
+        endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
+        findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
+        components_for_requirement=_group_values(
+            (use.text, c) for c in components for use in c.requirements if use.is_id
+        ),
+        outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
+        physical_types=_find_physical_types(architecture),
+        group_hues={group: hue for hue, group in enumerate(architecture.groups)},
+        message_size=message_sizes.make_size_query(architecture),
+        timing=timing_lookup,
+    )
+
+
+def _find_physical_types(architecture: Architecture) -> frozenset[str]:
+    """Return the types that no digital port uses."""
+    ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
+    digital = {port.type for port in ports if not port.physical}
+    return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
+
+
+def _containing_element(architecture: Architecture, element_id: str) -> str:
+    """Return the component of a port id; any other id is returned unchanged."""
+    port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
+    return port.component if port else element_id
+
+
+def _group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
+    """Collect values by key; keys and values keep the order in which they come."""
+    lists_by_key: defaultdict[str, list[T]] = defaultdict(list)
+    for key, item in pairs:
+        lists_by_key[key].append(item)
+    return {key: tuple(items) for key, items in lists_by_key.items()}

@@ -1,0 +1,326 @@
+"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts, partners."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+
+from archgen.model.architecture import Partner, Requirement
+from archgen.model.component import Component
+from archgen.model.deployment import Host
+from archgen.model.message_types import ConceptualType, flow_of
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.views import inline_text
+from archgen.views.elements.functional_level import make_component_table
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Facts,
+    Inlines,
+    Markdown,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    drop_empty_columns,
+)
+from archgen.views.tables import architecture_tables
+from archgen.views.timing import element_timing
+
+FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
+"""Drops the figures that were not drawn."""
+_HOME_CRUMB = ("Overview", "page:index")
+_FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
+
+
+def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
+    """Make a page for each type, requirement, use case, host, container and partner."""
+    for conceptual_type in architecture_tables.shown_types(lookup):
+        yield _type_page(lookup, conceptual_type)
+    for requirement in architecture_tables.shown_requirements(lookup):
+        yield _requirement_page(lookup, requirement)
+    for name in lookup.architecture.use_cases:
+        yield _use_case_page(lookup, name)
+    for host in lookup.architecture.hosts.values():
+        yield _host_page(lookup, host, keep_drawn)
+    for name in lookup.architecture.containers:
+        yield _container_page(lookup, name)
+    for partner in lookup.architecture.partners.values():
+        yield _partner_page(lookup, partner, keep_drawn)
+
+
+def _make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
+    """Make a page below a folder; its name is the anchor without the kind before the colon."""
+    crumbs = (_HOME_CRUMB, crumb) if crumb else (_HOME_CRUMB,)
+    path = f"{folder}/{make_page_slug(section.anchor.partition(':')[2])}.html"
+    return Page(path, section.anchor, section.title, folder, section, crumbs, lead)
+
+
+def make_page_slug(name: str) -> str:
+    """Turn a name into a file name that every system takes: lower case, words joined by hyphens."""
+    # Different names may give the same slug; `_make_paths_distinct` numbers such pages.
+    return re.sub(r"[^a-z0-9._-]+", "-", name.lower()).strip("-.") or "-"
+
+
+def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
+    """Make a page for each topic, service and action that a shown node uses."""
+    for topic in _shown_topics(lookup):
+        yield _topic_page(lookup, topic)
+
+
+def _shown_topics(lookup: Lookup) -> list[Topic]:
+    return [
+        topic
+        for topic in lookup.architecture.topics.values()
+        if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
+    ]
+
+
+def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
+    """List topics, services and actions, each kind in a table of its own."""
+    for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
+        flow_topics = [topic for topic in _shown_topics(lookup) if topic.flow == flow]
+        table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
+        if table:
+            yield table
+
+
+def _topic_page(lookup: Lookup, topic: Topic) -> Page:
+    facts: list[tuple[str, Inlines]] = [
+        (
+            "Message",
+            inline_text.join_inlines((Text(message, code=True),) for message in topic.messages)
+            or inline_text.UNKNOWN_INLINES,
+        ),
+        ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in topic.types)),
+        ("Size", inline_text.to_inlines(size) if (size := lookup.format_size(topic)) else ()),
+        *element_timing.make_traffic_facts(lookup, topic.name),
+    ]
+    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
+    blocks += _endpoint_blocks(lookup, topic, topic.writers, writer) + _endpoint_blocks(
+        lookup, topic, topic.readers, reader
+    )
+    crumb = ("Topics, services and actions", "page:topics")
+    return _make_page(
+        Section(f"topic:{topic.name}", topic.name, tuple(blocks)), f"{topic.flow}s", crumb, _FLOW_TITLES[topic.flow]
+    )
+
+
+def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ...], role: str) -> list[Block]:
+    if not endpoints:
+        return [Paragraph(inline_text.to_inlines(Text(f"{role}s. ", strong=True), Text("None.", muted=True)))]
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.node_link(lookup.architecture.nodes[endpoint.node])),
+            _component_cell(lookup, endpoint.component),
+            # Ports by their own names: the component is in the column before.
+            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" else (),
+        )
+        for endpoint in endpoints
+    )
+    columns = (Column(role), Column("Component", 1.3), Column("Port"), Column("QoS", 1.5))
+    return [Table(f"table:{role.lower()}s/{topic.name}", f"{role}s", columns, rows)]
+
+
+def _component_cell(lookup: Lookup, component_id: str | None) -> Inlines:
+    return (
+        inline_text.to_inlines(inline_text.component_link(lookup.architecture.components[component_id]))
+        if component_id
+        else ()
+    )
+
+
+def make_node_table(lookup: Lookup, nodes: list[Node], component: Component | None = None) -> list[Block]:
+    """List nodes with what they implement, package, status, host and timing; empty for no nodes.
+
+    On the page of a `component`, that component itself is left out of the list of implemented ones.
+    """
+    if not nodes:
+        return []
+    architecture, own_id = lookup.architecture, component.id if component else None
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.node_link(node)),
+            inline_text.join_inlines(
+                (inline_text.component_link(architecture.components[c]),) for c in node.implements if c != own_id
+            ),
+            inline_text.value_or_unknown(node.package),
+            inline_text.value_or_unknown(node.status),
+            inline_text.to_inlines(Text(node.host, ref=f"host:{node.host}"))
+            if node.host
+            else inline_text.UNKNOWN_INLINES,
+            _timing_cell(node),
+        )
+        for node in nodes
+    )
+    columns = (
+        Column("Node", 1.2),
+        Column("Implements too" if component else "Implements", 1.5),
+        Column("Package", 1.3),
+        Column("Status", 0.7),
+        Column("Host", 0.8),
+        Column("Timing"),
+    )
+    name, caption = (component.id, f"Nodes of {component.title}") if component else ("all", "Nodes")
+    return [drop_empty_columns(Table(f"table:nodes/{name}", caption, columns, rows))]
+
+
+def _timing_cell(node: Node) -> Inlines:
+    """Return the timing of all components that a node implements, in short."""
+    summary = "; ".join(
+        short_timing for timing in node.timing.values() if (short_timing := inline_text.format_short_timing(timing))
+    )
+    return inline_text.to_inlines(summary) if summary else ()
+
+
+def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
+    facts = [
+        ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
+        ("Size", _size_cell(lookup, conceptual_type)),
+        ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
+    ]
+    # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
+    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
+    architecture = lookup.architecture
+    producing_outputs = lookup.outputs_of_type.get(conceptual_type.name, ())
+    if producing_outputs:
+        blocks += [
+            Paragraph(inline_text.to_inlines(Text("Produced by", strong=True))),
+            Bullets(tuple(inline_text.port_link(architecture, output) for output in producing_outputs)),
+        ]
+    reading_inputs = dict.fromkeys(
+        c.input for output in producing_outputs for c in lookup.readers_of.get(output.id, ())
+    )
+    if reading_inputs:
+        blocks += [
+            Paragraph(inline_text.to_inlines(Text("Read by", strong=True))),
+            Bullets(tuple(inline_text.port_link(architecture, architecture.inputs[name]) for name in reading_inputs)),
+        ]
+    section = Section(f"type:{conceptual_type.name}", conceptual_type.name, tuple(blocks))
+    return _make_page(section, "types", ("Types", "page:types"), "Conceptual type")
+
+
+def _size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
+    """Return the message size of a type, or why it is not known."""
+    if size := lookup.format_size(conceptual_type):
+        return inline_text.to_inlines(size)
+    # Services and actions have no single size, and without a message the row above already says so.
+    if conceptual_type.message is None or flow_of(conceptual_type.message) != "topic":
+        return ()
+    return inline_text.to_inlines(
+        Text(f"unknown: {lookup.message_size(conceptual_type.message, None).why.replace('`', '')}", muted=True)
+    )
+
+
+def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
+    facts = [
+        (
+            "Use cases",
+            inline_text.join_inlines(architecture_tables.use_case_link(lookup, name) for name in requirement.use_cases),
+        ),
+        ("Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()),
+        ("Links", inline_text.link_urls(requirement.urls.items())),
+    ]
+    blocks: list[Block] = [Paragraph(inline_text.to_inlines(requirement.title))]
+    blocks += [Facts(known_facts)] if (known_facts := tuple((name, value) for name, value in facts if value)) else []
+    blocks += [Markdown(requirement.description)] if requirement.description else []
+    serving_components = list(lookup.components_for_requirement.get(requirement.id, ()))
+    if serving_components:
+        blocks.append(
+            make_component_table(
+                lookup, f"table:serving/{requirement.id}", "Components that serve it", serving_components
+            )
+        )
+    else:
+        blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
+    crumb = ("Requirements", "page:requirements")
+    section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
+    return _make_page(section, "requirements", crumb, "Requirement")
+
+
+def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
+    use_case = lookup.architecture.use_cases[use_case_id]
+    serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
+    table = architecture_tables.make_requirement_table(lookup, serving_requirements)
+    blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
+    blocks += [Markdown(use_case.description)] if use_case.description else []
+    blocks += [table] if table else []
+    crumb = ("Requirements", "page:requirements")
+    return _make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
+
+
+def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
+    architecture = lookup.architecture
+    facts = [
+        ("Cores", inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES),
+        ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        (
+            "Links",
+            inline_text.join_inlines(
+                inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}"))
+                for link in architecture.links.values()
+                if host.id in link.connects
+            ),
+        ),
+        (
+            "Containers",
+            inline_text.join_inlines(
+                inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
+                for container in architecture.containers.values()
+                if container.host == host.id
+            ),
+        ),
+    ]
+    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    blocks += [Markdown(host.description)] if host.description else []
+    blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id))
+    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id])
+    return _make_page(Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts", "page:hosts"), "Host")
+
+
+def _container_page(lookup: Lookup, container_id: str) -> Page:
+    container = lookup.architecture.containers[container_id]
+    facts = [
+        (
+            "Host",
+            inline_text.to_inlines(Text(container.host, ref=f"host:{container.host}"))
+            if container.host
+            else inline_text.UNKNOWN_INLINES,
+        ),
+        (
+            "Threads",
+            inline_text.to_inlines(str(container.threads)) if container.threads else inline_text.UNKNOWN_INLINES,
+        ),
+    ]
+    nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
+    crumb = ("Hosts", "page:hosts")
+    section = Section(f"container:{container_id}", container.title, (Facts(tuple(facts)), *nodes))
+    return _make_page(section, "containers", crumb, "Container")
+
+
+def _partner_page(lookup: Lookup, partner: Partner, keep_drawn: FigureFilter) -> Page:
+    """Make a partner's page: contact, components, and the nodes that it owns or that implement its components."""
+    blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
+    if partner.contact:
+        blocks.append(Facts((("Contact", inline_text.to_inlines(partner.contact)),)))
+    owned_components = [
+        c
+        for c in lookup.architecture.components.values()
+        if partner.id in c.owners and lookup.scope.shows_component(c.id)
+    ]
+    if owned_components:
+        caption = f"Components of {partner.title}"
+        blocks.append(make_component_table(lookup, f"table:owned/{partner.id}", caption, owned_components))
+    owned_ids = {component.id for component in owned_components}
+    node_ids = {
+        node.id for node in lookup.shown_nodes() if partner.id in node.owners or owned_ids & set(node.implements)
+    }
+    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.id in node_ids])
+    if not blocks:
+        blocks.append(Paragraph(inline_text.to_inlines(Text("This partner owns nothing yet.", muted=True))))
+    return _make_page(Section(f"partner:{partner.id}", partner.title, keep_drawn(blocks)), "partners", None, "Partner")

@@ -1,0 +1,252 @@
+"""The report's outline: chapters of the project and generated ones, in the order that the project asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from archgen.model.component import Component, Group
+from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
+from archgen.model.project_history import History
+from archgen.views import inline_text
+from archgen.views.chart_shapes import Drawing
+from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
+from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.lookup import Lookup
+from archgen.views.pages import timing_chapter
+from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
+from archgen.views.tables import architecture_tables, project_growth
+
+DetailLevel = Literal["functional", "implementation"]
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentEdition:
+    """What a document contains beside the architecture."""
+
+    revision: str = ""
+    level: DetailLevel = "implementation"
+    chapter_names: tuple[str, ...] = GENERATED_CHAPTERS
+    project_chapters: Mapping[str, Chapter] = field(default_factory=dict)
+    drawings: Mapping[str, Drawing] = field(default_factory=dict)
+    statistics: tuple[Table, ...] = ()
+    history: History = field(default_factory=History)
+    has_errors: bool = False
+    """The model has errors; documents show what is sound, and say so."""
+
+
+def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
+    """Make the outline of the report; appendices move to the end, else the project's order is kept."""
+    architecture = lookup.architecture
+    chapter_maker = _ChapterMaker(lookup, edition)
+    sections = [section for name in edition.chapter_names for section in chapter_maker.make_chapter(name)]
+    return Outline(
+        title=architecture.project.title,
+        subtitle="Software architecture",
+        facts=tuple(make_title_facts(lookup, edition)),
+        notices=make_notices(lookup, edition),
+        sections=tuple(section for section in sections if not section.appendix)
+        + tuple(section for section in sections if section.appendix),
+    )
+
+
+def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
+    """Yield the lines of the title page: version, revision, ROS distribution, partners."""
+    project = lookup.architecture.project
+    if project.version:
+        yield "Version", inline_text.to_inlines(project.version)
+    if edition.revision:
+        yield "Revision", inline_text.to_inlines(edition.revision)
+    if lookup.architecture.distro:
+        yield "ROS distribution", inline_text.to_inlines(lookup.architecture.distro)
+    if lookup.architecture.partners:
+        yield (
+            "Partners",
+            inline_text.join_lines(
+                inline_text.to_inlines(partner.title) for partner in lookup.architecture.partners.values()
+            ),
+        )
+
+
+def make_notices(lookup: Lookup, edition: DocumentEdition) -> tuple[Paragraph, ...]:
+    """Return what the reader must know first: that only a part or a level is shown, or that there are errors."""
+    paragraphs: list[Paragraph] = []
+    if lookup.scope.components is not None:
+        scope_text = inline_text.to_inlines(
+            "This document shows a part of the architecture: ", Text(lookup.scope.selector_text, code=True)
+        )
+        paragraphs.append(Paragraph(scope_text, "note"))
+    if edition.level == "functional":
+        paragraphs.append(Paragraph(inline_text.to_inlines("This document shows the functional level only."), "note"))
+    if edition.has_errors:
+        error_text = f"The architecture has errors ({architecture_tables.describe_severities(lookup.findings)}). What is sound is shown all the same."
+        paragraphs.append(Paragraph(inline_text.to_inlines(error_text), "error"))
+    return tuple(paragraphs)
+
+
+@dataclass(frozen=True, slots=True)
+class _ChapterMaker:
+    """Makes the sections of each chapter by the chapter's name."""
+
+    lookup: Lookup
+    edition: DocumentEdition
+
+    def make_chapter(self, name: str) -> Sequence[Section]:
+        """Return the sections of a chapter: several for `groups`, none where there is nothing to say."""
+        if name in GENERATED_CHAPTERS:
+            # One method for each name in GENERATED, called `_NAME`: they are found by name, so renaming one breaks its
+            # chapter. NAME is one of archgen's own words here, never the user's text.
+            generated_sections: Sequence[Section] = getattr(self, f"_{name}")()
+            return generated_sections
+        chapter = self.edition.project_chapters.get(name)
+        return (self._project_chapter(chapter),) if chapter else ()
+
+    def _project_chapter(self, chapter: Chapter) -> Section:
+        title, text = split_title(chapter)
+        return Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder),), page_break=True)
+
+    def _overview(self) -> list[Section]:
+        project = self.lookup.architecture.project
+        blocks: list[Block] = [Markdown(project.description)] if project.description else []
+        blocks += self._make_figures("overview", "components")
+        # Anchors are the same as the site's, so that references in shared blocks work in both.
+        return [Section("page:index", "Overview", tuple(blocks), page_break=True)] if blocks else []
+
+    def _make_figures(self, *names: str) -> Iterator[Figure]:
+        for name in names:
+            graph = self.edition.drawings.get(name)
+            if graph:
+                yield Figure(f"figure:{name}", name, graph.title, graph.alt)
+
+    def _groups(self) -> list[Section]:
+        return [self._group_section(self.lookup.architecture.groups[group]) for group in self.lookup.shown_groups()]
+
+    def _group_section(self, group: Group) -> Section:
+        sections = tuple(self._component_section(component) for component in self.lookup.shown_components(group.id))
+        blocks = self._keep_drawn(make_group_blocks(self.lookup, group))
+        return Section(f"group:{group.id}", group.title, blocks, sections, page_break=True)
+
+    def _component_section(self, component: Component) -> Section:
+        blocks = self._keep_drawn(make_component_blocks(self.lookup, component))
+        sections: tuple[Section, ...] = ()
+        if self.edition.level == "implementation":
+            figure_blocks = self._keep_drawn(make_implementation_blocks(self.lookup, component.id))
+            node_sections = tuple(
+                self._node_section(node.id, component) for node in self.lookup.nodes_of.get(component.id, ())
+            )
+            if node_sections:
+                title = f"Implementation of {component.title}"
+                sections = (Section(f"implementation:{component.id}", title, figure_blocks, node_sections),)
+        return Section(f"component:{component.id}", component.title, blocks, sections)
+
+    def _node_section(self, node_id: str, component: Component) -> Section:
+        """Describe a node at the first shown component that it implements; elsewhere refer to that place."""
+        node = self.lookup.architecture.nodes[node_id]
+        # Never exhausted: the component being written is itself shown and implemented by the node.
+        first_component = next(c for c in node.implements if self.lookup.scope.shows_component(c))
+        if first_component == component.id:
+            return Section(f"node:{node.id}", f"Node {node.id}", make_node_blocks(self.lookup, node))
+        link = inline_text.component_link(self.lookup.architecture.components[first_component])
+        reference = inline_text.to_inlines(
+            "The node ", inline_text.node_link(node), " implements this too; it is described at ", link, "."
+        )
+        # The plain anchor `node:ID` belongs to the full description and must stay unique.
+        anchor = f"node:{node.id}:{component.id}"
+        return Section(anchor, f"Node {node.id}", (Paragraph(reference),))
+
+    def _keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
+        """Drop figures that are not among this document's drawings."""
+        return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
+
+    def _deployment(self) -> list[Section]:
+        if self.edition.level == "functional":
+            return []
+        blocks = [
+            *self._make_figures("hosts", "ros"),
+            *_drop_missing(
+                architecture_tables.make_host_table(self.lookup), architecture_tables.make_link_table(self.lookup)
+            ),
+        ]
+        return [Section("page:hosts", "Deployment", tuple(blocks), page_break=True)] if blocks else []
+
+    def _timing(self) -> list[Section]:
+        timing_lookup = self.lookup.timing
+        if timing_lookup is None or self.edition.level == "functional":
+            return []
+        blocks = timing_chapter.make_timing_blocks(self.lookup, timing_lookup, self.edition.drawings)
+        sections = timing_chapter.make_timing_sections(self.lookup, timing_lookup, self.edition.drawings)
+        return [Section("page:timing", "Timing", blocks, sections, page_break=True)] if sections else []
+
+    def _chains(self) -> list[Section]:
+        blocks = timing_chapter.make_chain_overview(self.lookup)
+        if not blocks or self.lookup.scope.components is not None:
+            return []
+        sections = tuple(timing_chapter.make_chain_sections(self.lookup, self.edition.drawings))
+        return [Section("page:chains", "Chains of effect", blocks, sections, page_break=True)]
+
+    def _views(self) -> list[Section]:
+        project_views = self.lookup.architecture.views.values()
+        sections = [
+            Section(
+                f"view:{project_view.id}", project_view.title, tuple(self._make_figures(f"views/{project_view.id}"))
+            )
+            for project_view in project_views
+        ]
+        sections = [section for section in sections if section.blocks]
+        return [Section("page:views", "Views", (), tuple(sections), page_break=True)] if sections else []
+
+    def _types(self) -> list[Section]:
+        return self._make_appendix("types", "Type mapping", architecture_tables.make_type_table(self.lookup))
+
+    def _connections(self) -> list[Section]:
+        shown_connections = architecture_tables.shown_connections(self.lookup)
+        return self._make_appendix(
+            "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
+        )
+
+    def _requirements(self) -> list[Section]:
+        requirement_table = architecture_tables.make_requirement_table(
+            self.lookup, architecture_tables.shown_requirements(self.lookup)
+        )
+        return self._make_appendix(
+            "requirements",
+            "Requirements trace",
+            requirement_table,
+            architecture_tables.make_free_requirement_table(self.lookup),
+        )
+
+    def _open_points(self) -> list[Section]:
+        summary = Paragraph(
+            inline_text.to_inlines(
+                f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
+            )
+        )
+        return self._make_appendix(
+            "findings", "Open points", summary, architecture_tables.make_finding_table(self.lookup.findings)
+        )
+
+    def _statistics(self) -> list[Section]:
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
+
+    def _make_appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:
+        present_blocks = tuple(_drop_missing(*blocks))
+        return (
+            [Section(f"page:{anchor}", title, present_blocks, appendix=True, page_break=True)] if present_blocks else []
+        )
+
+
+def _drop_missing(*blocks: Block | None) -> Iterator[Block]:
+    """Drop the blocks that could not be made."""
+    return (block for block in blocks if block is not None)
+
+
+def split_title(chapter: Chapter) -> tuple[str, str]:
+    """Return a chapter's first heading and the rest; without a heading, its file name and the whole text."""
+    heading, _, body = chapter.text.lstrip().partition("\n")
+    if heading.startswith("# "):
+        # A heading of CommonMark may be closed by hash signs: `# Safety #`.
+        return heading[2:].strip().rstrip("#").strip(), body
+    name = chapter.path.rpartition("/")[2].rpartition(".")[0]
+    return name.replace("_", " ").replace("-", " ").capitalize(), chapter.text

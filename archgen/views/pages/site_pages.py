@@ -1,0 +1,213 @@
+"""The site's pages: one for each element, and those that span the architecture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group
+from archgen.model.node import Node
+from archgen.views import inline_text
+from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
+from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.lookup import Lookup
+from archgen.views.pages import context_pages, timing_chapter
+from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
+from archgen.views.shapes import Block, Facts, Figure, Markdown, Page, Paragraph, Section, Text
+from archgen.views.tables import architecture_tables, project_growth
+
+HOME_CRUMB = ("Overview", "page:index")
+
+
+def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
+    """Make every page of the site."""
+    page_maker = _PageMaker(lookup, edition)
+    functional_pages = [
+        page_maker.start_page(),
+        *page_maker.group_pages(),
+        *page_maker.chapter_pages(),
+        *page_maker.spanning_pages(),
+    ]
+    surrounding_pages = list(context_pages.make_context_pages(lookup, page_maker.keep_drawn))
+    implementation_pages = (
+        [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
+    )
+    # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
+    return _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+
+
+def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
+    """Add numbers to paths that several pages share: the names of two elements may give one file name."""
+    path_counts: dict[str, int] = {}
+    result = []
+    for page in page_list:
+        path_counts[page.path] = number = path_counts.get(page.path, 0) + 1
+        stem = page.path.removesuffix(".html")
+        result.append(page if number == 1 else replace(page, path=f"{stem}-{number}.html"))
+    return tuple(result)
+
+
+@dataclass(frozen=True, slots=True)
+class _PageMaker:
+    """Makes the pages; each method returns one page or yields several."""
+
+    lookup: Lookup
+    edition: DocumentEdition
+
+    @property
+    def architecture(self) -> Architecture:
+        """Return the architecture."""
+        return self.lookup.architecture
+
+    def keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
+        """Drop figures that are not among this site's drawings: of another level, or outside of the selection."""
+        return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
+
+    def make_figures(self, *names: str) -> Iterator[Figure]:
+        """Yield figures for those of the named drawings that exist."""
+        for name in names:
+            graph = self.edition.drawings.get(name)
+            if graph:
+                yield Figure(f"figure:{name}", name, graph.title, graph.alt)
+
+    def start_page(self) -> Page:
+        """Make the start page: description, title facts, clickable overview, table of groups."""
+        project = self.architecture.project
+        blocks: list[Block] = [Markdown(project.description)] if project.description else []
+        blocks.append(Facts(tuple(make_title_facts(self.lookup, self.edition))))
+        blocks += self.make_figures("overview", "components")
+        blocks += [table] if (table := architecture_tables.make_group_table(self.lookup)) else []
+        section = Section("page:index", project.title, tuple(blocks))
+        return Page("index.html", "page:index", project.title, "overview", section, lead="Software architecture")
+
+    def group_pages(self) -> Iterator[Page]:
+        """Make a page for each shown group, followed by its shown components."""
+        for name in self.lookup.shown_groups():
+            group = self.architecture.groups[name]
+            yield self._group_page(group)
+            for component in self.lookup.shown_components(name):
+                yield self._component_page(group, component)
+
+    def _group_page(self, group: Group) -> Page:
+        section = Section(f"group:{group.id}", group.title, self.keep_drawn(make_group_blocks(self.lookup, group)))
+        lead = self._lead_with_owners(
+            f"Group of {inline_text.count_noun(len(group.components), 'component')}", group.owners
+        )
+        return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
+
+    def _lead_with_owners(self, lead: str, owners: Iterable[str]) -> str:
+        """Return a page's lead with the titles of the owners behind it."""
+        return " · ".join([lead, *(self.architecture.partners[owner].title for owner in owners)])
+
+    def _component_page(self, group: Group, component: Component) -> Page:
+        sections = []
+        if self.edition.level == "implementation":
+            blocks = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
+            nodes = list(self.lookup.nodes_of.get(component.id, ()))
+            table = context_pages.make_node_table(self.lookup, nodes, component)
+            sections = [Section(f"implementation:{component.id}", "Implementation", (*blocks, *table))]
+        sections += self._finding_sections(component.id)
+        blocks = self.keep_drawn(make_component_blocks(self.lookup, component))
+        section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
+        crumbs = (HOME_CRUMB, (group.title, f"group:{group.id}"))
+        lead = self._lead_with_owners(f"Component{f' · {component.role}' if component.role else ''}", component.owners)
+        path = f"components/{component.id}.html"
+        return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
+
+    def _finding_sections(self, element_id: str) -> list[Section]:
+        """Return a section with the findings about an element, or nothing."""
+        findings = self.lookup.findings_of.get(element_id, ())
+        table = architecture_tables.make_finding_table(findings, f"table:findings/{element_id}")
+        return [Section(f"findings:{element_id}", "Open points", (table,))] if table else []
+
+    def node_pages(self) -> Iterator[Page]:
+        """Make a page for each shown node."""
+        for node in self.lookup.shown_nodes():
+            yield self._node_page(node)
+
+    def _node_page(self, node: Node) -> Page:
+        section = Section(
+            f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), tuple(self._finding_sections(node.id))
+        )
+        kinds = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
+        lead = self._lead_with_owners(
+            f"{kinds[0].upper()}{kinds[1:]}{f' · {node.status}' if node.status else ''}", node.owners
+        )
+        crumbs = (HOME_CRUMB, ("Nodes", "page:nodes"))
+        return Page(f"nodes/{node.id}.html", section.anchor, node.id, "nodes", section, crumbs, lead)
+
+    def chapter_pages(self) -> Iterator[Page]:
+        """Make a page for each chapter that the project wrote."""
+        for name, chapter in self.edition.project_chapters.items():
+            title, text = split_title(chapter)
+            # `shift` 0: the chapter's own headings follow the page's title, which was its first heading.
+            section = Section(f"chapter:{name}", title, (Markdown(text, chapter.folder, 0),))
+            path = f"chapters/{context_pages.make_page_slug(name.rpartition('.')[0])}.html"
+            yield Page(path, section.anchor, title, "chapters", section, (HOME_CRUMB,), "Chapter")
+
+    def spanning_pages(self) -> Iterator[Page]:
+        """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
+        shown_connections = architecture_tables.shown_connections(self.lookup)
+        yield self._spanning_page(
+            "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
+        )
+        yield self._spanning_page("types", "Types", architecture_tables.make_type_table(self.lookup))
+        requirement_table = architecture_tables.make_requirement_table(
+            self.lookup, architecture_tables.shown_requirements(self.lookup)
+        )
+        yield self._spanning_page(
+            "requirements",
+            "Requirements",
+            requirement_table,
+            architecture_tables.make_free_requirement_table(self.lookup),
+        )
+        summary = Paragraph(
+            inline_text.to_inlines(
+                f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
+            )
+        )
+        yield self._spanning_page(
+            "findings", "Open points", summary, architecture_tables.make_finding_table(self.lookup.findings)
+        )
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
+        yield from self._timing_pages()
+        view_drawings = [f"views/{name}" for name in self.architecture.views]
+        yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
+        if self.edition.level == "implementation":
+            yield self._spanning_page(
+                "nodes",
+                "Nodes",
+                *self.make_figures("ros"),
+                *context_pages.make_node_table(self.lookup, self.lookup.shown_nodes()),
+            )
+            yield self._spanning_page(
+                "topics", "Topics, services and actions", *context_pages.make_topic_tables(self.lookup)
+            )
+            host_tables = (
+                architecture_tables.make_host_table(self.lookup),
+                architecture_tables.make_link_table(self.lookup),
+            )
+            yield self._spanning_page("hosts", "Hosts", *self.make_figures("hosts"), *host_tables)
+
+    def _timing_pages(self) -> Iterator[Page]:
+        """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
+        graphs = self.edition.drawings
+        if self.lookup.timing is not None and self.edition.level == "implementation":
+            blocks = timing_chapter.make_timing_blocks(self.lookup, self.lookup.timing, graphs)
+            sections = timing_chapter.make_timing_sections(self.lookup, self.lookup.timing, graphs)
+            yield self._spanning_page("timing", "Timing", *blocks, sections=sections)
+        yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
+        crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
+        for section in timing_chapter.make_chain_sections(self.lookup, graphs):
+            path = f"chains/{section.anchor.partition(':')[2]}.html"
+            yield Page(path, section.anchor, section.title, "chains", section, crumbs, "Chain of effect")
+
+    def _spanning_page(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
+        """Make a page for the whole architecture."""
+        present_blocks = tuple(block for block in blocks if block is not None)
+        # A page without content is made all the same: the crumbs of other pages lead to it.
+        placeholder = Paragraph(inline_text.to_inlines(Text("There is nothing here yet.", muted=True)))
+        section = Section(f"page:{name}", title, present_blocks or (placeholder,), sections)
+        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME_CRUMB,))

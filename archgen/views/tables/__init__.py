@@ -1,0 +1,1 @@
+"""Tables of the whole architecture: lists, statistics, requirements."""

@@ -1,0 +1,350 @@
+"""Tables across the architecture: connections, types, requirements, hosts, chains, topics, findings.
+
+Each function returns None where there would be no rows, because a `Table` without rows must not exist.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.model.architecture import Chain, Requirement
+from archgen.model.component import Connection
+from archgen.model.message_types import ConceptualType
+from archgen.model.node import Topic
+from archgen.views import inline_text
+from archgen.views.elements.functional_level import first_sentence
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Column, Inlines, Table, Text
+
+TableRows = tuple[tuple[Inlines, ...], ...]
+
+
+def make_group_table(lookup: Lookup) -> Table | None:
+    """List the shown groups with owners, size and purpose."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.group_link(architecture, name)),
+            inline_text.owner_links(architecture, architecture.groups[name].owners),
+            inline_text.to_inlines(str(len(architecture.groups[name].components))),
+            inline_text.value_or_unknown(first_sentence(architecture.groups[name].description)),
+        )
+        for name in lookup.shown_groups()
+    )
+    columns = (Column("Group", 1.1), Column("Owner"), Column("Components", 0.6, "right"), Column("Purpose", 2.5))
+    return Table("table:groups", "Groups of components", columns, rows) if rows else None
+
+
+def make_connection_table(
+    lookup: Lookup, selected_connections: Iterable[Connection], anchor: str = "table:connections"
+) -> Table | None:
+    """List connections: input, source, type, message and number of edges."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            inline_text.port_link(architecture, architecture.inputs[connection.input]),
+            inline_text.describe_source(architecture, connection),
+            _type_cell(lookup, connection),
+            _message_cell(lookup, connection),
+            inline_text.to_inlines(str(len(connection.outputs))),
+        )
+        for connection in selected_connections
+    )
+    columns = (
+        Column("Input", 1.6),
+        Column("Comes from", 1.6),
+        Column("Type", 1.2),
+        Column("Message", 1.6),
+        Column("Edges", 0.5, "right"),
+    )
+    return Table(anchor, "All connections", columns, rows, wide=True) if rows else None
+
+
+def _type_cell(lookup: Lookup, connection: Connection) -> Inlines:
+    names = dict.fromkeys(lookup.architecture.outputs[output].type for output in connection.outputs)
+    return inline_text.join_inlines(inline_text.type_link(name) for name in names)
+
+
+def _message_cell(lookup: Lookup, connection: Connection) -> Inlines:
+    """Return the messages that a connection carries."""
+    architecture = lookup.architecture
+    outputs = [architecture.outputs[output] for output in connection.outputs]
+    # `physical` is a remark in place of a message, hence not set as code.
+    names = dict.fromkeys("physical" if o.physical else architecture.message_of(o) for o in outputs)
+    return inline_text.join_inlines(
+        (Text(name, code=name != "physical"),) if name else inline_text.UNKNOWN_INLINES for name in names
+    )
+
+
+def shown_connections(lookup: Lookup) -> list[Connection]:
+    """Return the connections with at least one end in scope."""
+    architecture = lookup.architecture
+    return [
+        connection
+        for connection in architecture.connections
+        if lookup.scope.shows_component(architecture.inputs[connection.input].component)
+        or any(lookup.scope.shows_component(architecture.outputs[output].component) for output in connection.outputs)
+    ]
+
+
+def shown_types(lookup: Lookup) -> list[ConceptualType]:
+    """Return the types that shown ports use or read; without a scope all of them, used or not."""
+    architecture = lookup.architecture
+    if lookup.scope.components is None:
+        return list(architecture.types.values())
+    used = {output.type for output in architecture.outputs.values() if lookup.scope.shows_component(output.component)}
+    used |= {port.type for port in architecture.inputs.values() if lookup.scope.shows_component(port.component)}
+    for connection in shown_connections(lookup):
+        used |= {architecture.outputs[output].type for output in connection.outputs}
+    # In the order of the type mapping, not of the ports.
+    return [conceptual_type for conceptual_type in architecture.types.values() if conceptual_type.name in used]
+
+
+def make_type_table(lookup: Lookup) -> Table | None:
+    """List conceptual types with the messages that carry them."""
+    rows = tuple(
+        (
+            inline_text.type_link(conceptual_type.name),
+            message_cell(lookup, conceptual_type),
+            inline_text.to_inlines(size) if (size := lookup.format_size(conceptual_type)) else (),
+            inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
+            inline_text.to_inlines(describe_mapping(conceptual_type)),
+        )
+        for conceptual_type in shown_types(lookup)
+    )
+    columns = (
+        Column("Conceptual type", 1.3),
+        Column("ROS message", 1.9),
+        Column("Size", 0.6, "right"),
+        Column("Outputs", 0.5, "right"),
+        Column("Remarks", 1.6),
+    )
+    return Table("table:types", "Mapping of conceptual types to ROS messages", columns, rows) if rows else None
+
+
+def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
+    """Return the message of a type, or that it needs none, or that it is not known yet."""
+    if conceptual_type.message:
+        return inline_text.to_inlines(Text(conceptual_type.message, code=True))
+    return (
+        inline_text.to_inlines(Text("none: physical", muted=True))
+        if conceptual_type.name in lookup.physical_types
+        else inline_text.UNKNOWN_INLINES
+    )
+
+
+def describe_mapping(conceptual_type: ConceptualType) -> str:
+    """Describe the rest of a type's mapping on one line: comment, status, parts of a service or action."""
+    inner_messages = [
+        f"{label}: {name}"
+        for label, name in (
+            ("request", conceptual_type.request),
+            ("response", conceptual_type.response),
+            ("feedback", conceptual_type.feedback),
+        )
+        if name
+    ]
+    planned_remark = "message is planned" if conceptual_type.status == "planned" else ""
+    comment = " ".join((conceptual_type.comment or "").split())
+    return "; ".join(part for part in (comment, planned_remark, *inner_messages) if part)
+
+
+def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requirement]) -> Table | None:
+    """List requirements with the components that serve them."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(requirement.id, ref=f"requirement:{requirement.id}")),
+            inline_text.to_inlines(requirement.title),
+            inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
+            inline_text.join_inlines(
+                (inline_text.component_link(component),)
+                for component in lookup.components_for_requirement.get(requirement.id, ())
+            )
+            or inline_text.to_inlines(Text("no component yet", muted=True)),
+        )
+        for requirement in selected_requirements
+    )
+    columns = (
+        Column("Id", 0.5),
+        Column("Requirement", 1.8),
+        Column("Use cases", 1.0),
+        Column("Served by", 1.8),
+    )
+    return (
+        Table("table:requirements", "Requirements and the components that serve them", columns, rows) if rows else None
+    )
+
+
+def use_case_link(lookup: Lookup, use_case_id: str) -> Inlines:
+    """Link to a use case; plain text where it is not declared."""
+    declared_use_case = lookup.architecture.use_cases.get(use_case_id)
+    return (
+        inline_text.to_inlines(Text(use_case_id, ref=f"use_case:{use_case_id}"))
+        if declared_use_case
+        else inline_text.to_inlines(use_case_id)
+    )
+
+
+def shown_requirements(lookup: Lookup) -> list[Requirement]:
+    """Return the requirements that shown components serve; without a scope all of them."""
+    architecture = lookup.architecture
+    if lookup.scope.components is None:
+        return list(architecture.requirements.values())
+    return [
+        requirement
+        for requirement in architecture.requirements.values()
+        if any(
+            lookup.scope.shows_component(component.id)
+            for component in lookup.components_for_requirement.get(requirement.id, ())
+        )
+    ]
+
+
+def make_free_requirement_table(lookup: Lookup) -> Table | None:
+    """List the requirements that components state in their own words instead of by id."""
+    rows = tuple(
+        (inline_text.to_inlines(inline_text.component_link(component)), inline_text.to_inlines(use.text))
+        for group in lookup.shown_groups()
+        for component in lookup.shown_components(group)
+        for use in component.requirements
+        if not use.is_id
+    )
+    columns = (Column("Component"), Column("Requirement", 2.5))
+    return Table("table:own_requirements", "Requirements in the components' own words", columns, rows) if rows else None
+
+
+def make_finding_table(findings: Iterable[Diagnostic], anchor: str = "table:open_points") -> Table | None:
+    """List findings with their help and their place."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(finding.severity or "", strong=finding.severity is Severity.ERROR)),
+            inline_text.join_lines(_finding_lines(finding)),
+            inline_text.to_inlines(
+                Text(f"{finding.span.file}:{finding.span.line}" if finding.span.file else "", code=True)
+            ),
+            inline_text.to_inlines(finding.rule),
+        )
+        for finding in findings
+    )
+    columns = (Column("Severity", 0.6), Column("Finding", 3), Column("Place", 1.3), Column("Rule", 1))
+    return Table(anchor, "Open points", columns, rows) if rows else None
+
+
+def _finding_lines(finding: Diagnostic) -> list[Inlines]:
+    """Return the message of a finding and, muted, its help."""
+    return [
+        inline_text.message_to_inlines(message, muted=muted)
+        for message, muted in ((finding.message, False), (finding.help, True))
+        if message
+    ]
+
+
+def make_host_table(lookup: Lookup) -> Table | None:
+    """List hosts with their containers and the shown nodes."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(host.title, ref=f"host:{host.id}")),
+            inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES,
+            inline_text.join_inlines(
+                inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
+                for container in architecture.containers.values()
+                if container.host == host.id
+            ),
+            inline_text.join_inlines(
+                (inline_text.node_link(node),) for node in lookup.shown_nodes() if node.host == host.id
+            ),
+        )
+        for host in architecture.hosts.values()
+    )
+    columns = (Column("Host"), Column("Cores", 0.5, "right"), Column("Containers"), Column("Nodes", 3))
+    return Table("table:hosts", "Hosts and what runs on them", columns, rows) if rows else None
+
+
+def make_link_table(lookup: Lookup) -> Table | None:
+    """List the links between hosts."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}")),
+            inline_text.join_inlines(inline_text.to_inlines(Text(host, ref=f"host:{host}")) for host in link.connects),
+            inline_text.value_or_unknown(str(link.bandwidth) if link.bandwidth else None),
+            inline_text.value_or_unknown(
+                f"{link.best or '?'} to {link.worst or '?'}" if link.best or link.worst else None
+            ),
+        )
+        for link in lookup.architecture.links.values()
+    )
+    columns = (Column("Link"), Column("Connects", 1.5), Column("Bandwidth"), Column("Latency"))
+    # Links have no page or section of their own: references to one lead to its row.
+    anchors = tuple(f"link:{name}" for name in lookup.architecture.links)
+    return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
+
+
+def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table | None:
+    """List chains of effect with their deadlines."""
+    architecture = lookup.architecture
+    chain_list = list(selected_chains)
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(chain.title, ref=f"chain:{chain.id}")),
+            inline_text.join_inlines((waypoint_link(lookup, point.kind, point.id) for point in chain.through), " → "),
+            inline_text.value_or_unknown(str(chain.deadline) if chain.deadline else None),
+            inline_text.join_inlines(
+                inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
+            ),
+        )
+        for chain in chain_list
+    )
+    columns = (Column("Chain"), Column("Through", 3), Column("Deadline", 0.7, "right"), Column("Requirements", 0.8))
+    # Rows take references only in this table. Where timing judged the chains, `make_bound_table` replaces it, and each
+    # chain has a section with this anchor; anchors must be unique in a document.
+    anchors = tuple(f"chain:{chain.id}" for chain in chain_list)
+    return Table("table:chains", "Chains of effect and their deadlines", columns, rows, anchors) if rows else None
+
+
+def waypoint_link(lookup: Lookup, kind: str, element_id: str) -> Inlines:
+    """Link to one element of a chain: a node, a component or an output."""
+    architecture = lookup.architecture
+    if kind == "node":
+        return (inline_text.node_link(architecture.nodes[element_id]),)
+    if kind == "component":
+        return (inline_text.component_link(architecture.components[element_id]),)
+    return inline_text.port_link(architecture, architecture.outputs[element_id])
+
+
+def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: str, caption: str) -> Table | None:
+    """List topics, services or actions with writers and readers."""
+    nodes = lookup.architecture.nodes
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.topic_link(topic.name)),
+            inline_text.join_inlines((Text(message, code=True),) for message in topic.messages)
+            or inline_text.UNKNOWN_INLINES,
+            # A node may have several endpoints on a topic; it is named once.
+            inline_text.join_inlines(
+                (inline_text.node_link(nodes[e]),) for e in dict.fromkeys(w.node for w in topic.writers)
+            ),
+            inline_text.join_inlines(
+                (inline_text.node_link(nodes[e]),) for e in dict.fromkeys(r.node for r in topic.readers)
+            ),
+        )
+        for topic in selected_topics
+    )
+    columns = (Column("Name", 1.5), Column("Message", 1.6), Column("From", 1.2), Column("To", 1.5))
+    return Table(anchor, caption, columns, rows) if rows else None
+
+
+def describe_severities(findings: Iterable[Diagnostic]) -> str:
+    """Count findings in words: `1 error, 2 warnings and 3 notes`, or `nothing`."""
+    counts = Counter(finding.severity for finding in findings)
+    names = ((Severity.ERROR, "error"), (Severity.WARNING, "warning"), (Severity.NOTE, "note"))
+    phrases = [inline_text.count_noun(counts[severity], noun) for severity, noun in names if counts[severity]]
+    return (
+        " and ".join([", ".join(phrases[:-1]), phrases[-1]])
+        if len(phrases) > 1
+        else phrases[0]
+        if phrases
+        else "nothing"
+    )

@@ -1,0 +1,138 @@
+"""Rows of plain text for `archgen list`, one table for each kind of element."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from archgen.views.lookup import Lookup
+from archgen.views.tables import architecture_tables
+
+TextRow = tuple[str, ...]
+
+
+def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[TextRow]]:
+    """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
+    columns, make_rows = _TABLES_BY_KIND[kind]
+    return columns, list(make_rows(lookup))
+
+
+def _component_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for group in lookup.shown_groups():
+        for c in lookup.shown_components(group):
+            nodes = ", ".join(node.id for node in lookup.nodes_of.get(c.id, ()))
+            yield (
+                c.id,
+                c.title,
+                ", ".join(c.owners),
+                c.role or "",
+                str(len(c.inputs)),
+                str(len(c.outputs)),
+                nodes,
+                str(c.at),
+            )
+
+
+def _node_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for n in lookup.shown_nodes():
+        location = str(n.at) if n.written else ""
+        owners = ", ".join(n.owners)
+        yield (
+            n.id,
+            ", ".join(n.implements),
+            owners,
+            n.package or "",
+            n.status or "",
+            n.host or "",
+            n.full_name,
+            location,
+        )
+
+
+def _group_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for name in lookup.shown_groups():
+        group = lookup.architecture.groups[name]
+        yield (group.id, group.title, ", ".join(group.owners), str(len(group.components)), str(group.at))
+
+
+def _connection_rows(lookup: Lookup) -> Iterator[TextRow]:
+    architecture = lookup.architecture
+    for c in architecture_tables.shown_connections(lookup):
+        outputs = [architecture.outputs[output] for output in c.outputs]
+        types = ", ".join(dict.fromkeys(output.type or "?" for output in outputs))
+        messages = ", ".join(
+            dict.fromkeys("physical" if o.physical else architecture.message_of(o) or "?" for o in outputs)
+        )
+        reader = ", ".join(architecture.components[architecture.inputs[c.input].component].owners)
+        writers = ", ".join(
+            dict.fromkeys(o for output in outputs for o in architecture.components[output.component].owners)
+        )
+        yield (c.input, c.target, c.kind, types, messages, str(len(outputs)), writers, reader, str(c.at))
+
+
+def _edge_rows(lookup: Lookup) -> Iterator[TextRow]:
+    architecture = lookup.architecture
+    for edge in architecture.edges:
+        output = architecture.outputs[edge.output]
+        if lookup.scope.shows_component(output.component) or lookup.scope.shows_component(
+            architecture.inputs[edge.input].component
+        ):
+            yield (edge.output, edge.input, output.type or "?", architecture.message_of(output) or "", str(edge.at))
+
+
+def _topic_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for topic in lookup.architecture.topics.values():
+        if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers)):
+            writers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.writers))
+            readers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.readers))
+            yield (topic.name, topic.flow, ", ".join(topic.messages), writers, readers)
+
+
+def _type_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for conceptual_type in architecture_tables.shown_types(lookup):
+        yield (
+            conceptual_type.name,
+            conceptual_type.message or "",
+            lookup.format_size(conceptual_type),
+            architecture_tables.describe_mapping(conceptual_type),
+        )
+
+
+def _requirement_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for r in architecture_tables.shown_requirements(lookup):
+        component_ids = ", ".join(component.id for component in lookup.components_for_requirement.get(r.id, ()))
+        yield (r.id, r.title, ", ".join(r.use_cases), component_ids, str(r.at))
+
+
+def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for chain in lookup.architecture.chains.values():
+        yield (
+            chain.id,
+            chain.title,
+            " > ".join(point.id for point in chain.through),
+            str(chain.deadline or ""),
+            str(chain.at),
+        )
+
+
+def _host_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for host in lookup.architecture.hosts.values():
+        nodes = ", ".join(node.id for node in lookup.shown_nodes() if node.host == host.id)
+        yield (host.id, host.title, str(host.cores or ""), nodes, str(host.at))
+
+
+# The column names are the header of what `archgen list` writes, so they are visible to users.
+_TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
+    "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
+    "nodes": (("id", "implements", "owner", "package", "status", "host", "ros_name", "place"), _node_rows),
+    "groups": (("id", "title", "owner", "components", "place"), _group_rows),
+    "connections": (
+        ("input", "from", "kind", "types", "messages", "edges", "from_owner", "to_owner", "place"),
+        _connection_rows,
+    ),
+    "edges": (("output", "input", "type", "message", "place"), _edge_rows),
+    "topics": (("name", "flow", "messages", "writers", "readers"), _topic_rows),
+    "types": (("type", "message", "size", "remarks"), _type_rows),
+    "requirements": (("id", "title", "use_cases", "served_by", "place"), _requirement_rows),
+    "chains": (("id", "title", "through", "deadline", "place"), _chain_rows),
+    "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
+}

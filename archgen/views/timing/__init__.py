@@ -1,0 +1,1 @@
+"""What timing says, as blocks, tables and charts."""

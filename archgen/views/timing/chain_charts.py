@@ -1,0 +1,172 @@
+"""Charts of chains: the terms of a chain against its deadline. Charts of hosts are in `load_charts`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.lookup import Lookup
+from archgen.views.timing import load_charts, value_format
+from archgen.views.timing.load_charts import is_outside_scope, to_float
+from archgen.views.timing.timing_lookup import TimingLookup
+
+_NS_PER_MS = 10**6
+_TERM_KINDS = ("sampling", "response", "link")
+"""Kinds of term in the order in which they follow each other in time; fields of `Term`."""
+
+
+def make_timing_charts(lookup: Lookup) -> tuple[Chart, ...]:
+    """Make the charts of all chains and hosts with something in scope; none without a timing analysis."""
+    timing_lookup = lookup.timing
+    return (
+        ()
+        if timing_lookup is None
+        else (*_make_chain_charts(lookup, timing_lookup), *load_charts.make_load_charts(lookup, timing_lookup))
+    )
+
+
+def _make_chain_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Chart]:
+    """Yield the chart of each chain that runs through a shown activity."""
+    for result in timing_lookup.chains:
+        is_shown = lookup.scope.nodes is None or not all(
+            is_outside_scope(lookup, timing_lookup, term.activity) for term in result.terms
+        )
+        if result.terms and is_shown and result.id in lookup.architecture.chains:
+            yield make_chain_chart(lookup, timing_lookup, result)
+
+
+def make_chain_chart(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Chart:
+    """Draw the terms of a chain's bound below each other, and their sum against the deadline."""
+    title = lookup.architecture.chains[result.id].title
+    deadline = result.deadline.value if result.deadline else None
+    verdict_text, term_bars = (
+        describe_chain_verdict(result, timing_lookup),
+        tuple(_make_term_bars(lookup, timing_lookup, result)),
+    )
+    return Chart(
+        f"chains/{result.id}",
+        f"{title}: how the time adds up",
+        "ms",
+        (*term_bars, _bound_bar(result), _best_case_bar(result)),
+        limit=(to_float(deadline / _NS_PER_MS), f"deadline {value_format.display_duration(TimingValue(deadline))}")
+        if deadline
+        else None,
+        conclusion=verdict_text,
+        legend=tuple(_legend_keys(result)),
+        notes=(load_charts.OUTSIDE_NOTE,) if any(bar.is_outside for bar in term_bars) else (),
+        alt=f"{title} runs through {', '.join(result.through)}. {verdict_text}",
+    )
+
+
+def _make_term_bars(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Iterator[ChartBar]:
+    """Yield a bar for each step, starting where the known part of the steps before it ends."""
+    start = Fraction(0)
+    for term in result.terms:
+        values = (term.sampling, term.response, term.link)
+        activity = timing_lookup.analysis.system.activities.get(term.activity)
+        yield ChartBar(
+            term.activity,
+            tuple(_term_segment(kind, value) for kind, value in zip(_TERM_KINDS, values, strict=True)),
+            _format_increment(values),
+            to_float(start / _NS_PER_MS),
+            ref=f"node:{activity.node}" if activity else None,
+            is_outside=is_outside_scope(lookup, timing_lookup, term.activity),
+        )
+        # An unknown part has no length; all that follows then begins too early, which the hatched piece shows.
+        start += sum_known_parts(term)
+
+
+def sum_known_parts(term: ChainTerm) -> Fraction:
+    """Add up the known parts of a step, in ns."""
+    return sum((value.value or Fraction(0) for value in (term.sampling, term.response, term.link)), Fraction(0))
+
+
+_TERM_KIND_WORDS = {"sampling": "waits", "response": "responds within", "link": "on the network"}
+
+
+def _term_segment(kind: str, value: TimingValue) -> BarSegment:
+    """Draw one part of a step."""
+    length = None if value.value is None else to_float(value.value / _NS_PER_MS)
+    duration_text = value_format.display_duration(value)
+    return BarSegment(length, kind, duration_text, f"{_TERM_KIND_WORDS[kind]}: {duration_text}")  # type: ignore[arg-type]
+
+
+def _format_increment(values: tuple[TimingValue, ...]) -> str:
+    """Format what a step adds: the sum of what is known, and "+ ?" where more is unknown."""
+    known_values = [value for value in values if value.value is not None]
+    total = sum((value.value or Fraction(0) for value in known_values), Fraction(0))
+    # A part with a sign before it bounds from one side only; a zero sum of such parts says nothing.
+    is_partial = len(known_values) < len(values) or any(value_format.bound_sign(value) for value in known_values)
+    if is_partial and not total:
+        return value_format.UNKNOWN_FIGURE
+    return f"+ {value_format.display_duration(TimingValue(total))}{' + ?' if len(known_values) < len(values) else ''}"
+
+
+def _bound_bar(result: ChainResult) -> ChartBar:
+    """Draw the bound; without a complete one a hatched piece follows."""
+    length = None if result.bound.value is None else to_float(result.bound.value / _NS_PER_MS)
+    known_segments = (
+        ()
+        if length is None
+        else (BarSegment(length, result.verdict, "", f"bound: {value_format.display_duration(result.bound)}"),)
+    )
+    unknown_segments = (
+        () if result.bound.complete and length is not None else (BarSegment(None, "open", "?", "no bound is known"),)
+    )
+    return ChartBar(
+        "Reaction at the latest",
+        (*known_segments, *unknown_segments),
+        value_format.display_duration(result.bound),
+        strong=True,
+    )
+
+
+def _best_case_bar(result: ChainResult) -> ChartBar:
+    """Draw the best case."""
+    length = None if result.best.value is None else to_float(result.best.value / _NS_PER_MS)
+    segment = BarSegment(length, "best", "", f"best case: {value_format.display_lower_bound(result.best)}")
+    return ChartBar("At the earliest", (segment,), value_format.display_lower_bound(result.best))
+
+
+def describe_chain_verdict(result: ChainResult, timing_lookup: TimingLookup) -> str:
+    """Describe in one sentence whether a chain meets its deadline, and by how much."""
+    bound, deadline = result.bound, result.deadline
+    missing_text = value_format.describe_missing(bound, timing_lookup.analysis, 4)
+    if result.verdict == "open":
+        bound_text = value_format.display_duration(bound) + (f"; no bound: {missing_text}" if missing_text else "")
+        return (
+            f"Open: {bound_text}."
+            if deadline or missing_text
+            else f"At the latest after {bound_text}; it has no deadline."
+        )
+    if deadline is None or deadline.value is None or bound.value is None:
+        return f"{result.verdict.capitalize()}: {value_format.display_duration(bound)}."
+    spare_time = deadline.value - bound.value
+    deadline_text = f"deadline of {value_format.display_duration(deadline)}"
+    if result.verdict == "met":
+        return f"Met: at the latest after {value_format.display_duration(bound)}, {_format_spare(spare_time)} before the {deadline_text}."
+    return (
+        f"Missed: up to {value_format.display_duration(bound)}, {_format_spare(-spare_time)} after the {deadline_text}."
+    )
+
+
+def _format_spare(value: Fraction) -> str:
+    """Format an exact duration in ns."""
+    return value_format.display_duration(TimingValue(value))
+
+
+def _legend_keys(result: ChainResult) -> Iterator[str]:
+    """Yield the kinds of segment that this chart has."""
+    for kind in _TERM_KINDS:
+        if any(getattr(term, kind).value for term in result.terms):
+            yield kind
+    if any(_has_unknown_part(term) for term in result.terms) or not result.bound.complete:
+        yield "unknown"
+
+
+def _has_unknown_part(term: ChainTerm) -> bool:
+    """Whether any part of a step is unknown."""
+    return any(value.value is None for value in (term.sampling, term.response, term.link))

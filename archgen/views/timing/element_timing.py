@@ -1,0 +1,178 @@
+"""What the timing analysis found about one element: a chain, a node, a component, a host or a topic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from archgen.model.node import Node
+from archgen.timing.analysis import ChainResult, ResponseTier
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.timing_system import Activity
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
+from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, value_format
+from archgen.views.timing.timing_lookup import TimingLookup
+
+
+def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
+    """Describe the timing of one chain: facts, the chart of its terms, and each term with its reason."""
+    chain = lookup.architecture.chains[result.id]
+    architecture = lookup.architecture
+    facts: list[tuple[str, Inlines]] = [
+        (
+            "Through",
+            inline_text.join_inlines(
+                (timing_tables.activity_link(timing_lookup, name) for name in result.through), " → "
+            ),
+        ),
+        ("Verdict", inline_text.to_inlines(chain_charts.describe_chain_verdict(result, timing_lookup))),
+        (
+            "Reaction time and data age, at the latest",
+            inline_text.to_inlines(value_format.display_bound(result.bound, timing_lookup.analysis)),
+        ),
+        ("At the earliest", timing_tables.figure_cell(value_format.display_lower_bound(result.best))),
+        (
+            "Reaction time without the first wait",
+            timing_tables.figure_cell(value_format.display_duration(result.reduced_reaction)),
+        ),
+        (
+            "Data age, from the first reading on",
+            timing_tables.figure_cell(value_format.display_duration(result.reduced_age)),
+        ),
+        (
+            "Requirements",
+            inline_text.join_inlines(
+                inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
+            ),
+        ),
+        ("Assumptions", inline_text.to_inlines("; ".join(dict.fromkeys(_list_assumptions(timing_lookup, result))))),
+    ]
+    name = f"chains/{result.id}"
+    title = f"{chain.title}: how the time adds up"
+    rows = tuple(_term_row(timing_lookup, result, index) for index in range(len(result.terms)))
+    columns = (
+        Column("Activity", 1.6),
+        Column("Waits", 0.85, "right"),
+        Column("Responds", 0.85, "right"),
+        Column("Link", 0.7, "right"),
+        Column("Why", 1.8),
+        Column("Place", 1.4),
+    )
+    return (
+        Facts(tuple((key, value) for key, value in facts if value and not timing_tables.is_blank(value))),
+        Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
+        *([Table(f"table:{name}", f"{chain.title}: terms of the bound", columns, rows)] if rows else []),
+    )
+
+
+def _list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
+    """Yield the assumptions of a bound in words.
+
+    Tiers of responses name their activities, so the analysis' own words for the same assumption are left out.
+    """
+    activities_by_tier: dict[ResponseTier, list[str]] = {}
+    for term in result.terms:
+        response = timing_lookup.analysis.responses.get(term.activity)
+        if response and response.tier in {"declared", "dedicated"}:
+            activities_by_tier.setdefault(response.tier, []).append(term.activity)
+    # These texts must equal the assumptions that the timing analysis writes, or both versions appear in the report.
+    redundant_words = {f"the response of {name} is as declared" for name in activities_by_tier.get("declared", ())}
+    redundant_words |= {"assuming a dedicated core"} if "dedicated" in activities_by_tier else set()
+    yield from (word for word in result.bound.assumptions if word not in redundant_words)
+    yield from (
+        f"{timing_tables.TIER_WORDS[tier]}: {', '.join(dict.fromkeys(names))}"
+        for tier, names in activities_by_tier.items()
+    )
+
+
+def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
+    term = result.terms[index]
+    return (
+        timing_tables.activity_link(timing_lookup, term.activity),
+        _duration_cell(term.sampling),
+        _duration_cell(term.response),
+        _duration_cell(term.link),
+        inline_text.to_inlines(term.why),
+        inline_text.to_inlines(Text(timing_tables.format_location(term.at), code=True))
+        if timing_tables.format_location(term.at)
+        else (),
+    )
+
+
+def _duration_cell(value: TimingValue) -> Inlines:
+    return timing_tables.figure_cell(value_format.display_duration(value))
+
+
+def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]:
+    """Yield how often each activity of a node runs, and within what time it responds."""
+    timing_lookup = lookup.timing
+    if timing_lookup is None:
+        return
+    activities = timing_lookup.activities_of_node.get(node.id, ())
+    for activity in activities:
+        # Only a node with several activities needs to tell them apart.
+        suffix = f" of {activity.id.rsplit('.', 1)[-1]}" if len(activities) > 1 else ""
+        yield from _activity_facts(timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()), suffix)
+
+
+def _activity_facts(
+    timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
+) -> Iterator[tuple[str, Inlines]]:
+    """Yield rate and response of one activity, as far as they are known."""
+    pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
+    if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+        # A written rate needs no source here: the fact `Timing` beside it says what was written.
+        source = timing_tables.describe_rate_source(timing_lookup, activity, pace, origin_ids) if pace.inferred else ()
+        yield f"Rate{suffix}", (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
+    if response and response.worst.value is not None:
+        tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
+        yield (
+            f"Response{suffix}",
+            inline_text.to_inlines(f"within {value_format.display_duration(response.worst)}{tier}"),
+        )
+
+
+def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> Inlines:
+    """Describe how often the activities of a component run: `10 Hz, from scanner`."""
+    timing_lookup = lookup.timing
+    if timing_lookup is None:
+        return ()
+    short_name = component_id.rsplit(".", 1)[-1]
+    node_activities = [activity for node in nodes for activity in timing_lookup.activities_of_node.get(node.id, ())]
+    # A node may implement several components, and an activity names its component by full id, by short name, or not at
+    # all.
+    matching_activities = [
+        activity for activity in node_activities if activity.component in {None, short_name, component_id}
+    ]
+    lines = []
+    for activity in matching_activities:
+        pace = timing_lookup.analysis.paces.get(activity.id)
+        if pace and (
+            rate_text := rate_phrases.format_rate_sentence(pace, timing_lookup.rate_origins.get(activity.id, ()))
+        ):
+            lines.append(
+                inline_text.to_inlines(f"{activity.id}: {rate_text}" if len(matching_activities) > 1 else rate_text)
+            )
+    return inline_text.join_lines(lines)
+
+
+def make_load_blocks(lookup: Lookup, host_id: str) -> tuple[Block, ...]:
+    """Return the chart of a host's load, activity by activity; empty where nothing runs on the host."""
+    timing_lookup = lookup.timing
+    load = timing_lookup.analysis.hosts.get(host_id) if timing_lookup else None
+    if load is None or not load.activity_shares:
+        return ()
+    title = f"{lookup.architecture.hosts[host_id].title}: load by activity"
+    return (Figure(f"figure:load/{host_id}", f"load/{host_id}", title, load_charts.describe_load(load)),)
+
+
+def make_traffic_facts(lookup: Lookup, topic_name: str) -> list[tuple[str, Inlines]]:
+    """Return the traffic of a topic in bytes per second; empty where it is not known."""
+    load = lookup.timing.analysis.topics.get(topic_name) if lookup.timing else None
+    if load is None or load.published.value is None:
+        return []
+    traffic_text = f"{value_format.display_traffic(load.published)} published"
+    if load.delivered.value is not None:
+        traffic_text += f", {value_format.display_traffic(load.delivered)} delivered to all readers"
+    return [("Traffic", inline_text.to_inlines(traffic_text))]

@@ -1,0 +1,41 @@
+"""Results of the timing analysis, with the look-ups that views need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.system.timing_system import Activity
+from archgen.views.timing import value_format
+
+
+@dataclass(frozen=True, slots=True)
+class TimingLookup:
+    """A timing analysis with its chains."""
+
+    analysis: Analysis
+    chains: tuple[ChainResult, ...] = ()
+    rate_origins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Activities that an inferred rate comes from, by activity id; rates that were written have no entry."""
+    activities_of_node: Mapping[str, tuple[Activity, ...]] = field(default_factory=dict)
+    """Activities of a node, by node id."""
+
+
+def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> TimingLookup:
+    """Build the look-ups of a timing analysis."""
+    activities_by_node: dict[str, tuple[Activity, ...]] = {}
+    for activity in analysis.system.activities.values():
+        activities_by_node[activity.node] = (*activities_by_node.get(activity.node, ()), activity)
+    return TimingLookup(analysis, tuple(chains), value_format.find_rate_origins(analysis), activities_by_node)
+
+
+def analyse_with_chains(architecture: Architecture) -> TimingLookup:
+    """Analyse the timing of an architecture, with its chains."""
+    # Imported here because the engine takes time to load, and most commands show no timing.
+    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.run_analysis import analyse_architecture
+
+    analysis = analyse_architecture(architecture)
+    return make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())

@@ -1,0 +1,242 @@
+"""Timing tables in documents: activities by period, rates and responses, loads of hosts, links and topics."""
+
+from __future__ import annotations
+
+from archgen.diagnostics.source_span import Span
+from archgen.timing.analysis import EventPace
+from archgen.timing.system.timing_system import Activity
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import PeriodStep as Step
+from archgen.views.timing import load_charts, rate_phrases, value_format
+from archgen.views.timing.timing_lookup import TimingLookup
+
+TIER_WORDS = {
+    "declared": "declared, assumed to hold",
+    "dedicated": "own core assumed",
+    "host": "any scheduler that never idles",
+    "priorities": "by fixed priorities",
+    "executor": "single-threaded executor",
+    "cores": "several cores",
+    "unknown": "",
+}
+"""How a response time was found, in words; see `Tier` in the timing analysis."""
+_SHORT_TIER_WORDS = {
+    **TIER_WORDS,
+    "declared": "declared",
+    "dedicated": "own core",
+    "host": "any scheduler",
+    "priorities": "priorities",
+}
+"""Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
+_VERDICT_WORDS = {
+    "schedulable": "in time",
+    "overload": "overloaded",
+    "undecided": "not decided by load alone",
+    "unknown": "unknown",
+}
+_MUTED_UNKNOWN = Text("unknown", muted=True)
+
+
+def figure_cell(text: str) -> Inlines:
+    """Return a table cell for a formatted figure; an unknown figure is muted, an empty one stays empty."""
+    return (_MUTED_UNKNOWN,) if text == value_format.UNKNOWN_FIGURE else inline_text.to_inlines(text) if text else ()
+
+
+def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """Count the shown activities on each step of the period scale, and name them."""
+    shown_activities = [
+        activity
+        for activity in timing_lookup.analysis.system.activities.values()
+        if lookup.scope.shows_node(activity.node)
+    ]
+    # Every step in the order of the scale, so that the rows need no sorting; empty steps are dropped below.
+    links_by_step: dict[Step, list[Inlines]] = {step: [] for step in rate_phrases.PERIOD_STEP_WORDS}
+    for activity in shown_activities:
+        links_by_step[rate_phrases.find_period_step(timing_lookup.analysis.paces.get(activity.id))].append(
+            activity_link(timing_lookup, activity.id)
+        )
+    rows = tuple(
+        (
+            inline_text.to_inlines(rate_phrases.PERIOD_STEP_WORDS[step]),
+            inline_text.to_inlines(str(len(activity_links))),
+            inline_text.join_inlines(activity_links),
+        )
+        for step, activity_links in links_by_step.items()
+        if activity_links
+    )
+    columns = (Column("Period", 0.8), Column("Activities", 0.5, "right"), Column("Which", 4))
+    return Table("table:periods", "Activities by period", columns, rows) if rows else None
+
+
+def make_activity_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """List every shown activity: behaviour, rate, longest gap and response, and where the figures come from."""
+    rows = tuple(
+        _activity_row(timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()))
+        for activity in timing_lookup.analysis.system.activities.values()
+        if lookup.scope.shows_node(activity.node)
+    )
+    columns = (
+        Column("Activity", 1.5),
+        Column("Behaviour", 0.8),
+        Column("Rate", 0.8, "right"),
+        Column("Longest gap", 0.8, "right"),
+        Column("Where the rate is from", 1.7),
+        Column("Response", 0.9, "right"),
+        Column("How it was found", 1.3),
+    )
+    return (
+        Table("table:timing", "Behaviour, rate and response of every activity", columns, rows, wide=True)
+        if rows
+        else None
+    )
+
+
+def _activity_row(timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...]) -> tuple[Inlines, ...]:
+    # Activities without any rate are still listed, by the behaviour that was written.
+    pace = timing_lookup.analysis.paces.get(activity.id, EventPace(activity.behaviour))
+    response = timing_lookup.analysis.responses.get(activity.id)
+    return (
+        activity_link(timing_lookup, activity.id),
+        inline_text.to_inlines(inline_text.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
+        figure_cell(_format_shown_rate(pace)),
+        # What runs on demand or once has no longest gap: nothing promises a next activation.
+        figure_cell(value_format.display_duration(pace.gap)) if pace.behaviour not in {"on_demand", "once"} else (),
+        describe_rate_source(timing_lookup, activity, pace, origin_ids),
+        figure_cell(value_format.display_duration(response.worst)) if response else (_MUTED_UNKNOWN,),
+        inline_text.to_inlines(_SHORT_TIER_WORDS[response.tier])
+        if response and _SHORT_TIER_WORDS[response.tier]
+        else (),
+    )
+
+
+def _format_shown_rate(pace: EventPace) -> str:
+    """Format a rate; empty where having none is no gap in the knowledge."""
+    if pace.behaviour == "once" or (pace.behaviour == "on_demand" and pace.rate.value is None):
+        return ""
+    return value_format.display_rate(pace.rate)
+
+
+def describe_rate_source(
+    timing_lookup: TimingLookup, activity: Activity, pace: EventPace, origin_ids: tuple[str, ...]
+) -> Inlines:
+    """Return where a rate was written, or the activities it is inferred from."""
+    if not pace.inferred:
+        location = format_location(activity.places.get("period") or activity.places.get("rate") or activity.at)
+        return (
+            inline_text.to_inlines("written", Text(f" {location}", muted=True))
+            if location
+            else inline_text.to_inlines("written")
+        )
+    if pace.rate.value is None or not origin_ids:
+        return ()
+    # `find_rate_origins` returns one more than is named here, which is how "and others" is known.
+    producers = inline_text.join_inlines(activity_link(timing_lookup, name) for name in origin_ids[:3])
+    return inline_text.to_inlines("from ", *producers, *([" and others"] if len(origin_ids) > 3 else []))  # noqa: PLR2004
+
+
+def format_location(span: Span) -> str:
+    """Format file and line of a span; empty where nothing was written."""
+    return f"{span.file}:{span.line}" if span.file else ""
+
+
+def activity_link(timing_lookup: TimingLookup, activity_id: str) -> Inlines:
+    """Link an activity to its node, by the activity's id."""
+    activity = timing_lookup.analysis.system.activities.get(activity_id)
+    return inline_text.to_inlines(Text(activity_id, ref=f"node:{activity.node}" if activity else None, code=True))
+
+
+def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """List hosts with their load, and the bounds that it is compared with."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(lookup.architecture.hosts[name].title, ref=f"host:{name}")),
+            inline_text.to_inlines(str(load.cores)),
+            figure_cell(value_format.display_share(load_charts.share_of_cores(load.utilisation, load.cores))),
+            # Both bounds hold for a single core only.
+            figure_cell(value_format.display_share(load.rate_monotonic_bound)) if load.cores == 1 else (),
+            figure_cell(value_format.display_share(load.earliest_deadline_bound)) if load.cores == 1 else (),
+            inline_text.to_inlines(_VERDICT_WORDS[load.verdict]),
+            inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
+        )
+        for name, load in timing_lookup.analysis.hosts.items()
+    )
+    columns = (
+        Column("Host", 1.2),
+        Column("Cores", 0.5, "right"),
+        Column("Load of all cores", 0.9, "right"),
+        Column("Rate-monotonic bound", 0.8, "right"),
+        Column("Earliest-deadline bound", 0.8, "right"),
+        Column("Verdict", 1.1),
+        Column("Missing", 1.6),
+    )
+    return drop_blank_columns(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
+
+
+def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """List links with the traffic they carry."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(lookup.architecture.links[name].title, ref=f"link:{name}")),
+            figure_cell(value_format.display_traffic(load.traffic)),
+            figure_cell(value_format.display_share(load.share)),
+            figure_cell(value_format.display_bytes(load.burst)),
+            figure_cell(value_format.display_duration(load.queueing)),
+            inline_text.to_inlines(value_format.describe_missing(load.traffic, timing_lookup.analysis, 3)),
+        )
+        for name, load in timing_lookup.analysis.links.items()
+    )
+    columns = (
+        Column("Link", 1.2),
+        Column("Traffic", 0.9, "right"),
+        Column("Share", 0.7, "right"),
+        Column("Burst", 0.8, "right"),
+        Column("Longest queueing", 0.9, "right"),
+        Column("Missing", 1.5),
+    )
+    return drop_blank_columns(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
+
+
+def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """List topics with their message size and traffic."""
+    topic_names = [
+        name
+        for name in timing_lookup.analysis.topics
+        if name in lookup.architecture.topics and _is_topic_shown(lookup, name)
+    ]
+    topic_loads = timing_lookup.analysis.topics
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.topic_link(name)),
+            figure_cell(value_format.display_bytes(topic_loads[name].size)),
+            figure_cell(value_format.display_traffic(topic_loads[name].published)),
+            figure_cell(value_format.display_traffic(topic_loads[name].delivered)),
+        )
+        for name in topic_names
+    )
+    columns = (
+        Column("Topic", 2.2),
+        Column("Message", 0.8, "right"),
+        Column("Published", 0.9, "right"),
+        Column("Delivered", 0.9, "right"),
+    )
+    return Table("table:bandwidth", "Traffic of topics", columns, rows) if rows else None
+
+
+def _is_topic_shown(lookup: Lookup, topic_name: str) -> bool:
+    """Whether a shown node writes or reads a topic."""
+    topic = lookup.architecture.topics[topic_name]
+    return any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
+
+
+def drop_blank_columns(table: Table) -> Table:
+    """Drop the columns in which every cell is blank."""
+    # `drop_empty_columns` looks for empty tuples, but a missing figure is a run of empty text.
+    rows = tuple(tuple(() if is_blank(cell) else cell for cell in row) for row in table.rows)
+    return drop_empty_columns(Table(table.anchor, table.caption, table.columns, rows))
+
+
+def is_blank(cell: Inlines) -> bool:
+    """Whether a cell shows nothing."""
+    return all(not part.text for part in cell)

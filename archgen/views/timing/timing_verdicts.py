@@ -1,0 +1,128 @@
+"""Verdicts on timing: how an architecture does in a few sentences, what is late and why, and a table of all chains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Bullets, Column, Inlines, Paragraph, Table, Text
+from archgen.views.timing import chain_charts, load_charts, timing_tables, value_format
+from archgen.views.timing.timing_lookup import TimingLookup
+
+
+def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
+    """Summarize in a few sentences how many rates are known and how many chains meet their deadlines."""
+    activity_rates = timing_lookup.analysis.paces.values()
+    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
+    known_count = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in activity_rates)
+    sentences = [
+        f"Of {inline_text.count_noun(len(activity_rates), 'activity')}, {known_count} have a known rate or run on demand or once."
+    ]
+    if timing_lookup.chains:
+        verdicts = [
+            "without a deadline" if _lacks_only_deadline(result) else result.verdict for result in timing_lookup.chains
+        ]
+        counts = [(name, verdicts.count(name)) for name in ("met", "missed", "open", "without a deadline")]
+        verdict_counts = ", ".join(f"{count} {name}" for name, count in counts if count)
+        sentences.append(
+            f"Of {inline_text.count_noun(len(timing_lookup.chains), 'chain')} of effect: {verdict_counts}."
+        )
+    sentences.append("All bounds are safe for the figures written; what they rest on beside them stands with each.")
+    return Paragraph(inline_text.to_inlines(" ".join(sentences)))
+
+
+def _lacks_only_deadline(result: ChainResult) -> bool:
+    """Whether a chain is open only because it has no deadline."""
+    return result.deadline is None and result.bound.complete and result.bound.value is not None
+
+
+def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Block]:
+    """List chains that miss their deadline or have no bound, then overloaded hosts, with the reasons."""
+    chains = [
+        (
+            Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}"),
+            chain_charts.describe_chain_verdict(result, timing_lookup),
+        )
+        # Certain misses come before what may be late.
+        for verdict in ("missed", "open")
+        for result in timing_lookup.chains
+        if result.verdict == verdict and not _lacks_only_deadline(result) and result.id in lookup.architecture.chains
+    ]
+    hosts = [
+        (Text(lookup.architecture.hosts[name].title, ref=f"host:{name}"), load_charts.describe_load(load))
+        for name, load in timing_lookup.analysis.hosts.items()
+        if load.verdict == "overload"
+    ]
+    if chains or hosts:
+        yield Bullets(
+            tuple(inline_text.to_inlines(link, f". {verdict_text}") for link, verdict_text in (*chains, *hosts))
+        )
+
+
+def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:
+    """List rings of triggers that never end or never start, and activities for which no bound was found."""
+    analysis = timing_lookup.analysis
+    kinds = (
+        ("An event that enters circulates for ever among", analysis.endless),
+        ("Each waits for the other, and none ever starts:", analysis.deadlocked),
+        # Single activities, wrapped so that they are printed like the rings.
+        ("No bound was found, since each step made the next one larger:", tuple((name,) for name in analysis.diverged)),
+    )
+    for lead, rings in kinds:
+        if rings:
+            yield Paragraph(inline_text.to_inlines(lead), "error")
+            yield Bullets(
+                tuple(
+                    inline_text.join_inlines((timing_tables.activity_link(timing_lookup, name) for name in ring), " → ")
+                    for ring in rings
+                )
+            )
+
+
+def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
+    """List chains with bound, best case, largest step and verdict."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
+            timing_tables.figure_cell(value_format.display_duration(result.bound)),
+            timing_tables.figure_cell(value_format.display_lower_bound(result.best)),
+            _largest_step(timing_lookup, result),
+            timing_tables.figure_cell(value_format.display_duration(result.deadline)) if result.deadline else (),
+            inline_text.to_inlines(Text(result.verdict, strong=result.verdict != "met")),
+            inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),
+        )
+        for result in timing_lookup.chains
+        if result.id in lookup.architecture.chains
+    )
+    columns = (
+        Column("Chain", 1.6),
+        Column("At the latest", 0.9, "right"),
+        Column("At the earliest", 0.9, "right"),
+        Column("Largest step", 1.5),
+        Column("Deadline", 0.8, "right"),
+        Column("Verdict", 0.7),
+        Column("Missing", 1.6),
+    )
+    # The same anchor as `make_chain_table`, which this table replaces; only one of them is ever in a document.
+    return (
+        timing_tables.drop_blank_columns(Table("table:chains", "Chains of effect: bounds and deadlines", columns, rows))
+        if rows
+        else None
+    )
+
+
+def _largest_step(timing_lookup: TimingLookup, result: ChainResult) -> Inlines:
+    """Name the step with the largest part of a chain's bound: the first one to look at."""
+    sums = [(chain_charts.sum_known_parts(term), term.activity) for term in result.terms]
+    largest_sum = max((value for value, _ in sums), default=Fraction(0))
+    if not largest_sum:
+        return ()
+    # Of equal steps the first one in the chain.
+    name = next(name for value, name in sums if value == largest_sum)
+    return inline_text.to_inlines(
+        *timing_tables.activity_link(timing_lookup, name), f" {value_format.display_duration(TimingValue(largest_sum))}"
+    )

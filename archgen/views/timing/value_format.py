@@ -1,0 +1,213 @@
+"""Exact values of the timing analysis in human units, with their bounds and with what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from decimal import ROUND_HALF_UP, Decimal
+from fractions import Fraction
+
+from archgen.timing.analysis import Analysis
+from archgen.timing.figures.timing_values import TimingValue
+
+_SIDE_SIGNS = {"exact": "", "at least": ">= ", "at most": "<= "}
+_BYTE_UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"), (1, "B"))
+"""Units of size, largest first: the first one that is not too large is used."""
+_SECONDS_FROM = 10 * 10**9
+"""Durations from ten seconds on are written in s instead of ms; in ns."""
+_MAX_NAMED_ORIGINS = 3
+"""At most this many origins of a rate are named."""
+_DEFAULT_DIGITS = 3
+UNKNOWN_FIGURE = "unknown"
+"""What every formatter returns for an unknown value; callers compare with it to mute the cell."""
+_UNBOUNDED_WORDS = {
+    "overload": "no bound: the host is overloaded",
+    "unbounded": "no bound",
+    "diverged": "no bound: the search for one did not end",
+}
+"""Words for a value that does not exist, by the first word of the assumption that explains it."""
+
+
+def display_number(value: Fraction, decimals: int = _DEFAULT_DIGITS) -> str:
+    """Format a number with at most `decimals` decimals, rounded half up.
+
+    Numbers below one get as many significant digits instead.
+    """
+    if not value:
+        return "0"
+    # Decimal, not float: otherwise "half up" would depend on how a half is represented in binary.
+    exact = Decimal(value.numerator) / Decimal(value.denominator)
+    places = decimals if abs(value) >= 1 else decimals - 1 - exact.adjusted()
+    rounded = exact.quantize(Decimal(1).scaleb(-places), ROUND_HALF_UP)
+    text = f"{rounded:f}"
+    # Only behind a decimal point: the zeros of 100 are part of the number.
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def display_duration(value: TimingValue) -> str:
+    """Format the upper bound of a duration (in ns) in ms, or in s from ten seconds on.
+
+    "At most" goes without a sign because documents present these figures as bounds. A sum with gaps gets ">=", since it
+    is no upper bound at all.
+    """
+    is_partial = not value.complete and value.side != "at most"
+    return _format_value(
+        replace(value, side="at least" if is_partial else "exact", complete=not is_partial), _format_time
+    )
+
+
+def display_lower_bound(value: TimingValue) -> str:
+    """Format the lower bound of a duration (in ns)."""
+    # Without `complete` and `side`: a lower bound stays one, whatever was left out of it.
+    return _format_value(TimingValue(value.value, assumptions=value.assumptions), _format_time)
+
+
+def _format_time(nanoseconds: Fraction) -> str:
+    """Format nanoseconds as ms or s."""
+    return (
+        f"{display_number(nanoseconds / 10**6)} ms"
+        if nanoseconds < _SECONDS_FROM
+        else f"{display_number(nanoseconds / 10**9)} s"
+    )
+
+
+def display_rate(value: TimingValue) -> str:
+    """Format a rate in Hz."""
+    return _format_value(value, lambda hertz: f"{display_number(hertz)} Hz")
+
+
+def display_share(value: TimingValue) -> str:
+    """Format a share of a whole in percent."""
+    return _format_value(value, lambda fraction: f"{display_number(fraction * 100, 1)} %")
+
+
+def display_bytes(value: TimingValue) -> str:
+    """Format a number of bytes in the largest unit that leaves at least one."""
+    return _format_value(value, _format_size)
+
+
+def display_traffic(value: TimingValue) -> str:
+    """Format bytes per second in the largest unit that leaves at least one."""
+    return _format_value(value, lambda byte_rate: f"{_format_size(byte_rate)}/s")
+
+
+def _format_size(byte_count: Fraction) -> str:
+    """Format a number of bytes."""
+    factor, unit = next(((factor, unit) for factor, unit in _BYTE_UNITS if byte_count >= factor), (1, "B"))
+    return f"{display_number(byte_count / factor)} {unit}"
+
+
+def bound_sign(value: TimingValue) -> str:
+    """Return the sign before a value that bounds from one side; a sum with gaps is at least what is known."""
+    if value.side == "exact" and not value.complete:
+        return ">= "
+    return _SIDE_SIGNS[value.side]
+
+
+def _format_value(value: TimingValue, format_known: Callable[[Fraction], str]) -> str:
+    """Format a value with its sign, or say why there is none."""
+    if value.value is None:
+        reasons = (text.partition(":")[0].strip() for text in value.assumptions)
+        return next((_UNBOUNDED_WORDS[reason] for reason in reasons if reason in _UNBOUNDED_WORDS), UNKNOWN_FIGURE)
+    if not value.value and bound_sign(value) == ">= ":
+        return UNKNOWN_FIGURE  # at least zero says nothing, and a zero would look as if somebody had written it
+    return bound_sign(value) + format_known(value.value)
+
+
+def display_period(value: TimingValue) -> str:
+    """Format the period in ms of a rate in Hz; a rate of at most r has a period of at least 1/r."""
+    if not value.value:
+        return ""
+    inverse_sign = {"at least": "<= ", "at most": ">= "}.get(bound_sign(value) and _bound_side(value), "")
+    return inverse_sign + _format_time(10**9 / value.value)
+
+
+def _bound_side(value: TimingValue) -> str:
+    """Name the side of a value that has a sign."""
+    return "at least" if bound_sign(value) == ">= " else "at most"
+
+
+def display_bound(value: TimingValue, analysis: Analysis) -> str:
+    """Format a duration with what is missing for a bound: `>= 468 ms; no bound: execution time of x, y unknown`."""
+    missing_text = describe_missing(value, analysis)
+    duration_text = display_duration(value)
+    if not missing_text:
+        return duration_text
+    return f"no bound: {missing_text}" if value.value is None else f"{duration_text}; no bound: {missing_text}"
+
+
+def describe_missing(value: TimingValue, analysis: Analysis, limit: int | None = None) -> str:
+    """Describe which figures of which elements are missing: `execution time of x, y unknown`; empty for none.
+
+    At most `limit` elements are named for each kind of figure, None for all.
+    """
+    if not value.missing:
+        return ""
+    names_by_lack: dict[str, list[str]] = {}
+    for name in dict.fromkeys(value.missing):
+        names_by_lack.setdefault(_describe_lack(name, analysis), []).append(name)
+    return " and ".join(f"{lack} {_join_names(names, limit)}" for lack, names in names_by_lack.items()) + " unknown"
+
+
+def _join_names(names: list[str], limit: int | None) -> str:
+    """Join names with commas; beyond the limit only their number is given."""
+    if limit is None or len(names) <= limit:
+        return ", ".join(names)
+    return f"{', '.join(names[:limit])} and {len(names) - limit} more"
+
+
+def _describe_lack(element_id: str, analysis: Analysis) -> str:
+    """Describe what is missing of an element: a link's latency, an execution time, a rate, else "figures"."""
+    activity = analysis.system.activities.get(element_id)
+    if activity is None:
+        return "latency of" if element_id in analysis.links else "figures of"
+    # The most basic lack first: without an execution time there is no response, and without that no bound.
+    if activity.wcet is None and activity.response is None:
+        return "execution time of"
+    pace = analysis.paces.get(element_id)
+    return "rate of" if pace is None or pace.gap.value is None else "figures of"
+
+
+def find_rate_origins(analysis: Analysis) -> dict[str, tuple[str, ...]]:
+    """Find for each activity with an inferred rate the activities that it is inferred from, at most four.
+
+    Rates spread along triggers from the activities where they were written. Rings end: the sets only grow and are
+    bounded. Returns ids in the order of the analysis.
+    """
+    origin_ids: dict[str, tuple[str, ...]] = {
+        name: (name,) for name, pace in analysis.paces.items() if not pace.inferred and pace.rate.value is not None
+    }
+    declared_ids = set(origin_ids)
+    pending = list(origin_ids)
+    while pending:
+        name = pending.pop()
+        for arc in analysis.system.arcs_from.get(name, ()):
+            target = analysis.system.activities.get(arc.target)
+            # A written rate is an origin of its own, so those before it do not count.
+            if target is None or arc.role == "answer" or arc.target in declared_ids:
+                continue
+            # Data that is read but triggers nothing has no influence on the rate.
+            if arc.role == "data" and arc.input not in target.triggers:
+                continue
+            # One more than is named, so that "and others" can be told from exactly three.
+            merged_origins = tuple(dict.fromkeys((*origin_ids.get(arc.target, ()), *origin_ids[name])))[
+                : _MAX_NAMED_ORIGINS + 1
+            ]
+            if merged_origins != origin_ids.get(arc.target):
+                origin_ids[arc.target] = merged_origins
+                pending.append(arc.target)
+    order = {name: position for position, name in enumerate(analysis.paces)}
+    return {
+        name: tuple(sorted(root_ids, key=order.__getitem__))
+        for name, root_ids in origin_ids.items()
+        if name not in declared_ids
+    }
+
+
+def describe_origins(origin_names: Iterable[str]) -> str:
+    """Describe origins: `from a, b and others`; empty for none."""
+    name_list = list(origin_names)
+    if not name_list:
+        return ""
+    joined_names = ", ".join(name_list[:_MAX_NAMED_ORIGINS])
+    return f"from {joined_names} and others" if len(name_list) > _MAX_NAMED_ORIGINS else f"from {joined_names}"

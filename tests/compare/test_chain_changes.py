@@ -1,0 +1,112 @@
+"""Chains and findings of two versions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.timing.chains import chain_bounds
+from archgen.timing.run_analysis import analyse_architecture
+from tests.compare.conftest import Compared
+from tests.running import RAMCIP, ROOT
+
+ROBOT = """\
+groups:
+  g:
+    components:
+      a: {outputs: {x: sensor_msgs/msg/Image}}
+      b: {inputs: {x: a.x}}
+nodes:
+  na: {implements: a, timing: {rate: 10 Hz, wcet: 2 ms}, host: pc}
+  nb: {implements: b, timing: {behaviour: event, wcet: 5 ms}, host: pc}
+hosts: {pc: {cores: 1}}
+chains: {see: {through: [a, b], deadline: 300 ms}}
+"""
+MS = 10**6
+
+
+def bounds(compared: Compared, after: str, before: str = ROBOT) -> list[tuple[str, Fraction | None, Fraction | None]]:
+    found = compared(before, after).chains
+    return [(c.id, c.before.bound.value if c.before else None, c.after.bound.value if c.after else None) for c in found]
+
+
+def test_a_bound_that_changed(compared: Compared) -> None:
+    assert bounds(compared, ROBOT.replace("10 Hz", "20 Hz")) == [("see", 114 * MS, 64 * MS)]
+    assert bounds(compared, ROBOT.replace("wcet: 5 ms", "wcet: 6 ms")) == [("see", 114 * MS, 116 * MS)]
+
+
+def test_a_deadline_that_changed(compared: Compared) -> None:
+    (change,) = compared(ROBOT, ROBOT.replace("300 ms", "100 ms")).chains
+    assert change.deadline is not None
+    assert change.deadline.value == 100 * MS
+    assert [side and side.verdict for side in (change.before, change.after)] == ["met", "missed"]
+
+
+def test_chains_that_came_went_or_were_renamed(compared: Compared) -> None:
+    none = ROBOT.replace("chains: {see: {through: [a, b], deadline: 300 ms}}\n", "")
+    assert bounds(compared, none) == [("see", 114 * MS, None)]
+    assert bounds(compared, ROBOT, none) == [("see", None, 114 * MS)]
+    assert bounds(compared, ROBOT.replace("see:", "look:")) == []
+    assert bounds(compared, ROBOT.replace("see:", "look:").replace("10 Hz", "20 Hz")) == [("look", 114 * MS, 64 * MS)]
+
+
+def test_text_changes_no_bound(compared: Compared) -> None:
+    assert bounds(compared, ROBOT.replace("a: {outputs", "a: {title: A camera, tags: [x], outputs")) == []
+
+
+@pytest.mark.parametrize(
+    "project", [RAMCIP, ROOT / "examples" / "reference_system"], ids=["ramcip", "reference_system"]
+)
+def test_the_analysis_for_rules_bounds_chains_as_the_whole_one_does(project: Path) -> None:
+    found = pipeline.check_project(project).architecture
+    whole = chain_bounds.bound_all_chains(analyse_architecture(found), found)
+    assert whole
+    assert chain_bounds.bound_all_chains(analyse_architecture(found, judging=True), found) == whole
+
+
+def said(compared: Compared, before: str, after: str) -> tuple[list[str], list[str]]:
+    found = compared(before, after)
+    return [f"{d.rule} {d.element}" for d in found.new_findings], [
+        f"{d.rule} {d.element}" for d in found.cured_findings
+    ]
+
+
+def test_findings_that_appeared_and_were_cured(compared: Compared) -> None:
+    unread = ROBOT.replace("{x: sensor_msgs/msg/Image}", "{x: sensor_msgs/msg/Image, y: sensor_msgs/msg/Image}")
+    assert said(compared, ROBOT, unread) == (["unread-output g.a"], [])
+    assert said(compared, unread, ROBOT) == ([], ["unread-output g.a"])
+
+
+def test_a_finding_that_moved_or_follows_a_rename_is_the_same(compared: Compared) -> None:
+    unread = ROBOT.replace("{x: sensor_msgs/msg/Image}", "{x: sensor_msgs/msg/Image, y: sensor_msgs/msg/Image}")
+    assert said(compared, unread, "# one line more\n" + unread) == ([], [])
+    renamed = (
+        unread.replace("a: {outputs", "camera: {outputs")
+        .replace("a.x", "camera.x")
+        .replace("implements: a,", "implements: camera,")
+    )
+    assert said(compared, unread, renamed.replace("[a, b]", "[camera, b]")) == ([], [])
+
+
+def test_a_finding_that_was_silenced_is_not_cured(compared: Compared) -> None:
+    unread = ROBOT.replace("a: {outputs: {x: sensor_msgs/msg/Image}}", "a: {outputs: {x: sensor_msgs/msg/Image, y: T}}")
+    for quiet in (
+        unread.replace("y: T}}", "y: T}} # archgen: ignore[unread-output] later"),
+        unread + "rules: {unread-output: off}\n",
+    ):
+        found = compared(unread, quiet)
+        assert [d.rule for d in found.silenced_findings] == ["unread-output"]
+        assert (found.new_findings, found.cured_findings) == ((), ())
+        assert not found.is_empty
+        back = compared(quiet, unread)
+        assert [d.rule for d in back.new_findings] == ["unread-output"]
+        assert (back.cured_findings, back.silenced_findings) == ((), ())
+
+
+def test_a_finding_with_another_figure_is_the_same(compared: Compared) -> None:
+    late = ROBOT.replace("300 ms", "50 ms")
+    assert said(compared, ROBOT, late) == (["late-chain see"], [])
+    assert said(compared, late, late.replace("wcet: 5 ms", "wcet: 6 ms")) == ([], [])

@@ -1,0 +1,117 @@
+"""Each key with its values before and after, in normal form, and the sentence that tells it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.compare.conftest import Compared, Told
+
+ROBOT = """\
+partners: {certh: CERTH, sssa: SSSA}
+groups:
+  g:
+    owner: certh
+    components:
+      a: {outputs: {x: T}, timing: {rate: 10 Hz, wcet: 2 ms}}
+      b: {inputs: {x: a.x}, functionality: Does it., performance: {speed: {accuracy: 90 %}}}
+types: {T: {message: sensor_msgs/msg/Image, size: 1 kB}}
+hosts: {pc: {cores: 4}, arm: }
+containers: {box: {host: pc, threads: 1}}
+links: {lan: {connects: [pc, arm], bandwidth: 1 Gbit/s, latency: 1 ms}}
+nodes:
+  na:
+    implements: a
+    host: pc
+    publishes: {x: {topic: /x, qos: sensor_data}}
+    parameters: {deep: {on: true, level: 1}}
+chains: {c: {through: [a, b], deadline: 500 ms}}
+views: {v: {show: "g.a+"}}
+policies: {p: {forbid: {from: g.a, to: "role:sink"}}}
+project: {id: robot, title: Robot}
+"""
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("wcet: 2 ms", "wcet: 3 ms", "component g.a", "timing.wcet", "2 ms", "3 ms", None),
+        ("host: pc\n    p", "host: arm\n    p", "node na", "host", "pc", "arm", "node `na` now runs on `arm` instead of `pc`"),
+        ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` now belongs to `sssa` instead of `certh`"),
+        ("owner: certh", "owner: [certh, sssa]", "group g", "co_owners", None, ["sssa"], "group `g`: further owners `sssa` added"),
+        ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "`g.b`: functionality `Does it.` → `Does that.`"),
+        ("cores: 4", "cores: 2", "host pc", "cores", 4, 2, "host `pc`: cores 4 → 2"),
+        ("threads: 1", "threads: 2", "container box", "threads", 1, 2, "container `box`: threads 1 → 2"),
+        ("latency: 1 ms", "latency: {best: 1 ms, worst: 2 ms}", "link lan", "latency.worst", "1 ms", "2 ms", "link `lan`: worst latency `1 ms` → `2 ms`"),
+        ("size: 1 kB", "size: 2 kB", "type T", "size", "1 kB", "2 kB", "type `T`: size `1 kB` → `2 kB`; `g.a.x` carries it"),
+        ("deadline: 500 ms", "deadline: 0.4 s", "chain c", "deadline", "500 ms", "0.4 s", "chain `c` now must end within `0.4 s` instead of `500 ms`"),
+        ('show: "g.a+"', "show: g", "view v", "show", "g.a+", "g", "view `v`: selector `g.a+` → `g`"),
+        ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
+        ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
+        ("topic: /x", "topic: /y", "port na.publishes.x", "topic", ["/x"], ["/y"], "`na.publishes.x`: topic `/x` → `/y`"),
+        ("on: true", "on: false", "node na", "parameters.deep.on", True, False, "node `na`: parameter `deep.on` true → false"),
+        ("level: 1", 'level: "1"', "node na", "parameters.deep.level", 1, "1", None),
+        ("level: 1", "level: true", "node na", "parameters.deep.level", 1, True, None),
+        ("title: Robot", "title: Car", "project robot", "title", "Robot", "Car", "the project: title `Robot` → `Car`"),
+        ("inputs: {x: a.x}", "inputs: {x: {from: a.x, optional: true}}", "input g.b.x", "optional", None, True, "`g.b.x` is optional now"),
+        ("partners: {certh: CERTH", "rules: {unread-output: off}\npartners: {certh: CERTH", "project robot", "rules.unread-output", None, "off", "the project: severity of the rule `unread-output` set to `off`"),
+    ],
+)  # fmt: skip
+def test_keys(compared: Compared, case: tuple[str, str, str, str, object, object, str | None]) -> None:
+    old, new, element, key, before, after, text = case
+    assert old in ROBOT
+    (change,) = compared(ROBOT, ROBOT.replace(old, new, 1)).changes
+    assert (change.kind, f"{change.element_kind} {change.element_id}", change.key) == ("changed", element, key)
+    assert (change.before, change.after) == (before, after)
+    assert text is None or change.text == text
+    (back,) = compared(ROBOT.replace(old, new, 1), ROBOT).changes
+    assert (back.before, back.after) == (after, before)
+
+
+def test_the_message_of_a_type_names_who_carries_it(told: Told) -> None:
+    assert told(ROBOT, ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")) == [
+        "changed type T: type `T` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `g.a.x` carries it"
+    ]
+
+
+def test_all_that_changed_of_qos_is_one_change(compared: Compared) -> None:
+    other = "qos: {reliability: reliable, depth: 2}"
+    (change,) = compared(ROBOT, ROBOT.replace("qos: sensor_data", other)).changes
+    assert (change.element_kind, change.element_id, change.key) == ("port", "na.publishes.x", "qos")
+    assert change.before == {"depth": 5, "reliability": "best_effort"}
+    assert change.after == {"depth": 2, "reliability": "reliable"}
+    assert change.text == "`na.publishes.x`: QoS depth 5 → 2 and reliability `best_effort` → `reliable`"
+
+
+def test_a_type_at_a_port_names_the_readers(told: Told) -> None:
+    assert told(ROBOT, ROBOT.replace("outputs: {x: T}", "outputs: {x: U}")) == [
+        "changed output g.a.x: `g.a.x` now carries `U` instead of `T`; it is read by `g.b.x`"
+    ]
+
+
+def test_the_fields_of_a_message_concern_who_carries_it(compared: Compared) -> None:
+    text = ROBOT.replace("sensor_msgs/msg/Image", "own_msgs/msg/Image")
+    text += (
+        'ros: {definitions: {own_msgs/msg/Image: "int32 a\\nint32 b", own_msgs/srv/Do: "int32 x\\n---\\nint32 y"}}\n'
+    )
+    found = compared(text, text.replace("int32 b", "int64 b   # wider"))
+    (change,) = found.changes
+    assert (change.element_kind, change.element_id, change.key) == ("message", "own_msgs/msg/Image", "fields")
+    assert (change.before, change.after) == (["int32 a", "int32 b"], ["int32 a", "int64 b"])
+    assert change.text == "message `own_msgs/msg/Image`: fields `int64 b` added, `int32 b` removed; it carries `T`"
+    assert found.concerned_owners == ("certh",)
+    (change,) = compared(text, text.replace("int32 x\\n---", "---\\nint32 x")).changes
+    assert (change.before, change.after) == (["int32 x", "---", "int32 y"], ["---", "int32 x", "int32 y"])
+
+
+def test_a_long_or_hostile_text_stays_on_one_line(told: Told) -> None:
+    title = "Evil `rm`\\n| <b>" + "x" * 200
+    (line,) = told(ROBOT, ROBOT.replace("title: Robot", f'title: "{title}"'))
+    assert line == f"changed project robot: the project: title `Robot` → `Evil 'rm' | <b>{'x' * 64}…`"
+
+
+def test_a_chapter_that_was_written_anew(told: Told) -> None:
+    text = ROBOT + "report: {chapters: [a.md, groups], texts: {a.md: One}}\n"
+    assert told(text, text.replace("One", "Two")) == ["changed chapter a.md: the text of chapter `a.md` is rewritten"]
+    assert told(text, text.replace("[a.md, groups]", "[groups, a.md]")) == [
+        "changed project robot: the project: chapters are now `groups` and `a.md`, in this order"
+    ]

@@ -1,0 +1,221 @@
+"""A comparison as the comment on a pull request: what a reviewer reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.compare import Comparison
+from archgen.compare.comparison import PartnerBreak
+from archgen.diagnostics.diagnostic import Severity
+from archgen.emit.markdown import comparison_markdown
+from archgen.emit.markdown.comparison_markdown import SideNames
+from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+
+ROBOT = """\
+archgen: 1
+project: {id: robot}
+rules: {missing-detail: "off"}
+partners: {certh: CERTH, sssa: SSSA}
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {outputs: {image: Image}}
+  display:
+    title: Display
+    owner: sssa
+    components:
+      finder: {inputs: {image: camera.image}, outputs: {people: People}}
+      screen: {inputs: {people: finder.people}}
+types: {Image: sensor_msgs/msg/Image, People: geometry_msgs/msg/PoseArray}
+nodes:
+  camera: {implements: camera, timing: {rate: 10 Hz, wcet: 2 ms}, host: pc}
+  finder: {implements: finder, timing: {behaviour: event, wcet: 20 ms}, host: pc}
+  screen: {implements: screen, timing: {behaviour: event, wcet: 5 ms}, host: pc}
+hosts: {pc: {cores: 4}}
+chains: {see: {through: [camera, finder, screen], deadline: 150 ms}}
+"""
+Told = Callable[..., str]
+
+
+@pytest.fixture
+def told(tmp_path: Path) -> Told:
+    """Give the comment on what turns ROBOT into another text."""
+
+    def tell(*changes: tuple[str, str], before: str = ROBOT, most: int = MAX_COMMENT_SIZE) -> str:
+        after = before
+        for old, new in changes:
+            assert old in after
+            after = after.replace(old, new)
+        return comparison_markdown.write_comparison_markdown(*comparison(tmp_path, before, after), limit=most)
+
+    return tell
+
+
+def comparison(
+    folder: Path, before: str, after: str
+) -> tuple[Comparison, SideNames, comparison_markdown.ReadingErrors]:
+    """Compare two one-file projects."""
+    sides = []
+    for name, text in (("before", before), ("after", after)):
+        (folder / name).mkdir(exist_ok=True)
+        (folder / name / "robot.yaml").write_text(text, encoding="utf-8")
+        sides.append(ProjectVersion(name, pipeline.check_project(folder / name / "robot.yaml")))
+    old, new = sides
+    names = SideNames("main", "arm", "archgen diff main arm")
+    return (
+        compare_named_versions(old, new),
+        names,
+        (old.checked_project.structural_errors, new.checked_project.structural_errors),
+    )
+
+
+def test_nothing_changed(told: Told) -> None:
+    assert (
+        told(("archgen: 1", "# only a comment\narchgen: 1")) == "### No change of the architecture\n\n`main` → `arm`\n"
+    )
+
+
+def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
+    assert (
+        told(("wcet: 20 ms", "wcet: 60 ms"))
+        == """\
+### 1 change of the architecture: breaks `certh`, also concerns `sssa`
+
+`main` → `arm`: 1 changed; new: 1 warning
+
+#### Breaking
+
+- \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
+  - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+
+#### Latency of chains
+
+| chain | before | after | difference | deadline | verdict |
+| --- | --- | --- | --- | --- | --- |
+| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **missed (was met)** |
+
+#### New findings
+
+- warning `late-chain`: the chain `see` may take 167 ms, its deadline is 150 ms (`robot.yaml:22:10`)
+
+```mermaid
+flowchart LR
+  subgraph g0["Sensing"]
+    n0("Camera"):::neighbour
+  end
+  subgraph g1["Display"]
+    n1[["#126; Finder"]]:::changed
+    n2("Screen"):::neighbour
+  end
+  n0 --> n1
+  n1 --> n2
+  classDef changed stroke:#b7791f,stroke-width:2px
+  classDef neighbour stroke:#8a8a8a,stroke-width:1px
+```
+
+<sub>\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before.</sub>
+"""
+    )
+
+
+def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) -> None:
+    after = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace(
+        "rate: 10 Hz", "rate: 20 Hz"
+    )
+    found, names, broken = comparison(tmp_path, ROBOT, after)
+    kind, rate = found.changes
+    assert (kind.element_kind, rate.element_kind) == ("type", "component")
+    breaks = (
+        PartnerBreak("sssa", "`display.finder` takes `Image`"),
+        PartnerBreak("sssa", "two"),
+        PartnerBreak("certh", "two"),
+    )
+    kind = replace(kind, breaks=breaks, acceptance_reason="agreed in May")
+    text = comparison_markdown.write_comparison_markdown(replace(found, changes=(rate, kind)), names, broken)
+    assert text.startswith("""\
+### 2 changes of the architecture: breaks `certh` and `sssa`
+
+`main` → `arm`: 2 changed
+
+#### Breaking
+
+- \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
+  - breaks `sssa`: `display.finder` takes `Image`
+  - breaks `certh` and `sssa`: two
+  - accepted: agreed in May
+
+#### Changes
+
+**Sensing · `sensing`**
+
+- \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
+""")
+    refused = replace(found, changes=(replace(kind, acceptance_reason=None),), breaking_severity=Severity.ERROR)
+    assert (
+        "\n`review.breaking: error` refuses this: mend it, or agree on it"
+        in comparison_markdown.write_comparison_markdown(refused, names, broken)
+    )
+
+
+def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
+    text = told(("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"))
+    assert text.startswith("### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n")
+    assert '  n0 -->|"#126; Image"| n1\n' in text
+
+
+def test_a_version_with_errors_says_so_first_and_does_not_call_anything_cured(told: Told) -> None:
+    text = told(("camera.image", "camera.imag"))
+    assert text.startswith("### ")
+    lines = text.split("\n")
+    assert lines[0].startswith("### 1 change of the architecture in what could be read")
+    assert lines[4] == "**`arm` is not sound** (1 error). What cannot be read there is left out of the comparison:"
+    assert lines[6].startswith("- error `unknown-reference`: ")
+    assert text.count("unknown-reference") == 1
+    assert "cured" not in text
+
+
+def test_a_version_that_does_not_parse(told: Told) -> None:
+    assert told(("types: {", "types: [{")).startswith("### No change of the architecture in what could be read\n")
+
+
+def test_texts_and_cured_findings_are_folded(told: Told) -> None:
+    text = told(
+        ("    title: Display\n", "    title: Screens\n"), ("  screen: {implements", "  screen_node: {implements")
+    )
+    assert "<details><summary>1 change of texts and pictures only</summary>\n\n- \\~ " in text
+    assert "\n\n</details>" in text
+
+
+def test_many_changes_of_one_group_are_folded_and_drawn_as_one_box(told: Told) -> None:
+    many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}}}\n" for at in range(60))
+    text = told(("      finder:", f"{many}      finder:"))
+    assert "<details><summary>52 more changes</summary>" in text
+    assert text.startswith("### 60 changes of the architecture: concerns `certh` and `sssa`\n")
+    assert '("Display<br>#8203;+ 60 components"):::added' in text
+    assert "1 group folded to one box each" in text
+
+
+@pytest.mark.parametrize("most", [1500, 3000, 6000, 10_000])
+def test_what_does_not_fit_is_counted(told: Told, most: int) -> None:
+    many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}, outputs: {{o: Image}}}}\n" for at in range(60))
+    text = told(("      finder:", f"{many}      finder:"), most=most)
+    assert len(text) <= most
+    assert "`archgen diff main arm`" in text
+    assert text.count("<details>") == text.count("</details>")
+    assert text.count("```") % 2 == 0
+
+
+def test_a_whole_comment_keeps_to_the_limit_of_the_host(told: Told) -> None:
+    many = "".join(
+        f'      part{at}: {{title: "{"&" * 60} {at}", inputs: {{image: camera.image}}}}\n' for at in range(900)
+    )
+    text = told(("      finder:", f"{many}      finder:"))
+    assert 60_000 < len(text) <= 65_336
+    assert " more: `archgen diff main arm`" in text

@@ -1,0 +1,263 @@
+"""The packed project: one file that is itself a project, finds the same, and packs to the same bytes."""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from archgen.analyses.size_counts import measure_progress, measure_size
+from archgen.pipeline import CheckedProject, check_project
+from archgen.schema.schema_validation import load_schema
+from archgen.syntax.yaml_writer import write_yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def project(folder: Path, **files: str | bytes) -> CheckedProject:
+    """Write files (`a__b_yaml` is a/b.yaml) and check the project."""
+    for name, data in files.items():
+        stem, _, ending = name.replace("__", "/").rpartition("_")
+        path = folder / f"{stem}.{ending}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+    return check_project(folder)
+
+
+def text_of(checked: CheckedProject) -> str:
+    """Pack a project."""
+    packed = checked.pack_project()
+    return write_yaml(packed.data, packed.comments)
+
+
+def said(checked: CheckedProject) -> list[tuple[str, str, str, str]]:
+    """Give the findings without their places."""
+    return sorted((str(d.severity), d.rule, d.message, d.help or "") for d in checked.findings)
+
+
+def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
+    """Pack a project, check what holds of every packed file, and give it as a project."""
+    text = text_of(checked)
+    file = folder / "packed.yaml"
+    file.write_text(text, encoding="utf-8")
+    again = check_project(file)
+    assert text_of(again) == text
+    assert said(again) == said(checked)
+    assert asdict(measure_size(again.architecture)) == asdict(measure_size(checked.architecture))
+    assert measure_progress(again.architecture) == measure_progress(checked.architecture)
+    assert again.architecture.edges == checked.architecture.edges
+    assert again.architecture.topics == checked.architecture.topics
+    assert again.architecture.nodes == checked.architecture.nodes
+    assert again.architecture.components == checked.architecture.components
+    data = yaml.safe_load(text)
+    assert list(jsonschema_rs.Draft202012Validator(load_schema()).iter_errors(data)) == []
+    assert "sources" not in data
+    return again
+
+
+@pytest.mark.parametrize("example", ["examples/first_robot", "example_ramcip"])
+def test_the_examples(example: str, tmp_path: Path) -> None:
+    packed_again(check_project(ROOT / example), tmp_path)
+
+
+def test_slices_and_short_forms_become_one_mapping(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml="archgen: 1\nproject: {id: r, title: R, version: 1.10}\nsources: ['*.yaml']\n",
+        b_yaml="groups: {g: {components: {c: {timing: {rate: 10 Hz}, inputs: {x: d, y: , z: [d.o, d.p]}}}}}\n",
+        c_yaml="groups: {g: {title: No, components: {c: C, d: {outputs: {o: Colour image, p: Flag}, inputs: {}}}}}\n",
+        d_yaml="nodes: {n: {implements: [c], parameters: {a: 1.10, b: no, c: [1, {x: ~}]}, tags: []}}\n",
+    )
+    assert text_of(checked) == (
+        """\
+archgen: 1
+project:
+  id: r
+  title: R
+  version: "1.10"
+groups:
+  g:
+    components:
+      c:
+        timing:
+          rate: 10 Hz
+        inputs:
+          x:
+            from:
+              - d
+          "y": {}
+          z:
+            from:
+              - d.o
+              - d.p
+        title: C
+      d:
+        outputs:
+          o:
+            type: Colour image
+          p:
+            type: Flag
+        inputs: {}
+    title: "No"
+nodes:
+  "n":
+    implements:
+      - c
+    parameters:
+      a: 1.1
+      b: "no"
+      c:
+        - 1
+        -
+          x: null
+    tags: []
+types:
+  Colour image:
+    message: sensor_msgs/msg/Image
+    comment: "640 x 480, three bytes a pixel"
+    size: 922 kB
+  Flag:
+    message: std_msgs/msg/Bool
+    size: 5 B
+"""
+    )
+    packed_again(checked, tmp_path)
+
+
+def test_ignore_comments_stay_at_their_elements(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml="archgen: 1\n",
+        a_yaml="""\
+groups:
+  g:
+    components:
+      c:
+        inputs: {x: {external: World, medium: physical}}
+        outputs:
+          o: Flag  # archgen: ignore[unread-output] for later
+          p: Flagg # archgen: ignore[unread-output, unmapped-type]
+      d: {inputs: {x: {external: World, medium: physical}}, outputs: {q: Flag}} # archgen: ignore[unread-output] all in one line
+""",
+        b_yaml='nodes:\n  n: c\n  m: d\n  idle: {title: I} # archgen: ignore[unjustified-node] it is a "tool"\n',
+    )
+    assert [d.rule for d in checked.findings if d.severity != "note"] == []
+    text = text_of(checked)
+    assert "          o:  # archgen: ignore[unread-output] for later\n" in text
+    assert "          p:  # archgen: ignore[unread-output, unmapped-type]\n" in text
+    assert '  idle:  # archgen: ignore[unjustified-node] it is a "tool"\n' in text
+    packed_again(checked, tmp_path)
+
+
+PIXEL = base64.b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+)
+
+
+def test_chapters_pictures_and_definitions_come_along(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml="""\
+archgen: 1
+ros: {distro: jazzy, interfaces: ["msgs/**/*.msg"], shared_topics: [/estop]}
+report: {chapters: [docs/intro.md, groups]}
+groups: {g: {components: {c: {outputs: {o: {type: my_msgs/msg/Grasp, external: Out}}}}}}
+nodes: {n: c}
+""",
+        docs__intro_md="# Über\r\n\r\n    code\r\n\r\n![a](img/pixel.png)\r\nEnd:  \r\n\ttab",
+        docs__img__pixel_png=PIXEL,
+        msgs__my_msgs__msg__Grasp_msg="# a grasp\nfloat32 width\n\n",
+    )
+    again = packed_again(checked, tmp_path)
+    data = yaml.safe_load(text_of(again))
+    assert data["ros"] == {
+        "distro": "jazzy",
+        "shared_topics": ["/estop"],
+        "definitions": {"my_msgs/msg/Grasp": "# a grasp\nfloat32 width\n\n"},
+    }
+    assert again.chapters.texts["docs/intro.md"].text == checked.chapters.texts["docs/intro.md"].text
+    assert again.chapters.read_picture("docs/img/pixel.png") == PIXEL
+    assert again.chapters.order == ("docs/intro.md", "groups")
+    assert again.architecture.interfaces.status_of("my_msgs/msg/Grasp") == "known"
+
+
+def test_a_broken_project_packs_what_is_sound(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml="archgen: 1\ngroups: {g: {titel: G, components: {c: {role: fliter, inputs: {i: nope}}}}}\n",
+        b_yaml="groups: {",
+    )
+    text = text_of(checked)
+    assert yaml.safe_load(text)["groups"] == {"g": {"components": {"c": {"inputs": {"i": {"from": ["nope"]}}}}}}
+    (tmp_path / "packed.yaml").write_text(text, encoding="utf-8")
+    assert text_of(check_project(tmp_path / "packed.yaml")) == text
+
+
+IDS = st.sampled_from(["a", "b2", "on_off", "y", "null_one", "e5"])
+WORDS = st.text(
+    st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"])
+    | st.sampled_from("\n:#-'\"\\ {}[]&*!|>%@`,?~0123456789"),
+    max_size=20,
+)
+OUTPUTS = st.dictionaries(IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"type": WORDS, "external": WORDS})))
+INPUTS = st.dictionaries(
+    IDS, st.one_of(IDS, st.lists(IDS), st.fixed_dictionaries({}, optional={"from": IDS, "description": WORDS}))
+)
+COMPONENT = st.one_of(
+    WORDS,
+    st.none(),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "title": WORDS,
+            "functionality": WORDS,
+            "role": st.sampled_from(["source", "sink"]),
+            "inputs": INPUTS,
+            "outputs": OUTPUTS,
+            "tags": st.lists(WORDS, max_size=2),
+            "requirements": st.lists(WORDS, max_size=2),
+        },
+    ),
+)
+DATA = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), WORDS),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
+    max_leaves=6,
+)
+PROJECTS = st.fixed_dictionaries(
+    {"archgen": st.just(1)},
+    optional={
+        "project": st.fixed_dictionaries({}, optional={"title": WORDS, "description": WORDS}),
+        "groups": st.dictionaries(IDS, st.fixed_dictionaries({"components": st.dictionaries(IDS, COMPONENT)})),
+        "nodes": st.dictionaries(
+            IDS, st.fixed_dictionaries({}, optional={"implements": IDS, "parameters": st.dictionaries(IDS, DATA)})
+        ),
+        "types": st.dictionaries(WORDS, st.sampled_from(["std_msgs/msg/Bool", "std_srvs/srv/Trigger", "Bool"])),
+        "ros": st.fixed_dictionaries({"distro": st.sampled_from(["jazzy", "noetic", "jazy"])}),
+    },
+)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(PROJECTS)
+def test_whatever_is_written_packs_to_a_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) -> None:
+    folder = tmp_path_factory.mktemp("robot")
+    (folder / "robot.yaml").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
+    checked = check_project(folder / "robot.yaml")
+    text = text_of(checked)
+    (folder / "packed.yaml").write_text(text, encoding="utf-8")
+    again = check_project(folder / "packed.yaml")
+    assert text_of(again) == text
+    assert again.architecture.components == checked.architecture.components
+    assert again.architecture.nodes == checked.architecture.nodes
+    assert again.architecture.types == checked.architecture.types
+    # A reading error keeps what it may explain quiet; packed, the wrong value is gone, and then it is told.
+    if not checked.has_errors:
+        assert [d for d in again.findings if d.severity == "error"] == []

@@ -1,0 +1,208 @@
+"""Agreements as files: Word, HTML and Markdown before their judges, and with texts that try to be more than text."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import shutil
+import subprocess
+import zipfile
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from lxml import etree
+from markdown_it import MarkdownIt
+
+import archgen
+from archgen import pipeline, resources
+from archgen.products import agreement_documents
+from archgen.products.agreement_documents import PartnersError
+from archgen.products.compared_versions import read_version
+from archgen.products.project_outputs import OutputOptions
+from archgen.views.agreement import PartnerAgreement
+from tests import hostile
+from tests.agreeing import DUO, checked, written
+from tests.emit.docx import inspection, judges
+from tests.repositories import commit, git, repository
+
+NU = Path(__file__).parents[1] / "judges" / "node_modules" / "vnu-jar" / "build" / "dist" / "vnu.jar"
+
+
+def evil(text: str) -> dict[str, object]:
+    """Give the hostile project with two partners, so that its connection is an interface."""
+    data = hostile.project(text)
+    data["partners"]["q"] = {**data["partners"]["p"], "reviewers": "@q/q"}
+    data["groups"]["b"]["owner"] = "q"
+    return data
+
+
+@pytest.fixture(scope="module", params=["duo", "ramcip", *hostile.TEXTS])
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> PartnerAgreement:
+    folder = tmp_path_factory.mktemp("agreement")
+    if request.param == "ramcip":
+        return agreement_documents.make_project_agreement(
+            pipeline.check_project(resources.resource_path("example_ramcip")), "sssa", "tum", None, "r1"
+        )
+    if request.param == "duo":
+        earlier = read_version(
+            None, written(folder / "before", DUO.replace("30 Hz", "20 Hz").replace("info: sensor", "x: sensor"))
+        )
+        return agreement_documents.make_project_agreement(checked(folder / "after"), "north", "south", earlier, "r1")
+    found = checked(folder, hostile.written(evil(hostile.TEXTS[request.param])))
+    return agreement_documents.make_project_agreement(found, "p", "q", None, hostile.TEXTS[request.param][:200])
+
+
+class Page(HTMLParser):
+    """Collects what is active in a page, or leads out of it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.wrong: list[str] = []
+        self.ids: list[str] = []
+        self.targets: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Judge a tag and its attributes."""
+        values = {name: value or "" for name, value in attrs}
+        if tag in {"script", "iframe", "object", "embed", "link", "img", "form", "base", "image"}:
+            self.wrong.append(tag)
+        self.wrong += [f"{tag} {name}" for name in values if name.startswith("on")]
+        self.ids += [values["id"]] if "id" in values else []
+        address = values.get("href", values.get("xlink:href", ""))
+        if address.startswith("#"):
+            self.targets.append(address[1:])
+        elif address and not re.match(r"(https?:|mailto:)", address):
+            self.wrong.append(f"{tag} {address}")
+
+
+def test_the_page_stands_by_itself(made: PartnerAgreement) -> None:
+    html = agreement_documents.render_agreement_html(made, OutputOptions()).decode()
+    page = Page()
+    page.feed(html)
+    page.close()
+    assert page.wrong == []
+    assert len(set(page.ids)) == len(page.ids)
+    assert set(page.targets) <= set(page.ids)
+    addresses = re.findall(r"url\(([^)]{0,20})", html)
+    assert addresses
+    assert all(address.startswith("data:") for address in addresses)
+    assert "default-src 'none'" in html
+    assert "This picture could not be drawn" not in html
+
+
+def test_the_nu_checker_finds_nothing(made: PartnerAgreement, tmp_path: Path) -> None:
+    java = shutil.which("java")
+    assert java, "this test needs a Java (Debian: `default-jre-headless`)"
+    assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
+    page = tmp_path / "a.html"
+    page.write_bytes(agreement_documents.render_agreement_html(made, OutputOptions()))
+    command = [java, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", str(page)]
+    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
+    messages = [
+        m for m in json.loads(done.stderr)["messages"] if m["type"] == "error"
+    ]  # texts need not be in Unicode's NFC
+    assert [f"{m.get('lastLine')}: {m['message']}" for m in messages] == []
+
+
+def test_word_opens_it(made: PartnerAgreement, tmp_path: Path) -> None:
+    file = tmp_path / "a.docx"
+    agreement_documents.write_agreement(made, "docx", file)
+    assert inspection.faults(file.read_bytes()) == []
+    assert judges.validated(file) == []
+    with zipfile.ZipFile(io.BytesIO(file.read_bytes())) as package:
+        relations = [etree.fromstring(package.read(name)) for name in package.namelist() if name.endswith(".rels")]
+    outside = [r.get("Target", "") for part in relations for r in part if r.get("TargetMode") == "External"]
+    assert {target.partition(":")[0] for target in outside} <= {"https", "http"}
+
+
+def test_markdown_holds_nothing_active(made: PartnerAgreement) -> None:
+    text = agreement_documents.render_agreement_markdown(made)
+    assert not re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]", text)
+    html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
+    page = Page()
+    page.feed(html)
+    page.close()
+    assert page.wrong == []
+    assert set(page.targets) <= set(page.ids)
+    tables = [line for line in text.splitlines() if line.startswith("|")]
+    assert tables
+    rows = re.findall(r"<tr>(.*?)</tr>", html, re.DOTALL)
+    assert len(rows) == sum(not set(line) <= set("| -:") for line in tables), "every row is a row of a table"
+
+
+def test_the_same_bytes_again(made: PartnerAgreement) -> None:
+    assert agreement_documents.render_agreement_html(
+        made, OutputOptions()
+    ) == agreement_documents.render_agreement_html(made, OutputOptions())
+    assert agreement_documents.render_agreement_docx(
+        made, OutputOptions()
+    ) == agreement_documents.render_agreement_docx(made, OutputOptions())
+
+
+def test_since_a_revision(tmp_path: Path) -> None:
+    folder = repository(tmp_path / "duo", {"archgen.yaml": DUO})
+    first = git(folder, "rev-parse", "HEAD")
+    commit(folder, {"archgen.yaml": DUO.replace("rate: 30 Hz", "rate: 25 Hz")})
+    (folder / "archgen.yaml").write_text(DUO.replace("rate: 30 Hz", "rate: 20 Hz"), encoding="utf-8")
+    project = archgen.load(folder)
+    target = tmp_path / "out" / "a.md"
+    project.write_agreement(target, "north", "south", since="HEAD~1")
+    text = target.read_text(encoding="utf-8")
+    assert f"- **Changes since:** HEAD\\~1 ({first[:7]})" in text
+    assert "| Rate | \\~ changed | 30 Hz · 33.333 ms (written) | 20 Hz · 50 ms (written) |" in text
+    project.write_agreement(target, "north", "south", since=first)
+    assert f"- **Changes since:** {first}\n" in target.read_text(encoding="utf-8")
+
+
+def test_an_earlier_state_with_errors_is_said_and_compared_as_far_as_it_is_sound(tmp_path: Path) -> None:
+    earlier = read_version(
+        None, written(tmp_path / "a", DUO.replace("inputs: {image: camera.image, p", "inputs: {image: camra.image, p"))
+    )
+    found = agreement_documents.make_project_agreement(checked(tmp_path / "b"), "north", "south", earlier, "")
+    said = ["".join(run.text for run in notice.inlines) for notice in found.outline.notices]
+    assert said[0].startswith("The architecture at the working tree has errors (1 error, ")
+
+
+def test_a_partner_who_is_new_has_only_what_was_added(tmp_path: Path) -> None:
+    without = DUO.replace("owner: south", "owner: north").replace("[north, south]", "north")
+    without = re.sub(r"  south: .*\n", "", without)
+    found = agreement_documents.make_project_agreement(
+        checked(tmp_path / "b"), "north", "south", read_version(None, written(tmp_path / "a", without)), ""
+    )
+    assert found.changes is not None
+    assert len(found.changes.added_keys) == found.interface_count == 3
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "said"),
+    [
+        ("north", "sout", "there is no partner `sout`; did you mean `south`?"),
+        ("nobody", "south", "there is no partner `nobody`; there are north, south, west"),
+        ("south", "south", "an agreement is between two partners, and `south` was given twice"),
+        (
+            "west",
+            "south",
+            "nothing flows between `west` and `south`: `west` owns no component and no node",
+        ),
+    ],
+)
+def test_partners_without_an_agreement(tmp_path: Path, first: str, second: str, said: str) -> None:
+    project = checked(tmp_path, DUO.replace(", owner: west", ""))
+    with pytest.raises(PartnersError, match=re.escape(said)):
+        agreement_documents.make_project_agreement(project, first, second)
+
+
+def test_partners_who_have_interfaces_with_others(tmp_path: Path) -> None:
+    with pytest.raises(PartnersError) as refused:
+        agreement_documents.make_project_agreement(checked(tmp_path), "west", "south")
+    assert str(refused.value) == (
+        "nothing flows between `west` and `south`; `west` has interfaces with north; `south` has interfaces with north"
+    )
+
+
+def test_a_project_without_partners(tmp_path: Path) -> None:
+    text = "archgen: 1\ngroups: {a: {components: {x: {outputs: {o: T}}}}}\n"
+    with pytest.raises(PartnersError, match="the project has no partners: declare them below `partners`"):
+        agreement_documents.make_project_agreement(checked(tmp_path, text), "a", "b")

@@ -1,0 +1,121 @@
+"""What changed, as a page that stands by itself and as a picture."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.compare import Comparison
+from archgen.emit.file_tree import OutputError
+from archgen.products import comparison_documents
+from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.products.project_outputs import OutputOptions
+from tests import hostile
+from tests.emit.markdown.test_comparison_markdown import ROBOT
+from tests.products.test_agreement_documents import NU, Page
+
+Made = tuple[Comparison, ProjectVersion, ProjectVersion]
+
+
+def sides(folder: Path, before: str, after: str) -> Made:
+    """Compare two one-file projects."""
+    read = []
+    for name, text in (("before", before), ("after", after)):
+        (folder / name).mkdir()
+        (folder / name / "robot.yaml").write_text(text, encoding="utf-8")
+        read.append(ProjectVersion(name, pipeline.check_project(folder / name / "robot.yaml")))
+    old, new = read
+    return compare_named_versions(old, new), old, new
+
+
+def robot(folder: Path) -> Made:
+    """Change something of each sort."""
+    after = ROBOT.replace("wcet: 20 ms", "wcet: 60 ms").replace(
+        "      screen: {", "      lamp: {}\n      screen: {title: Screen 2, "
+    )
+    return sides(folder, ROBOT, after.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"))
+
+
+def evil(folder: Path, text: str) -> Made:
+    """Change every text of a hostile project."""
+    return sides(folder, hostile.written(hostile.project(text)), hostile.written(hostile.project(f"{text} 2")))
+
+
+@pytest.fixture(scope="module", params=["robot", *hostile.TEXTS])
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    folder = tmp_path_factory.mktemp("changes")
+    return robot(folder) if request.param == "robot" else evil(folder, hostile.TEXTS[request.param])
+
+
+def test_the_page_stands_by_itself(made: Made) -> None:
+    html = comparison_documents.render_comparison_html(*made, OutputOptions()).decode()
+    page = Page()
+    page.feed(html)
+    page.close()
+    assert page.wrong == []
+    assert len(set(page.ids)) == len(page.ids)
+    assert set(page.targets) <= set(page.ids)
+    assert "This picture could not be drawn" not in html
+
+
+def test_the_nu_checker_finds_nothing(made: Made, tmp_path: Path) -> None:
+    java = shutil.which("java")
+    assert java, "this test needs a Java (Debian: `default-jre-headless`)"
+    assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
+    page = tmp_path / "a.html"
+    page.write_bytes(comparison_documents.render_comparison_html(*made, OutputOptions()))
+    command = [java, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", str(page)]
+    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
+    messages = [m for m in json.loads(done.stderr)["messages"] if m["type"] == "error"]
+    assert [f"{m.get('lastLine')}: {m['message']}" for m in messages] == []
+
+
+def test_what_the_page_says(tmp_path: Path) -> None:
+    html = comparison_documents.render_comparison_html(*robot(tmp_path), OutputOptions()).decode()
+    text = unescape(re.sub(r"<[^>]+>", " ", html[html.index("<main") :]))
+    said = " ".join(text.split())
+    assert "Robot What changed: before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
+    assert "Breaks CERTH, SSSA Concerns CERTH, SSSA Breaking changes" in said
+    assert (
+        "~ display.finder : worst case execution time 20 ms → 60 ms breaks certh : makes the chain see miss its" in said
+    )
+    assert "Other changes Display + component display.lamp is added" in said
+    assert "see 127 ms 167 ms +40 ms 150 ms missed (was met)" in said
+    assert re.search(
+        r"warning late-chain the chain see may take 167 ms, its deadline is 150 ms robot\.yaml:\d+:10", said
+    )
+    assert (
+        said.index("Breaking changes")
+        < said.index("Pictures")
+        < said.index("Latency of chains")
+        < said.index("New findings")
+    )
+
+
+def test_no_change_is_one_line(tmp_path: Path) -> None:
+    made = sides(tmp_path, ROBOT, f"# a comment\n{ROBOT}")
+    html = comparison_documents.render_comparison_html(*made, OutputOptions()).decode()
+    assert "No change of the architecture." in html
+    assert "<svg" not in html[html.index("<main") :]
+    with pytest.raises(OutputError, match="nothing changed that a picture could show"):
+        comparison_documents.render_comparison_svg(made[0], OutputOptions())
+
+
+def test_the_picture_by_itself(tmp_path: Path) -> None:
+    svg = comparison_documents.render_comparison_svg(robot(tmp_path)[0], OutputOptions()).decode()
+    assert svg.startswith('<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"')
+    assert "<title>What changed: components and connections</title>" in svg
+    assert "worst case execution time `20 ms` → `60 ms`" in unescape(svg)
+    assert "<a " not in svg
+
+
+def test_names_and_command(tmp_path: Path) -> None:
+    text = comparison_documents.render_comparison_markdown(*robot(tmp_path))
+    assert "`before` → `after`: 1 added, 3 changed" in text

@@ -1,0 +1,56 @@
+"""The examples on the pages of the reading rules, and of those that find and merge files, do what they say."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from archgen import project, schema
+from archgen.diagnostics.diagnostic import Rule
+from archgen.link.slice_merging import RULES as MERGING
+from archgen.link.slice_merging import merge_documents
+from archgen.pipeline import ALL_RULES
+
+RULES = (*schema.RULES, *project.RULES, *MERGING)
+
+
+def example(rule: Rule, heading: str) -> dict[str, str]:
+    """Give the files of an example: lines `# file: NAME` part them, without any it is archgen.yaml."""
+    match = re.search(rf"^{heading}:\n\n((?:    .*\n|\n)+)", rule.doc + "\n", re.MULTILINE)
+    assert match is not None, rule.name
+    parts = re.split(r"^# file: (\S+)\n", textwrap.dedent(match[1]).strip("\n") + "\n", flags=re.MULTILINE)
+    if len(parts) == 1:
+        return {"archgen.yaml": parts[0]}
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+def found(root: Path, files: dict[str, str]) -> set[str]:
+    """Read and merge an example, and name the rules that it breaks."""
+    for name, text in files.items():
+        (root / name).parent.mkdir(exist_ok=True)
+        (root / name).write_text(text)
+    loaded = project.load_project(root)
+    return {d.rule for d in (*loaded.diagnostics, *merge_documents(loaded.documents, loaded.lost_keys)[1])}
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_examples(tmp_path: Path, rule: Rule) -> None:
+    assert "\n\nWhy: " in rule.doc
+    for heading, expected in (("Bad", {rule.name}), ("Good", set[str]())):
+        root = tmp_path / heading
+        root.mkdir()
+        assert found(root, example(rule, heading)) == expected
+
+
+def test_every_rule_that_is_used_has_a_page() -> None:
+    package = Path(schema.__file__).parents[1]
+    rooms = [*package.glob("syntax/*.py"), *package.glob("schema/*.py"), *package.glob("project/*.py")]
+    text = "".join(path.read_text() for path in (*rooms, package / "link" / "slice_merging.py"))
+    used = set(re.findall(r'Diagnostic\(\s*"([a-z-]+)"', text)) | set(
+        re.findall(r'"(too-large|wrong-type|wrong-value)"', text)
+    )
+    assert used - {rule.name for rule in ALL_RULES} == set()
+    assert "recursive-alias" in used

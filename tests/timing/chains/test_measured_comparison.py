@@ -1,0 +1,85 @@
+"""Designed against measured: reading what was observed, and naming outliers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from archgen.project.observation_reading import read_observations
+from archgen.timing.analysis import EventPace
+from archgen.timing.chains.measured_comparison import compare_measured
+from archgen.timing.figures.timing_values import TimingValue
+from tests.timing.made import MS, analysis, arc, ms, periodic
+
+YAML = """measured:
+  cam:
+    rate: 8 Hz
+    wcet: 12 ms
+    bcet: 4 ms
+    response: 21 ms
+  /cam:
+    period: 104 ms
+    max_period: 130 ms
+    min_period: 90 ms
+"""
+CSV = "id,rate,wcet\ncam,9.5 Hz,\n/cam, 10 Hz,\n"
+
+
+def _found(file: str, text: str) -> list[tuple[str, str, str, str]]:
+    made = analysis(
+        [periodic("cam", 100, wcet=10 * MS, bcet=5 * MS), periodic("det", 100)],
+        [arc("cam", "det")],
+        {"cam": 20, "det": 1},
+        {"cam": 100, "det": 100},
+    )
+    pace = EventPace("periodic", TimingValue(Fraction(10)), ms(100), distance=ms(95))
+    made = replace(made, paces={**made.paces, "cam": pace}, outputs={("cam", "cam.out"): replace(pace, gap=ms(120))})
+    observed, problems = read_observations(file, text)
+    compared, unknown = compare_measured(made, observed)
+    assert not problems
+    assert not unknown
+    return [(row.id, row.key, row.verdict, row.why) for row in compared]
+
+
+def test_outliers_are_named() -> None:
+    assert _found("run.yaml", YAML) == [
+        ("cam", "rate", "outlier", "slower than designed by more than 10 %"),
+        ("cam", "wcet", "outlier", "takes longer than the design says"),
+        ("cam", "bcet", "outlier", "is quicker than the design says: jitter grows"),
+        ("cam", "response", "outlier", "the bound on the response time does not hold"),
+        ("/cam", "period", "as designed", ""),
+        ("/cam", "max_period", "outlier", "gaps are larger than the bounds rest on"),
+        ("/cam", "min_period", "outlier", "they come closer than the bounds rest on"),
+    ]
+
+
+def test_csv_says_the_same() -> None:
+    assert _found("run.csv", CSV) == [("cam", "rate", "as designed", ""), ("/cam", "rate", "as designed", "")]
+
+
+def _problems(file: str, text: str) -> list[str]:
+    made = analysis([periodic("cam", 100)], [], {"cam": 1}, {"cam": 100})
+    observed, problems = read_observations(file, text)
+    _, unknown = compare_measured(made, observed)
+    return [f"{d.span} {d.rule}: {d.message} ({d.help})" for d in (*problems, *unknown)]
+
+
+def test_what_cannot_be_read_is_said_at_its_place() -> None:
+    assert _problems("a.yaml", "measured:\n  cam: {rate: 10, wect: 3 ms}\n  cap: {rate: 1 Hz}\n") == [
+        "a.yaml:2:15 wrong-value: `rate` takes a frequency with its unit, such as 29.7 Hz (None)",
+        "a.yaml:2:19 unknown-key: `wect` cannot be measured (did you mean `wcet`?)",
+        "a.yaml:3:3 unknown-reference: no node, activity or topic is called `cap` (did you mean `cam`?)",
+    ]
+    assert _problems("a.yaml", "cam: 3\n") == [
+        "a.yaml:1:1 missing-key: `measured`, the mapping of what was observed, is missing (write `measured: {ID: {rate: 10 Hz}}`)"
+    ]
+    assert _problems("a.yaml", "measured:\n  cam: 10 Hz\n") == [
+        "a.yaml:2:3 wrong-value: `cam` takes a mapping of figures (None)"
+    ]
+    assert _problems("a.csv", "name,rate\ncam,1 Hz\n") == [
+        "a.csv:1:1 missing-key: the first line does not begin with `id` (begin with `id,rate,wcet`, for instance)"
+    ]
+    assert _problems("a.csv", "id,rate\ncam,0 Hz\ncam,1 Hz,3\n") == [
+        "a.csv:2:1 wrong-value: `rate` takes a frequency with its unit, such as 29.7 Hz (None)",
+        "a.csv:3:1 wrong-value: this line has 3 cells, the first one 2 (None)",
+    ]
