@@ -121,7 +121,7 @@ def test_it_says_its_version(installed: Path, tmp_path: Path) -> None:
 
 
 def test_it_makes_the_case_study_as_the_checkout_does(installed: Path, ramcip: Path, tmp_path: Path) -> None:
-    where = "from archgen import resources; print(resources.path('example_ramcip'))"
+    where = "from archgen import resources; print(resources.resource_path('example_ramcip'))"
     example = run(installed / "python", "-c", where, cwd=tmp_path).strip()
     assert Path(example).is_relative_to(installed.parent)
     run(installed / "archgen", "check", example, cwd=tmp_path)

@@ -1,16 +1,25 @@
 """Word: an outline with its pictures, written as one .docx. `write` is all that others need.
 
-The document is written as text (see markup.py) into a template (template.py): archgen's own, which lies unpacked in
-backends/report/template/, or a partner's .docx or .dotx.
+python-docx opens the template (archgen's own, which lies unpacked in backends/report/template/, or a partner's .docx or .dotx)
+and holds the package: styles, sections, headers, pictures, properties. The text is written as XML (see `word_xml`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from archgen.emit.docx import assembly, body, contents, flow, properties, titlepage
-from archgen.emit.docx.package import TemplateError, pack
-from archgen.emit.docx.template import fill, names_in, opened
+from archgen.emit.docx.contents_lists import write_contents
+from archgen.emit.docx.core_properties import write_core_properties
+from archgen.emit.docx.document_parts import clean_settings, replace_document_text
+from archgen.emit.docx.document_text import format_document
+from archgen.emit.docx.docx_file import save_package
+from archgen.emit.docx.page_flow import assign_sheets, estimate_pages
+from archgen.emit.docx.report_template import open_template
+from archgen.emit.docx.section_pieces import list_anchors, write_sections
+from archgen.emit.docx.template_checks import TemplateError
+from archgen.emit.docx.template_placeholders import fill_placeholders, find_placeholders
+from archgen.emit.docx.title_page import list_placeholder_values, write_title_page
+from archgen.emit.docx.writer_setup import create_writer, warn_of_template
 from archgen.emit.picture import Picture
 from archgen.views.shapes import Outline
 
@@ -24,26 +33,30 @@ def write(
     template: bytes | None = None,
     chapter_files: Callable[[str], bytes | None],
 ) -> tuple[bytes, tuple[str, ...]]:
-    """Write a report. Gives the bytes of the .docx, and warnings for who makes it.
+    """Return a report as the bytes of a .docx, and warnings for who writes it.
 
-    `chapter_files` gives the bytes of a picture by its path in the project, None if there is none.
+    `chapter_files` returns the bytes of a picture by its path in the project, None if there is none.
     Raises TemplateError, with a message for the user, if the template cannot be used.
     """
-    document = opened(template)
-    titled = "title" in names_in(document.before)
-    unknown = fill(document, titlepage.values(outline))
-    draft = assembly.draft(
-        document, pictures, chapter_files, body.anchors(outline), language=outline.language if template is None else ""
-    )
+    report_template = open_template(template)
+    title_on_cover = "title" in find_placeholders(report_template.before)
+    unknown_names = fill_placeholders(report_template, list_placeholder_values(outline))
+    language = outline.language if template is None else ""
+    writer = create_writer(report_template, pictures, chapter_files, list_anchors(outline), language)
     if template is not None:
-        assembly.report_template(draft, unknown)
-    first = tuple(titlepage.pieces(draft, outline, titled=titled))
-    main = tuple(body.sections(draft, outline))
-    base = draft.sheets.base
-    cover = 1 if document.before else 0
-    known = flow.pages((*first, *flow.settle((*contents.front(draft, {}), *main), base)), base, section=len(first))
-    numbers = {mark: page + cover for mark, page in known.items()}
-    whole = flow.settle((*contents.front(draft, numbers), *main), base)
-    assembly.finish(document, draft, first, whole)
-    properties.describe(document.package, outline)
-    return pack(document.package), tuple(draft.warnings)
+        warn_of_template(writer, unknown_names)
+    title_page = tuple(write_title_page(writer, outline, title_on_cover=title_on_cover))
+    sections = tuple(write_sections(writer, outline))
+    # The lists take pages themselves: they are written once to be measured, and once with the numbers.
+    base = writer.paper.base
+    flow = assign_sheets((*write_contents(writer, {}), *sections), base)
+    pages = estimate_pages((*title_page, *flow), base, section_start=len(title_page))
+    # How long a cover is, only Word knows; nearly all take one page.
+    cover_pages = 1 if report_template.before else 0
+    numbers = {bookmark: page + cover_pages for bookmark, page in pages.items()}
+    flow = assign_sheets((*write_contents(writer, numbers), *sections), base)
+    document = report_template.document
+    clean_settings(document)
+    write_core_properties(document, report_template.package, outline)
+    replace_document_text(document, format_document(report_template, writer, title_page, flow))
+    return save_package(report_template.package), tuple(writer.warnings)

@@ -5,11 +5,14 @@ from __future__ import annotations
 import html
 import io
 import re
+import subprocess
+import sys
 import time
 import zipfile
 from itertools import pairwise
 from pathlib import Path
 
+import docx
 import pytest
 
 from archgen.emit.docx import write
@@ -78,6 +81,54 @@ def test_a_large_report_is_written_in_time() -> None:
     started = time.process_time()
     write(outline, pictures, chapter_files=sample.FILES.get)
     assert time.process_time() - started < 1.5
+
+
+def test_a_table_of_thousands_of_rows_is_written_in_time() -> None:
+    rows = tuple(tuple((Text(f"row {row}, cell {cell}"),) for cell in range(6)) for row in range(4000))
+    table = Table("t", "Many", tuple(Column(f"Column {n}") for n in range(6)), rows)
+    started = time.process_time()
+    xml = document(report(Outline("T", sections=(Section("a", "A", (table,)),))))
+    assert time.process_time() - started < 3  # 12 s where lxml moves the rows from one tree into another
+    assert xml.count("<w:tr>") == 4001
+
+
+def test_blanks_between_runs_stay() -> None:
+    xml = document(
+        report(
+            Outline(
+                "T", sections=(Section("a", "A", (Paragraph((Text("one"), Text(" "), Text("two", strong=True))),)),)
+            )
+        )
+    )
+    assert '<w:t xml:space="preserve">one</w:t></w:r><w:r><w:t xml:space="preserve"> </w:t></w:r>' in xml
+
+
+def test_properties_say_what_the_report_is_and_nothing_of_python_docx() -> None:
+    properties = docx.Document(
+        io.BytesIO(report(Outline("A title\x07\nin lines " + "x" * 300, "Sub", language="de")))
+    ).core_properties
+    assert properties.title == ("A title\ufffd in lines " + "x" * 300)[:255]
+    assert (properties.subject, properties.language) == ("Sub", "de")
+    assert (properties.author, properties.last_modified_by, properties.modified) == ("", "", None)
+
+
+def test_only_a_word_file_needs_python_docx(tmp_path: Path) -> None:
+    project = tmp_path / "p"
+    project.mkdir()
+    (project / "archgen.yaml").write_text("archgen: 1\n")
+    code = (
+        "import sys, archgen\n"
+        "from archgen.__main__ import main\n"
+        "for arguments in (['--help'], ['check', sys.argv[1]], ['report', '--help']):\n"
+        "    sys.argv = ['archgen', *arguments]\n"
+        "    try: main()\n"
+        "    except SystemExit: pass\n"
+        "assert 'docx' not in sys.modules\n"
+    )
+    code = code.replace("sys.argv[1]", repr(str(project)))
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)  # noqa: S603 - this program
+    assert run.returncode == 0, run.stderr
+    assert "--help" in run.stdout
 
 
 def test_headings_are_numbered_and_appendices_lettered() -> None:

@@ -16,7 +16,7 @@ from docx.oxml.ns import qn
 from docx.shared import Mm
 
 from archgen.emit.docx import TemplateError, write
-from archgen.views.shapes import Outline, Section, Text
+from archgen.views.shapes import Markdown, Outline, Section, Text
 from tests.emit.docx import inspection, judges, sample
 
 Change = Callable[[Document], None]
@@ -227,6 +227,63 @@ def test_settings_that_ask_or_fetch_are_taken_out() -> None:
     assert "updateFields" not in part(report(saved(asking))[0], "word/settings.xml")
 
 
+def test_a_cover_keeps_its_pictures() -> None:
+    """A report from before as the template: pictures of both have the same names at first."""
+    other = sample.png(7, 5)
+    cover = write(
+        Outline("T", sections=(Section("a", "A", (Markdown("![red](red.png)"),)),)),
+        {},
+        chapter_files=lambda _path: other,
+    )[0]
+    data, _ = report(cover)
+    names = zipfile.ZipFile(io.BytesIO(data)).namelist()
+    assert len(names) == len(set(names))
+    pictures = [zipfile.ZipFile(io.BytesIO(data)).read(name) for name in names if name.startswith("word/media/")]
+    assert other in pictures
+    assert sample.FILES["docs/pictures/red.png"] in pictures
+    shown = docx.Document(io.BytesIO(data))
+    first = next(shown.element.iter(qn("a:blip"))).get(qn("r:embed"))
+    assert shown.part.related_parts[first].blob == other
+
+
+def test_relationships_that_lead_nowhere_do_no_harm() -> None:
+    image = "http://schemas.openxmlformats.org/officeDocument/2006/relationships/image"
+    nowhere = f'<Relationship Id="gone" Type="{image}" Target="NULL"/>'
+    header = "word/_rels/header1.xml.rels"
+    template = rewritten(
+        TEMPLATES["cover"], "word/_rels/document.xml.rels", "</Relationships>", f"{nowhere}</Relationships>"
+    )
+    source = zipfile.ZipFile(io.BytesIO(template))
+    parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
+    namespace = "http://schemas.openxmlformats.org/package/2006/relationships"
+    parts[header] = f'<Relationships xmlns="{namespace}">{nowhere}</Relationships>'
+    data, _ = report(packed(parts))
+    assert inspection.faults(data) == []
+    assert "NULL" not in part(data, "word/_rels/document.xml.rels")
+    assert 'Target="NULL" TargetMode="External"' in part(data, header)
+
+
+def test_sizes_as_google_docs_writes_them_are_read() -> None:
+    template = rewritten(TEMPLATES["letter"], "word/document.xml", 'w:right="1800"', 'w:right="1440.0000000000002"')
+    tables = [int(text) for text in re.findall(r'<w:tblW w:w="(\d+)" w:type="dxa"/>', part(report(template)[0]))]
+    assert min(abs(table - 9000) for table in tables) <= 4
+
+
+def test_what_stands_twice_or_under_another_type_is_used_once() -> None:
+    """The styles are related twice, and their content type is that of any XML."""
+    styles = "application/vnd.openxmlformats-officedocument.wordprocessingml.styles+xml"
+    relation = 'Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/styles"'
+    again = f'<Relationship Id="again" {relation} Target="styles.xml"/></Relationships>'
+    template = rewritten(
+        TEMPLATES["letter"], "[Content_Types].xml", f'ContentType="{styles}"', 'ContentType="text/xml"'
+    )
+    template = rewritten(template, "word/_rels/document.xml.rels", "</Relationships>", again)
+    data, warnings = report(template)
+    assert inspection.faults(data) == []
+    assert part(data, "word/_rels/document.xml.rels").count(relation) == 1
+    assert warnings == report(TEMPLATES["letter"])[1]
+
+
 def zipped(**parts: str) -> bytes:
     target = io.BytesIO()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -271,6 +328,22 @@ def test_what_is_no_template_is_refused(template: bytes, message: str) -> None:
     with pytest.raises(TemplateError) as error:
         report(template, Outline("T", facts=(("Version", (Text("1"),)),)))
     assert message in str(error.value)
+
+
+def test_a_long_chain_of_parts_is_refused() -> None:
+    """python-docx walks from part to part by recursion."""
+    namespace = "http://schemas.openxmlformats.org/package/2006/relationships"
+    source = zipfile.ZipFile(io.BytesIO(TEMPLATES["letter"]))
+    parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
+    for number in range(1500):
+        relation = f'<Relationship Id="next" Type="x/chain" Target="link{number + 1}.xml"/>'
+        parts[f"word/link{number}.xml"] = "<link/>"
+        parts[f"word/_rels/link{number}.xml.rels"] = f'<Relationships xmlns="{namespace}">{relation}</Relationships>'
+    first = '<Relationship Id="chain" Type="x/chain" Target="link0.xml"/></Relationships>'
+    relations = "word/_rels/document.xml.rels"
+    parts[relations] = parts[relations].replace("</Relationships>", first)
+    with pytest.raises(TemplateError, match="the template is damaged: it cannot be opened as a Word document"):
+        report(packed(parts), Outline("T"))
 
 
 def test_a_damaged_template_is_refused_or_used_but_never_a_traceback() -> None:

@@ -1,0 +1,118 @@
+"""How wide the columns of a table are, and whether its words fit a sheet: by the widths of words, as Word knows no such layout."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from archgen.emit.docx.docx_writer import ColumnMeasures, DocxWriter
+from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.text_metrics import MONOSPACE_FACTOR, measure_words
+from archgen.views.shapes import Column, Inlines, Table
+
+CELL_MARGINS = 12.0
+"""Points that a cell's margins take from its width."""
+_MAX_WORD_SHARE = 0.4
+"""Share of the table that one unbroken word may claim; a longer one (a topic's name) is broken."""
+_MAX_SMALL_WORD_SHARE = 0.25
+_MAX_GROWTH = 2.0
+"""How much more than its share a column may get for text that would else take many lines."""
+
+
+@dataclass(frozen=True, slots=True)
+class TableStyles:
+    """The styles of a table's text and of its header row."""
+
+    text: str = "Table Text"
+    heading: str = "Table Heading"
+
+
+USUAL_STYLES = TableStyles()
+SMALL_STYLES = TableStyles("Small Table Text", "Small Table Heading")
+
+
+@dataclass(frozen=True, slots=True)
+class TableContent:
+    """The columns and rows of a table, as far as its widths depend on them. `table_id` is that of a table of the outline."""
+
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[Inlines]]
+    table_id: int | None = None
+
+    @classmethod
+    def from_table(cls, shape: Table) -> TableContent:
+        """Return the content of a table of the outline, which lives as long as the report is written."""
+        return cls(shape.columns, shape.rows, id(shape))
+
+
+def choose_table_sheet(writer: DocxWriter, shape: Table) -> tuple[PaperSheet | None, TableStyles]:
+    """Return a table's sheet (None for the usual one) and styles.
+
+    Small type comes before a turned page, and that only if even so its words do not fit.
+    """
+    base, wide = writer.paper.base, writer.paper.wide
+    content = TableContent.from_table(shape)
+    if shape.wide:
+        fits = _fits_sheet(writer, content, wide, USUAL_STYLES, _MAX_WORD_SHARE)
+        return wide, USUAL_STYLES if fits else SMALL_STYLES
+    if _fits_sheet(writer, content, base, USUAL_STYLES, _MAX_WORD_SHARE):
+        return None, USUAL_STYLES
+    fits = _fits_sheet(writer, content, base, SMALL_STYLES, _MAX_SMALL_WORD_SHARE)
+    return (None if fits else wide), SMALL_STYLES
+
+
+def share_width(writer: DocxWriter, content: TableContent, total: float, styles: TableStyles) -> list[float]:
+    """Return the width of each column in points.
+
+    They share the total by their weights, but each has the room of its longest word, as far as there is any.
+    """
+    words, lines = _measure_columns(writer, content, styles)
+    least = [min(width, total * _MAX_WORD_SHARE) for width in words]
+    if sum(least) >= total:
+        return [width * total / sum(least) for width in least]
+    # A weight of 0 or less is no mistake to stop at: such a column gets what its words need.
+    weights = [max(column.weight, 0.01) for column in content.columns]
+    shares = [total * weight / sum(weights) for weight in weights]
+    desired = [max(share, min(line, share * _MAX_GROWTH)) for share, line in zip(shares, lines, strict=True)]
+    extras = [max(want - need, 0) for want, need in zip(desired, least, strict=True)]
+    room = total - sum(least)
+    return [
+        need + room * (extra / sum(extras) if sum(extras) else 1 / len(least))
+        for need, extra in zip(least, extras, strict=True)
+    ]
+
+
+def _measure_columns(writer: DocxWriter, content: TableContent, styles: TableStyles) -> ColumnMeasures:
+    """Return the width of each column's longest word and of its longest line in points, with the cell's margins."""
+    # Asked three times for a table: whether it needs a turned page, whether it fits one, and how wide its columns are.
+    if content.table_id is None:
+        return _measure_cells(writer, content, styles)
+    key = (content.table_id, styles.text)
+    if key not in writer.column_measures:
+        writer.column_measures[key] = _measure_cells(writer, content, styles)
+    return writer.column_measures[key]
+
+
+def _measure_cells(writer: DocxWriter, content: TableContent, styles: TableStyles) -> ColumnMeasures:
+    text, head = writer.styles.find_face(styles.text), writer.styles.find_face(styles.heading)
+    words = [max(measure_words(column.title), default=0) * head.size * head.factor for column in content.columns]
+    lines = list(words)
+    for row in content.rows:
+        for index, cell in enumerate(row[: len(words)]):
+            line_width = 0.0
+            for item in cell:
+                scale = text.size * (text.factor if not item.code else MONOSPACE_FACTOR)
+                widths = [width * scale for width in measure_words(item.text)]
+                words[index] = max(words[index], *widths, 0)
+                line_width = sum(widths) + (0.0 if item.line_break else line_width)
+                # A blank is about a quarter of the type size.
+                lines[index] = max(lines[index], line_width + len(widths) * scale / 4)
+    return [width + CELL_MARGINS for width in words], [width + CELL_MARGINS for width in lines]
+
+
+def _fits_sheet(
+    writer: DocxWriter, content: TableContent, sheet: PaperSheet, styles: TableStyles, max_share: float
+) -> bool:
+    """Tell whether the longest words of all columns stand beside each other; none claims more than a share of the sheet."""
+    words, _ = _measure_columns(writer, content, styles)
+    return sum(min(width, sheet.text_width * max_share) for width in words) <= sheet.text_width

@@ -1,0 +1,82 @@
+"""The tables of contents, figures and tables: every entry a link with the number of its page.
+
+Word gets a real field around them, which somebody can update. LibreOffice keeps what such a field holds as it is, wrong numbers too, while it
+computes the page of an entry that stands outside of one. So the outer field is written for those alone who know Word 2016's additions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
+from archgen.emit.docx.page_flow import FlowPiece
+from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
+
+_MAX_LEVEL = 3
+"""Levels of headings in the table of contents."""
+_NUMBER_WIDTH = 30.0
+"""Points at the right that page numbers take."""
+
+
+def write_contents(writer: DocxWriter, pages: Mapping[str, int]) -> Iterator[FlowPiece]:
+    """Write the three lists; one without entries is left out. `pages` has the page of each bookmark."""
+    # Switches (ECMA-376 17.16.5.68): \o by levels of headings, \h links, \z no numbers on a screen, \u outline levels of other
+    # styles, \c the captions with a SEQ field of a name.
+    headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= _MAX_LEVEL]
+    yield from _write_list(writer, "Contents", f'TOC \\o "1-{_MAX_LEVEL}" \\h \\z \\u', headings, pages)
+    for title, kind in (("Figures", "Figure"), ("Tables", "Table")):
+        entries = [(entry, "table of figures") for entry in writer.find_contents(kind)]
+        yield from _write_list(writer, title, f'TOC \\h \\z \\c "{kind}"', entries, pages)
+
+
+def _write_list(
+    writer: DocxWriter,
+    title: str,
+    instruction: str,
+    entries: Sequence[tuple[ContentsEntry, str]],
+    pages: Mapping[str, int],
+) -> Iterator[FlowPiece]:
+    """Write a list of entries with their styles, in a field that Word computes by an instruction."""
+    if not entries:
+        return
+    face = writer.styles.find_face("TOC Heading")
+    # A template's style may stand on heading 1: without number and outline level the list does not list itself.
+    properties = '<w:numPr><w:numId w:val="0"/></w:numPr><w:outlineLvl w:val="9"/>'
+    xml = format_paragraph(writer.styles.find_style_id("TOC Heading"), format_run(title), properties)
+    yield FlowPiece(xml, (face.line,), face.before, face.after, keep_next=True)
+    last = len(entries) - 1
+    for index, (entry, style) in enumerate(entries):
+        before = _format_field_start(instruction) if index == 0 else ""
+        after = _format_run_for_word('<w:fldChar w:fldCharType="end"/>') if index == last else ""
+        yield _write_entry(writer, entry, style, pages.get(entry.bookmark, 1), (before, after))
+
+
+def _write_entry(
+    writer: DocxWriter, entry: ContentsEntry, style: str, page: int, field_runs: tuple[str, str]
+) -> FlowPiece:
+    """Write an entry with the number of its page. `field_runs` are the runs of the field that begins or ends with it."""
+    face = writer.styles.find_face(style)
+    width = writer.paper.base.text_width
+    separator = ": " if style == "table of figures" else "  " if entry.label else ""
+    text = f"{entry.label}{separator}{entry.title}"
+    link = format_run(text) + "<w:r><w:tab/></w:r>" + format_field(f"PAGEREF {entry.bookmark} \\h", str(page))
+    runs = f'{field_runs[0]}<w:hyperlink w:anchor="{entry.bookmark}" w:history="1">{link}</w:hyperlink>{field_runs[1]}'
+    tabs = f'<w:tabs><w:tab w:val="right" w:leader="dot" w:pos="{points_to_twips(width)}"/></w:tabs>'
+    # A style with an indent at the right keeps its words off the numbers itself.
+    rows = (face.line,) * face.count_lines(text, width - (0 if face.right else _NUMBER_WIDTH))
+    xml = format_paragraph(writer.styles.find_style_id(style), runs, tabs)
+    return FlowPiece(xml, rows, face.before, face.after, whole=True)
+
+
+def _format_field_start(instruction: str) -> str:
+    return (
+        _format_run_for_word('<w:fldChar w:fldCharType="begin"/>')
+        + _format_run_for_word(f'<w:instrText xml:space="preserve"> {escape_text(instruction)} </w:instrText>')
+        + _format_run_for_word('<w:fldChar w:fldCharType="separate"/>')
+    )
+
+
+def _format_run_for_word(content: str) -> str:
+    """Return a run whose content is only for programs that know Word 2016's additions (ECMA-376 part 3)."""
+    choice = f'<mc:Choice Requires="w16se">{content}</mc:Choice>'
+    return f"<w:r><mc:AlternateContent>{choice}<mc:Fallback/></mc:AlternateContent></w:r>"

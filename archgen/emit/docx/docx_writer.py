@@ -1,0 +1,143 @@
+"""What the writers of all pieces share: the document, its styles and paper, ids that are used, headings and captions so far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from docx.document import Document
+from docx.opc.constants import CONTENT_TYPE, RELATIONSHIP_TYPE
+from docx.opc.packuri import PackURI
+from docx.opc.part import Part
+from docx.parts.image import ImagePart
+
+from archgen.emit.docx.docx_file import SVG_TYPE
+from archgen.emit.docx.link_addresses import quote_address
+from archgen.emit.docx.list_numbering import ListNumbering
+from archgen.emit.docx.paper_sheets import PaperSet
+from archgen.emit.docx.style_table import StyleTable
+from archgen.emit.docx.word_xml import clean_text, name_bookmark
+from archgen.emit.picture import Picture
+
+_IMAGE_TYPES = {
+    "png": CONTENT_TYPE.PNG,
+    "jpeg": CONTENT_TYPE.JPEG,
+    "gif": CONTENT_TYPE.GIF,
+    "svg": SVG_TYPE,
+}
+
+
+ColumnMeasures = tuple[list[float], list[float]]
+"""Of each column of a table the width of its longest word, and of its longest line, in points."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContentsEntry:
+    """A line of one of the tables of contents. `level` is 1 for lists of figures and tables."""
+
+    bookmark: str
+    label: str
+    title: str
+    level: int = 1
+
+
+@dataclass(slots=True)
+class DocxWriter:
+    """The state of a report while it is written. `anchors` are all that references may point at.
+
+    `chapter_files` returns the bytes of a picture by its path in the project. `heading_counts` are the numbers of the
+    headings that stand open, one for each level. `part_names` are those of all parts of the package.
+    `column_measures` has those of the outline's tables, by the id of a table and the style of its text.
+    """
+
+    document: Document
+    styles: StyleTable
+    numbering: ListNumbering
+    paper: PaperSet
+    pictures: Mapping[str, Picture]
+    chapter_files: Callable[[str], bytes | None]
+    anchors: frozenset[str]
+    part_names: set[str] = field(default_factory=set)
+    column_measures: dict[tuple[int, str], ColumnMeasures] = field(default_factory=dict)
+    last_id: int = 0
+    headings: list[ContentsEntry] = field(default_factory=list)
+    figures: list[ContentsEntry] = field(default_factory=list)
+    tables: list[ContentsEntry] = field(default_factory=list)
+    heading_counts: list[int] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    bookmark_anchors: set[str] = field(default_factory=set)
+    relation_count: int = 0
+    link_relations: dict[str, str | None] = field(default_factory=dict)
+    image_relations: dict[tuple[str, str], str] = field(default_factory=dict)
+
+    def take_id(self) -> int:
+        """Return an id that no bookmark and no drawing of the document has."""
+        self.last_id += 1
+        return self.last_id
+
+    def format_bookmark(self, anchor: str | None) -> str:
+        """Return an empty bookmark for an anchor, once; nothing for an anchor that has one."""
+        if not anchor or anchor in self.bookmark_anchors:
+            return ""
+        self.bookmark_anchors.add(anchor)
+        number = self.take_id()
+        # Without words in it, it may stand before anything, and no edit of the words takes it away.
+        return f'<w:bookmarkStart w:id="{number}" w:name="{name_bookmark(anchor)}"/><w:bookmarkEnd w:id="{number}"/>'
+
+    def find_free_anchor(self, anchor: str) -> str:
+        """Return an anchor without a bookmark: the one that is wanted, or it with a number."""
+        # Sections of one title have one anchor, and of two bookmarks with one name Word drops the second.
+        free, count = anchor, 2
+        while free in self.bookmark_anchors:
+            free, count = f"{anchor}#{count}", count + 1
+        return free
+
+    def relate_link(self, url: str) -> str | None:
+        """Return the relationship of an address outside; None if Word could not open it, or should not."""
+        if url not in self.link_relations:
+            address = quote_address(url)
+            relation = None if address is None else self._add_relation(RELATIONSHIP_TYPE.HYPERLINK, address)
+            self.link_relations[url] = relation
+        return self.link_relations[url]
+
+    def relate_image(self, key: str, kind: str, data: bytes) -> str:
+        """Return the relationship of a picture's bytes, which are stored once for each key."""
+        if (key, kind) not in self.image_relations:
+            # Not by `get_or_add_image_part`, which takes no SVG and reads each picture once more for its size.
+            part = ImagePart(self._find_image_name(kind), _IMAGE_TYPES[kind], data)
+            self.image_relations[key, kind] = self._add_relation(RELATIONSHIP_TYPE.IMAGE, part)
+        return self.image_relations[key, kind]
+
+    def warn(self, text: str) -> None:
+        """Say something about the report to who writes it, once."""
+        text = clean_text(text)
+        if text not in self.warnings:
+            self.warnings.append(text)
+
+    def find_contents(self, kind: str) -> Sequence[ContentsEntry]:
+        """Return the entries of the list of figures or tables."""
+        return self.figures if kind == "Figure" else self.tables
+
+    def _add_relation(self, relation_type: str, target: Part | str) -> str:
+        """Return the id of a new relationship of the document; a target that is text lies outside.
+
+        Not by python-docx's `relate_to`, which compares with all relationships and then tries all ids from 1: two thousand
+        links take 0.9 s.
+        """
+        relations = self.document.part.rels
+        self.relation_count += 1
+        while f"ag{self.relation_count}" in relations:
+            self.relation_count += 1
+        relation_id = f"ag{self.relation_count}"
+        relations.add_relationship(relation_type, target, relation_id, isinstance(target, str))
+        return relation_id
+
+    def _find_image_name(self, kind: str) -> PackURI:
+        """Return a part name that is free: a template may be a report from before, with its own pictures on its cover."""
+        folder = self.document.part.partname.baseURI.rstrip("/")
+        number = len(self.image_relations) + 1
+        while f"{folder}/media/archgen{number}.{kind}" in self.part_names:
+            number += 1
+        name = f"{folder}/media/archgen{number}.{kind}"
+        self.part_names.add(name)
+        return PackURI(name)

@@ -1,0 +1,128 @@
+"""The report as a flow of pieces, and an estimate of the page that each of them falls on.
+
+Word shows the stored page numbers until somebody updates the fields, and asks no question if it need not update them itself. So they must
+be close. Everything that decides them is known but the exact breaking of lines: heights of lines, rows, pictures and spaces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from archgen.emit.docx.paper_sheets import PaperSheet
+
+_WIDOW_LINES = 2
+"""Lines of a paragraph that stay together at the foot and at the head of a page."""
+_MIN_PAGE_TEXT = 130.0
+"""Points of text that deserve a page."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlowPiece:
+    """A paragraph, or a table with the empty paragraph behind it. Heights are in points.
+
+    `rows` are the heights of what may stand on different pages: lines or rows. `repeat` is the height of what the next page
+    repeats. `sheet` is the paper it needs, None for any. `marks` are the bookmarks at its start.
+    """
+
+    xml: str
+    rows: tuple[float, ...]
+    before: float = 0
+    after: float = 0
+    keep_next: bool = False
+    whole: bool = False
+    repeat: float = 0
+    sheet: PaperSheet | None = None
+    new_page: bool = False
+    marks: tuple[str, ...] = ()
+
+    @property
+    def first_height(self) -> float:
+        """Return the height of what stands on the first page at least, with the space before it."""
+        whole = self.whole or len(self.rows) <= _WIDOW_LINES + 1
+        return self.before + sum(self.rows if whole else self.rows[:_WIDOW_LINES])
+
+    @property
+    def height(self) -> float:
+        """Return the height of all of it, with the spaces around it."""
+        return self.before + sum(self.rows) + self.after
+
+
+def assign_sheets(pieces: Sequence[FlowPiece], base: PaperSheet) -> tuple[FlowPiece, ...]:
+    """Return every piece with its sheet: the one it needs, that of the piece it is kept with, or the usual one.
+
+    A little text that would have a usual page to itself, beside a turned one, turns along.
+    """
+    sheets: list[PaperSheet] = []
+    # From the end, since what is kept with the next piece follows that one's sheet.
+    following: PaperSheet | None = None
+    for piece in reversed(pieces):
+        following = piece.sheet or (following if piece.keep_next else None) or base
+        sheets.append(following)
+    sheets.reverse()
+    for start, end in _find_base_stretches(pieces, sheets, base):
+        if sum(piece.height for piece in pieces[start:end]) <= _MIN_PAGE_TEXT:
+            before = sheets[start - 1] if start and not pieces[start].new_page else base
+            after = sheets[end] if end < len(pieces) and not pieces[end].new_page else base
+            sheets[start:end] = [after if after != base else before] * (end - start)
+    return tuple(replace(piece, sheet=sheet) for piece, sheet in zip(pieces, sheets, strict=True))
+
+
+def estimate_pages(pieces: Sequence[FlowPiece], base: PaperSheet, section_start: int = 0) -> dict[str, int]:
+    """Return the page of every bookmark. The pieces have their sheets; a section begins at the one with index `section_start`."""
+    pages: dict[str, int] = {}
+    page, position, gap, sheet = 1, 0.0, 0.0, base
+    for index, piece in enumerate(pieces):
+        height = (piece.sheet or base).text_height
+        turned = index > 0 and (index == section_start or (piece.sheet or base) != sheet)
+        sheet = piece.sheet or base
+        # Of two spaces that meet Word takes the larger one.
+        space = max(gap, piece.before)
+        if (
+            turned
+            or (piece.new_page and position)
+            or (position and position + space + _measure_required_height(pieces, index) > height)
+        ):
+            page, position = page + 1, 0.0
+            # At the head of a page that came by itself Word leaves the space before a paragraph out.
+            space = piece.before if turned or piece.new_page else 0.0
+        pages.update(dict.fromkeys(piece.marks, page))
+        page, position = _fill_pages(piece, page, position + space, height)
+        gap = piece.after
+    return pages
+
+
+def _find_base_stretches(
+    pieces: Sequence[FlowPiece], sheets: Sequence[PaperSheet], base: PaperSheet
+) -> list[tuple[int, int]]:
+    """Return start and end of each stretch of pieces on the usual sheet between what begins a page."""
+    stretches, start = [], 0
+    for index in range(len(pieces) + 1):
+        if index == len(pieces) or sheets[index] != base or pieces[index].new_page:
+            if start < index:
+                stretches.append((start, index))
+            start = index if index < len(pieces) and sheets[index] == base else index + 1
+    return stretches
+
+
+def _measure_required_height(pieces: Sequence[FlowPiece], index: int) -> float:
+    """Return the height that must be free for a piece to begin here, with those that it is kept with; space before it apart."""
+    piece = pieces[index]
+    total = piece.first_height - piece.before
+    while piece.keep_next and index + 1 < len(pieces):
+        index += 1
+        total += max(piece.after - pieces[index].before, 0)
+        piece = pieces[index]
+        total += piece.first_height
+    return total
+
+
+def _fill_pages(piece: FlowPiece, page: int, position: float, height: float) -> tuple[int, float]:
+    """Return the page on which a piece ends, and the height that is in use there."""
+    for row in piece.rows:
+        if position and position + row > height:
+            page, position = page + 1, piece.repeat
+        position += row
+        while position > height > 0:
+            page, position = page + 1, position - height
+    return page, position

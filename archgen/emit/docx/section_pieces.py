@@ -1,0 +1,114 @@
+"""The report's sections in order, as pieces: each shape to its writer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from archgen.emit.docx.column_widths import choose_table_sheet
+from archgen.emit.docx.docx_writer import DocxWriter
+from archgen.emit.docx.figures import choose_sheet, write_figure
+from archgen.emit.docx.markdown_chapters import write_chapter
+from archgen.emit.docx.page_flow import FlowPiece
+from archgen.emit.docx.table_pieces import write_facts, write_table
+from archgen.emit.docx.text_pieces import Heading, write_bullets, write_heading, write_paragraph
+from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text
+
+_SCOPE_LEVEL = 2
+"""Chapters and the sections of their first level (components) keep their wide pictures and tables to themselves."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutlineItem:
+    """A heading (`block` is None) or a block, with the section that it stands in."""
+
+    section: Section
+    level: int
+    block: Block | None
+    appendix: bool
+    new_page: bool = False
+
+
+def list_anchors(outline: Outline) -> frozenset[str]:
+    """Return everything in a report that a reference can point at."""
+    return frozenset(anchor for section in outline.sections for anchor in _iter_anchors(section))
+
+
+def write_sections(writer: DocxWriter, outline: Outline) -> Iterator[FlowPiece]:
+    """Write all sections. The first begins a page; lettered appendices count anew."""
+    lettered = False
+    for index, section in enumerate(outline.sections):
+        if section.appendix and not lettered:
+            # Their list is another one in Word too, and begins with A.
+            writer.heading_counts, lettered = [], True
+        new_page = index == 0 or section.page_break
+        items = tuple(_iter_items(section, 1, appendix=section.appendix, new_page=new_page))
+        starts = [place for place, item in enumerate(items) if item.block is None and item.level <= _SCOPE_LEVEL]
+        for start, end in zip(starts, [*starts[1:], len(items)], strict=True):
+            yield from _write_scope(writer, items[start:end])
+
+
+def _iter_items(section: Section, level: int, *, appendix: bool, new_page: bool) -> Iterator[OutlineItem]:
+    yield OutlineItem(section, level, None, appendix, new_page)
+    for block in section.blocks:
+        yield OutlineItem(section, level, block, appendix)
+    for below in section.sections:
+        yield from _iter_items(below, level + 1, appendix=appendix, new_page=below.page_break)
+
+
+def _write_scope(writer: DocxWriter, items: Sequence[OutlineItem]) -> Iterator[FlowPiece]:
+    """Write a chapter or a component. What needs another sheet comes last, so that the text before it fills its pages."""
+    sheet_needs = [item.block is not None and not item.appendix and _needs_sheet(writer, item.block) for item in items]
+    last = max(
+        (index for index, item in enumerate(items) if item.block is not None and not sheet_needs[index]), default=-1
+    )
+    late = []
+    for index, item in enumerate(items):
+        if sheet_needs[index] and index < last and isinstance(item.block, (Figure, Table)):
+            late.append(item)
+            inlines = (Text("On the wide page that follows: "), Text(item.block.caption, ref=item.block.anchor))
+            yield write_paragraph(writer, Paragraph(inlines))
+        else:
+            yield from _write_item(writer, item)
+    for item in late:
+        yield from _write_item(writer, item)
+
+
+def _needs_sheet(writer: DocxWriter, block: Block) -> bool:
+    """Tell whether a block needs another sheet than the usual one."""
+    if isinstance(block, Table):
+        return choose_table_sheet(writer, block)[0] is not None
+    if isinstance(block, Figure) and (picture := writer.pictures.get(block.graph)):
+        return choose_sheet(writer, picture.width, picture.height)[0] is not None
+    return False
+
+
+def _write_item(writer: DocxWriter, item: OutlineItem) -> Iterator[FlowPiece]:
+    section = item.section
+    match item.block:
+        case None:
+            heading = Heading(section.anchor, section.title, item.level, item.appendix, item.new_page)
+            yield write_heading(writer, heading)
+        case Paragraph():
+            yield write_paragraph(writer, item.block)
+        case Markdown():
+            yield from write_chapter(writer, item.block, section.anchor, item.level, appendix=item.appendix)
+        case Figure():
+            yield from write_figure(writer, item.block)
+        case Bullets():
+            yield from write_bullets(writer, item.block)
+        case Facts():
+            yield from write_facts(writer, item.block)
+        case Table():
+            yield from write_table(writer, item.block)
+
+
+def _iter_anchors(section: Section) -> Iterator[str]:
+    yield section.anchor
+    for block in section.blocks:
+        if isinstance(block, (Table, Figure)):
+            yield block.anchor
+        if isinstance(block, Table):
+            yield from (anchor for anchor in block.row_anchors if anchor)
+    for below in section.sections:
+        yield from _iter_anchors(below)
