@@ -61,10 +61,16 @@ def test_a_verb_imports_nothing_heavy_without_need(tmp_path: Path, words: tuple[
     assert HEAVY & imported_modules(tmp_path, *words) == set()
 
 
-def test_the_packed_file_is_written_without_ruamel(tmp_path: Path) -> None:
-    modules = imported_modules(tmp_path, "pack", str(RAMCIP), "-o", "packed.yaml")
-    assert (tmp_path / "packed.yaml").exists()
-    assert "ruamel.yaml" not in modules
+def test_build_needs_neither_ruamel_nor_networkx(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "build", str(ROOT / "examples/first_robot"), "-o", "out")
+    assert (tmp_path / "out/packed.yaml").exists()
+    assert {"networkx", "ruamel.yaml"} & modules == set()
+
+
+def test_the_baseline_is_written_without_ruamel(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "check", str(RAMCIP), "--baseline", "b.yaml", "--update-baseline")
+    assert (tmp_path / "b.yaml").exists()
+    assert HEAVY & modules == set()
 
 
 def test_a_new_project_is_written_by_ruamel(tmp_path: Path) -> None:

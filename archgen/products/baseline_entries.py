@@ -6,9 +6,10 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.finding_identity import identify_finding
+from archgen.syntax import yaml_writer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from archgen.diagnostics.diagnostic import Diagnostic, Rule
     from archgen.diagnostics.finding_identity import BaselineEntry
@@ -55,17 +56,17 @@ def format_baseline(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -
     counts = Counter(
         (finding.rule, finding.element or "", finding.message) for finding in findings if not rules[finding.rule].fixed
     )
-    # Imported here: a check that only reads a baseline does not pay for ruamel.yaml.
-    from archgen.syntax import block_documents
-
-    root = block_documents.BlockMapping()
-    root.add_entry("archgen_baseline", 1)
-    entries = [_make_entry(*entry_key, count) for entry_key, count in sorted(counts.items())]
-    root.add_rows("findings", entries)
-    return block_documents.write_document(root, _FILE_HEADER)
+    if not counts:
+        return f"{_FILE_HEADER}archgen_baseline: 1\nfindings: []\n"
+    lines = (line for entry_key, count in sorted(counts.items()) for line in _entry_lines(*entry_key, count))
+    return "\n".join((f"{_FILE_HEADER}archgen_baseline: 1\nfindings:", *lines, ""))
 
 
-def _make_entry(rule: str, element: str, message: str, count: int) -> dict[str, object]:
-    """Return the keys of one entry; empty ones are left out, so that a diff shows what matters."""
-    entry: dict[str, object] = {"rule": rule, "element": element, "message": message}
-    return {key: value for key, value in entry.items() if value} | ({"count": count} if count > 1 else {})
+def _entry_lines(rule: str, element: str, message: str, count: int) -> Iterator[str]:
+    """Yield the lines of one entry; empty keys are left out, so that a diff shows what matters."""
+    yield f"  - rule: {yaml_writer.format_scalar(rule)}"
+    if element:
+        yield f"    element: {yaml_writer.format_scalar(element)}"
+    yield f"    message: {yaml_writer.format_scalar(message)}"
+    if count > 1:
+        yield f"    count: {count}"

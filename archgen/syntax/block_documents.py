@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
@@ -83,10 +83,6 @@ class BlockMapping:
         if is_spaced:
             self._comments_of(key)[_COMMENT_ABOVE] = [CommentToken("\n", CommentMark(0))]
         return inner_mapping
-
-    def add_rows(self, key: str, rows: Sequence[Mapping[str, object]]) -> None:
-        """Add a list of mappings, one key on each line, however long: rows are compared line by line."""
-        self.content[key] = CommentedSeq(CommentedMap(row) for row in rows)
 
     def _add_hint(self, key: str, hint: str) -> None:
         if hint:

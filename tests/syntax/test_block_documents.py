@@ -101,16 +101,6 @@ nodes:
     assert write_document(root, "# head\n") == expected
 
 
-def test_rows_have_a_line_for_each_key() -> None:
-    root = BlockMapping()
-    root.add_entry("version", 1)
-    root.add_rows("rows", [{"rule": "no", "text": "a: b"}, {"rule": "x", "count": 2}])
-    root.add_rows("none", [])
-    assert write_document(root) == (
-        'version: 1\nrows:\n  - rule: "no"\n    text: "a: b"\n  - rule: x\n    count: 2\nnone: []\n'
-    )
-
-
 def test_the_same_list_twice_makes_no_alias() -> None:
     shared = ["a"]
     assert write_entries({"one": shared, "two": shared}) == "one: [a]\ntwo: [a]\n"
