@@ -97,7 +97,7 @@ class CheckedProject:
             self.chapters.read_pictures(),
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
-        return pack_project(self.merged_table, self.architecture, ignores, attachments)
+        return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
 
 
 def check_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
