@@ -24,7 +24,7 @@ def lay_out_inside(
     pieces = [_lay_out_part(styled_graph, part, arrows) for part in _connected_parts(boxes, arrows)]
     sizes = [scene.bounds() for scene in pieces]
     widest = max((bounds[2] - bounds[0] for bounds in sizes), default=0.0)
-    total = sum(bounds[2] - bounds[0] + _PIECE_GAP for bounds in sizes)
+    total = math.fsum(bounds[2] - bounds[0] + _PIECE_GAP for bounds in sizes)
     widths = [bounds[2] - bounds[0] for bounds in sizes]
     # Row widths from the widest piece alone to everything in one row; narrow steps where most good packings are.
     row_choices = [

@@ -65,6 +65,8 @@ def find_sensitivity(
     """
     analysis = analyse(architecture)
     current_result = results[asked_chain.id]
+    if not current_result.terms:  # open: no path, so no figure bears on it
+        return ChainSensitivity((), (), 0)
     candidates = list(_improved_architectures(architecture, analysis, current_result))
     gains: list[FigureGain] = []
     for figure, written, span, changed_architecture in candidates[:MAX_TRIED_FIGURES]:
