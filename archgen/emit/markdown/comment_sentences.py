@@ -11,23 +11,23 @@ _MAX_SENTENCE, _MAX_TITLE = 700, 100
 """Maximal number of characters of a sentence, and of a title."""
 
 
-def sentence_markdown(text: str) -> str:
+def write_sentence(text: str) -> str:
     """Return a sentence as Markdown; what is in backticks is code."""
     runs = text_runs(_shorten_text(make_visible(" ".join(text.split())), _MAX_SENTENCE))
     return "".join(_escape_piece(run.text) if not run.code else make_code_span(run.text) for run in runs)
 
 
-def title_markdown(text: str) -> str:
+def write_title(text: str) -> str:
     """Return a title as Markdown."""
     return escape_inert(_shorten_text(make_visible(text), _MAX_TITLE))
 
 
-def sentence_code(text: str) -> str:
+def write_code(text: str) -> str:
     """Return a name or a place as code."""
-    return make_code_span(sentence_text(text))
+    return make_code_span(shorten_name(text))
 
 
-def sentence_text(text: str) -> str:
+def shorten_name(text: str) -> str:
     """Return a name that is not escaped yet, no longer than a sentence."""
     return make_visible(text)[:_MAX_SENTENCE]
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from archgen.compare import Change
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.emit.markdown.comment_sentences import sentence_code, sentence_markdown, sentence_text, title_markdown
+from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
@@ -38,9 +38,9 @@ def write_comparison_markdown(
 ) -> str:
     """Write the comment, at most `limit` characters long; `command` shows the whole comparison in a terminal."""
     # Very long names leave the command without them.
-    comment = LimitedComment(limit, sentence_code(command if len(command) <= _MAX_COMMAND else _PLAIN_COMMAND))
+    comment = LimitedComment(limit, write_code(command if len(command) <= _MAX_COMMAND else _PLAIN_COMMAND))
     comment.add_block(_heading_line(document))
-    names = " → ".join(sentence_code(version.name) for version in document.versions)
+    names = " → ".join(write_code(version.name) for version in document.versions)
     comment.add_block(names + _count_line(document))
     for version in document.versions:
         _add_reading_errors(comment, version)
@@ -59,11 +59,11 @@ def _heading_line(document: ComparisonDocument) -> str:
     broken, further = document.broken_partners, document.further_partners
     notes = [f"breaks {_join_partners(broken)}"] if broken else []
     notes += [f"{'also ' if broken else ''}concerns {_join_partners(further)}"] if further else []
-    return f"### {sentence_markdown(document.headline)}" + (f": {', '.join(notes)}" if notes else "")
+    return f"### {write_sentence(document.headline)}" + (f": {', '.join(notes)}" if notes else "")
 
 
 def _join_partners(partner_ids: Sequence[str]) -> str:
-    shown_names = [sentence_code(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
+    shown_names = [write_code(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
         [f"{len(partner_ids) - _SHOWN_PARTNERS} more"] if len(partner_ids) > _SHOWN_PARTNERS else []
     )
     return " and ".join((", ".join(shown_names[:-1]), shown_names[-1])) if len(shown_names) > 1 else shown_names[0]
@@ -78,7 +78,7 @@ def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
     if not version.errors:
         return
     comment.add_block(
-        f"**{sentence_code(version.name)} {comparison_document.UNSOUND_LEAD}** ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
+        f"**{write_code(version.name)} {comparison_document.UNSOUND_LEAD}** ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
     )
     items = [_finding_item(error) for error in version.errors[:_MAX_ERRORS]]
     comment.add_items("", items, uncounted_items=len(version.errors) - _MAX_ERRORS)
@@ -88,18 +88,18 @@ def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument)
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
         if document.refusal_help:
-            comment.add_block(sentence_markdown(comparison_document.REFUSAL_LEAD + document.refusal_help))
+            comment.add_block(write_sentence(comparison_document.REFUSAL_LEAD + document.refusal_help))
         comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
     # Without any change the verdict is the headline.
     for line in document.verdict[1 if document.is_empty else 0 :]:
-        comment.add_block(sentence_markdown(line))
+        comment.add_block(write_sentence(line))
 
 
 def _breaking_item(item: BreakingChange) -> str:
     lines = [_change_item(item.change)]
     for reason, partners in item.partners_by_reason.items():
-        lines.append(f"  - breaks {_join_partners(partners)}: {sentence_markdown(reason)}")
-    return "\n".join((*lines, *([f"  - {sentence_markdown(item.acceptance)}"] if item.acceptance else [])))
+        lines.append(f"  - breaks {_join_partners(partners)}: {write_sentence(reason)}")
+    return "\n".join((*lines, *([f"  - {write_sentence(item.acceptance)}"] if item.acceptance else [])))
 
 
 def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
@@ -130,19 +130,19 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
 
 
 def _group_heading(change_group: ChangeGroup) -> str:
-    title = title_markdown(change_group.title) if change_group.title else ""
-    group_code = sentence_code(change_group.group_id) if change_group.group_id else ""
+    title = write_title(change_group.title) if change_group.title else ""
+    group_code = write_code(change_group.group_id) if change_group.group_id else ""
     return " · ".join(word for word in (title, group_code) if word)
 
 
 def _change_item(change: Change) -> str:
-    return f"- {_MARKDOWN_SIGNS[change.kind]} {sentence_markdown(change.text)}"
+    return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
 
 
 def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None:
     rows = [
         (
-            make_code_cell(sentence_text(row.id)),
+            make_code_cell(shorten_name(row.id)),
             *(escape_inert(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             f"**{row.verdict}**" if row.verdict else "",
         )
@@ -174,9 +174,9 @@ def _add_findings(comment: LimitedComment, group: FindingGroup) -> None:
 
 
 def _finding_item(finding: Diagnostic) -> str:
-    place_note = f" ({sentence_code(str(finding.span))})" if finding.span.file else ""
+    place_note = f" ({write_code(str(finding.span))})" if finding.span.file else ""
     severity = comparison_document.severity_of(finding)
-    return f"- {severity} {sentence_code(finding.rule)}: {sentence_markdown(finding.message)}{place_note}"
+    return f"- {severity} {write_code(finding.rule)}: {write_sentence(finding.message)}{place_note}"
 
 
 def _add_picture(comment: LimitedComment, graph: Graph | None) -> None:
@@ -193,5 +193,5 @@ def _add_picture(comment: LimitedComment, graph: Graph | None) -> None:
 
 def _mermaid_block(graph: Graph) -> str:
     signs = "\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before."
-    notes = " ".join((signs, *(sentence_markdown(note) for note in graph.notes)))
+    notes = " ".join((signs, *(write_sentence(note) for note in graph.notes)))
     return "\n".join(("```mermaid", *write_flowchart(graph), "```", "", f"<sub>{notes}</sub>"))

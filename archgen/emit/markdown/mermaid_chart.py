@@ -35,16 +35,16 @@ _NEIGHBOUR_STYLE = "fill:#eeeeee,stroke:#8a8a8a,color:#1b2127"
 _NEIGHBOUR_OF_CHANGES_STYLE = "stroke:#8a8a8a,stroke-width:1px"
 
 
-def write_flowchart(graph: Graph, *, is_kept: bool = False) -> Iterator[str]:
+def write_flowchart(graph: Graph, *, has_stable_names: bool = False) -> Iterator[str]:
     """Yield the lines of a flowchart. Boxes are `n0`, `n1`: no text of the model is a name or a word of Mermaid.
 
-    `is_kept` is for files under version control: names are made from ids then, so that a new box changes no other line.
+    With `has_stable_names`, for files under version control, names are made from ids, so that a new box changes no other line.
     """
     frames = {
-        cluster.id: make_identifier(f"cluster {cluster.id}") if is_kept else f"g{at}"
+        cluster.id: make_identifier(f"cluster {cluster.id}") if has_stable_names else f"g{at}"
         for at, cluster in enumerate(graph.clusters)
     }
-    boxes = {box.id: make_identifier(box.id) if is_kept else f"n{at}" for at, box in enumerate(graph.boxes)}
+    boxes = {box.id: make_identifier(box.id) if has_stable_names else f"n{at}" for at, box in enumerate(graph.boxes)}
     # Arrows of large pictures lead from frame to frame.
     names = {**frames, **boxes}
     yield f"flowchart {'LR' if graph.direction == 'left-right' else 'TB'}"

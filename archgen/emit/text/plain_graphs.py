@@ -26,6 +26,7 @@ def graph_from_plain(data: object) -> Graph:
 
 def _from_plain(shape: type[Shape], data: Mapping[str, Any]) -> Shape:
     names = {field.name for field in dataclasses.fields(shape)}
-    return shape(
-        **{name: tuple(value) if isinstance(value, list) else value for name, value in data.items() if name in names}
-    )
+    values: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in data.items() if name in names
+    }
+    return shape(**values)

@@ -73,7 +73,7 @@ def _is_strange(address: str) -> bool:
 
 def draw_mermaid(graph: object) -> str:
     """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it."""
-    return "\n".join(write_flowchart(graph_from_plain(graph), is_kept=True))
+    return "\n".join(write_flowchart(graph_from_plain(graph), has_stable_names=True))
 
 
 TEMPLATE_FILTERS: dict[str, Any] = {

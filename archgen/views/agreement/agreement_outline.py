@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.agreement_summary import change_mark, open_points_section, summary_section
+from archgen.views.agreement.agreement_summary import change_mark, write_open_points_section, write_summary_section
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.shapes import Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text, drop_empty_columns
@@ -32,14 +32,14 @@ def outline_agreement(content: AgreementContent) -> Outline:
         notices=(*content.notices, *_changes_notice(content)),
         sections=(
             _partners_section(content),
-            summary_section(content),
+            write_summary_section(content),
             *(
                 section
                 for direction in directions
                 for section in _direction_section(content, section_writer, direction)
             ),
             *_removed_section(content),
-            open_points_section(content),
+            write_open_points_section(content),
             _signatures_section(content),
         ),
     )

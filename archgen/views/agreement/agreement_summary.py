@@ -8,12 +8,12 @@ from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
 from archgen.views.agreement.partner_interfaces import PartnerInterface
-from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, signed_kind
+from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 from archgen.views.tables import architecture_tables
 
 
-def summary_section(content: AgreementContent) -> Section:
+def write_summary_section(content: AgreementContent) -> Section:
     """List all interfaces, including removed ones."""
     rows = [_summary_row(content, record) for record in content.records]
     rows += [_removed_row(content, record) for record in (content.changes.removed_records if content.changes else ())]
@@ -67,7 +67,7 @@ def _removed_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
     lookup = content.earlier_lookup or content.lookup
     return (
         inline_text.to_inlines(Text(interface_terms.title, ref=f"removed:{interface_terms.interface.anchor}")),
-        inline_text.to_inlines(signed_kind("removed")),
+        inline_text.to_inlines(write_signed_kind("removed")),
         inline_text.to_inlines(partner_titles(lookup, interface_terms.interface.pair[:1])),
         _carried_runs(interface_terms.interface),
         (),
@@ -97,7 +97,7 @@ def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> In
     if not changes or not change_kind:
         return ()
     change = changes.changes_by_key.get(record.key)
-    runs = [signed_kind(change_kind)]
+    runs = [write_signed_kind(change_kind)]
     if change and change.old_name:
         runs += [Text(" (was "), Text(change.old_name, code=True), Text(")")]
     # The name is told already.
@@ -105,7 +105,7 @@ def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> In
     return (*runs, *([Text(f": {', '.join(kinds)}")] if kinds else []))
 
 
-def open_points_section(content: AgreementContent) -> Section:
+def write_open_points_section(content: AgreementContent) -> Section:
     """List what is not settled, and every finding at either end."""
     records_with_open_terms = [
         (record.terms, record.terms.open_terms) for record in content.records if record.terms.open_terms

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, signed_kind
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
@@ -41,7 +41,7 @@ class SectionWriter:
 
     def write_removed(self, record: InterfaceRecord, anchor: str) -> Section:
         """Return the section of a removed interface, as it was."""
-        removed_notice = Paragraph(inline_text.to_inlines(signed_kind("removed")), "error")
+        removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
         return Section(
             anchor, record.terms.title, (removed_notice, Facts(record.terms.facts), self._ends_table(record.terms))
         )
@@ -148,7 +148,7 @@ class SectionWriter:
 def _change_row(change: TermChange) -> tuple[Inlines, ...]:
     return (
         inline_text.to_inlines(change.name),
-        inline_text.to_inlines(signed_kind(change.kind)),
+        inline_text.to_inlines(write_signed_kind(change.kind)),
         inline_text.to_inlines(_shorten_value(change.before)) if change.before is not None else (),
         inline_text.to_inlines(_shorten_value(change.after)) if change.after is not None else (),
     )

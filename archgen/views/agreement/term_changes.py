@@ -14,7 +14,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.partner_interfaces import PartnerPair
 from archgen.views.agreement.plain_terms import PlainTerm
-from archgen.views.changes.change_wording import CHANGE_SIGNS, mark_of_kind
+from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
 from archgen.views.shapes import Text
 
 NAME_KIND = "name"
@@ -23,9 +23,9 @@ InterfaceKey = tuple[str, PartnerPair]
 """What identifies an interface: what flows, and between whom, by the ids of the later revision."""
 
 
-def signed_kind(kind: ChangeKind) -> Text:
+def write_signed_kind(kind: ChangeKind) -> Text:
     """Return a kind of change as a sign and a word, so that nothing depends on colour."""
-    return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=mark_of_kind(kind))
+    return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=choose_mark(kind))
 
 
 @dataclass(frozen=True, slots=True)

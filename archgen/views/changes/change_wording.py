@@ -95,6 +95,6 @@ def text_runs(text: str) -> Inlines:
     return tuple(Text(piece, code=index % 2 == 1) for index, piece in enumerate(pieces) if piece)
 
 
-def mark_of_kind(kind: ChangeKind) -> Literal["added", "removed", "changed"]:
+def choose_mark(kind: ChangeKind) -> Literal["added", "removed", "changed"]:
     """Return the mark by which emitters colour a kind of change."""
     return _CHANGE_MARKS.get(kind, "changed")

@@ -186,9 +186,9 @@ def severity_of(finding: Diagnostic) -> Severity:
 
 def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
     # What could not be read in the later version is told before all else, and not once more as a new finding.
-    told_findings = frozenset(reading_errors.after)
+    reported_errors = frozenset(reading_errors.after)
     findings_by_kind = {
-        "new": [finding for finding in comparison.new_findings if finding not in told_findings],
+        "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
         "silenced": comparison.silenced_findings,
         "cured": comparison.cured_findings,
     }

@@ -8,7 +8,7 @@ from archgen.compare import Change
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import ChainRow
-from archgen.views.changes.change_wording import CHANGE_SIGNS, mark_of_kind, text_runs
+from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.shapes import Block, Bullets, Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text
 
@@ -100,7 +100,7 @@ def _change_section(document: ComparisonDocument) -> Section | None:
 
 
 def _change_runs(change: Change) -> Inlines:
-    sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=mark_of_kind(change.kind))
+    sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
     return (sign, Text(" "), *text_runs(change.text))
 
 
