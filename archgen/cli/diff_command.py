@@ -64,42 +64,17 @@ def _select_changes(
 
 
 def _write_text(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    from archgen.emit.terminal import comparison_text
     from archgen.emit.terminal.findings_text import wants_colour
+    from archgen.products import comparison_documents
 
     colour = wants_colour(sys.stdout, os.environ)
-    lines = [
-        *_list_unsound(old_version),
-        *_list_unsound(new_version),
-        *comparison_text.write_comparison_lines(comparison, colour=colour),
-    ]
-    return "".join(f"{line}\n" for line in lines)
-
-
-def _list_unsound(version: ProjectVersion) -> list[str]:
-    """Return lines that say what of a version could not be read."""
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.emit.terminal import findings_text
-
-    errors = version.checked_project.structural_errors
-    if not errors:
-        return []
-    colour = findings_text.wants_colour(sys.stdout, os.environ)
-    heading = make_visible(f"{version.name} is not sound; what could not be read there is left out of the comparison:")
-    return [
-        heading,
-        "",
-        *findings_text.render_findings_text(errors, version.checked_project.sources, colour=colour),
-        "",
-    ]
+    return comparison_documents.render_comparison_text(comparison, old_version, new_version, colour=colour)
 
 
 def _write_json(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    from archgen.emit.data import comparison_json
+    from archgen.products import comparison_documents
 
-    return comparison_json.write_comparison_json(
-        comparison, (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors)
-    )
+    return comparison_documents.render_comparison_json(comparison, old_version, new_version)
 
 
 def _write_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:

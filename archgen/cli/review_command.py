@@ -127,7 +127,6 @@ def _write_document(path: Path, document: str | bytes) -> None:
 def _write_comparison(project: Path | None, start: str, target: Path) -> int:
     """Write what changed. Return the exit status that the project's policy asks for."""
     from archgen import git
-    from archgen.emit.data import comparison_json
     from archgen.products import comparison_documents, project_outputs
     from archgen.products.compared_versions import compare_named_versions, read_versions
     from archgen.project import NotAtRevisionError
@@ -144,9 +143,7 @@ def _write_comparison(project: Path | None, start: str, target: Path) -> int:
     _write_document(target / "comment.md", comment)
     _write_document(
         target / "diff.json",
-        comparison_json.write_comparison_json(
-            comparison, (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors)
-        ),
+        comparison_documents.render_comparison_json(comparison, old_version, new_version),
     )
     _write_document(
         target / "diff.html",

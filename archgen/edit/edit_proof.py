@@ -1,11 +1,17 @@
-"""Prove an insertion: the file says what it said plus the new element, and no other element of the project changed."""
+"""Prove an insertion: the file says what it said plus the new element, and no other element of the project changed.
+
+Whether an element changed is the comparison's answer: its normal form (`compare.compared_elements`) is equal or not.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from archgen import pipeline
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.compared_elements import MAPPED_KEY, ComparedElement, list_elements
+from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit.new_element import NewElement
 from archgen.model.architecture import Architecture
@@ -91,14 +97,21 @@ def first_file_of(checked_project: CheckedProject) -> str:
 
 
 def _changed_elements(old: Architecture, new: Architecture, element_id: str) -> Iterator[str]:
-    """Yield the elements of the functional level that differ from before; edges show where references lead."""
-    for name, component in old.components.items():
-        if new.components.get(name) != component:
-            yield name
-    for name, group in old.groups.items():
-        new_group = new.groups.get(name)
-        if new_group is None or replace(new_group, components=group.components, at=group.at) != group:
-            yield name
+    """Yield the elements that differ from before, whatever their kind; edges show where references lead."""
+    # No rename is looked for: what is called otherwise now is another element, and its references are lost.
+    matched_ids = MatchedIds()
+    for name in old.components:
+        if name in new.components:
+            # So that a component's second node does not move its timing to the node in one version only.
+            matched_ids.add_pair("component", name, name)
+    elements_before, elements_after = list_elements(ArchitectureVersion(old), ArchitectureVersion(new), matched_ids)
+    sharing_nodes = _find_sharing_nodes(new, element_id)
+    for key, element in elements_before.items():
+        old_values = _own_values(element, sharing_nodes)
+        new_values = _own_values(elements_after[key], sharing_nodes) if key in elements_after else None
+        # A port of which a node says nothing but that it carries it is not written.
+        if old_values != new_values and (old_values or element.kind != "port"):
+            yield element.own_id
     old_edges, new_edges = (
         {(edge.output, edge.input) for edge in old.edges},
         {(edge.output, edge.input) for edge in new.edges},
@@ -108,4 +121,24 @@ def _changed_elements(old: Architecture, new: Architecture, element_id: str) -> 
         for output, input_port in old_edges ^ new_edges
         if element_id not in {output.rpartition(".")[0], input_port.rpartition(".")[0]}
     )
-    yield from (name for name, node in old.nodes.items() if node.written and name not in new.nodes)
+
+
+def _find_sharing_nodes(architecture: Architecture, element_id: str) -> frozenset[str]:
+    """Return the nodes that share a component with a new node."""
+    new_node = architecture.nodes.get(element_id)
+    components = set(new_node.implements) if new_node else set()
+    return frozenset(node.id for node in architecture.nodes.values() if not components.isdisjoint(node.implements))
+
+
+def _own_values(element: ComparedElement, sharing_nodes: frozenset[str]) -> Mapping[str, object]:
+    """Return an element's values without what a node beside it is there to change.
+
+    That a component is mapped, which ports a node carries without writing them, and what timing a node has from a
+    component that no other node implements: whoever adds a second node to a component asks for that.
+    """
+    is_sharing = element.kind == "node" and element.id in sharing_nodes
+    return {
+        key: value
+        for key, value in element.values.items()
+        if key not in {MAPPED_KEY, "carried"} and not (is_sharing and key.startswith("timing."))
+    }

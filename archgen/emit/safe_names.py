@@ -104,3 +104,10 @@ class _PathAllocator:
 
 def _short_digest(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:8]
+
+
+def make_identifier(text: object) -> str:
+    """Make an identifier from any text. Different texts give different ones, and none is a word of a language."""
+    # Doubled underscores keep escapes apart from texts that look like them: `a.b` is `a_2e_b`, `a_2e_b` is `a__2e__b`.
+    doubled = str(text).replace("_", "__")
+    return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)

@@ -1,4 +1,8 @@
-"""What a project says at a commit, without places and comments: commits that say the same count the same."""
+"""What a project says at a commit, without places and comments: commits that say the same count the same.
+
+A digest of the files, not the comparison's normal form: it decides which commits need no reading and checking at all,
+so it must be had before there is an architecture. It may only err towards "changed", which costs one more check.
+"""
 
 from __future__ import annotations
 

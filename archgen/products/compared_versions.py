@@ -14,6 +14,8 @@ from archgen.syntax.yaml_tree import MappingNode
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
 WORKING_TREE_NAME = "the working tree"
+_SHORT_HASH_LENGTH = 7
+"""Digits of a commit's hash beside a name, as git prints them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +29,13 @@ class ProjectVersion:
     def commit(self) -> str:
         """Return the full hash of the commit that it was read from, empty for files on disk."""
         return self.checked_project.loaded_project.files.commit
+
+
+def format_version_name(version: ProjectVersion) -> str:
+    """Name a version as the user typed it, with its commit where that says more."""
+    # A hash that begins with what the user typed says nothing new.
+    name_suffices = not version.commit or version.commit.startswith(version.name)
+    return version.name if name_suffices else f"{version.name} ({version.commit[:_SHORT_HASH_LENGTH]})"
 
 
 def read_versions(

@@ -1,40 +1,69 @@
-"""From two compared versions to a document: Markdown for a pull request, an HTML page, or a picture."""
+"""From two compared versions to a document: text, JSON, Markdown for a pull request, an HTML page, or a picture.
+
+Pages and pictures import late: `archgen diff` in a terminal needs neither.
+"""
 
 from __future__ import annotations
 
 import shlex
+from typing import TYPE_CHECKING
 
 from archgen.compare import Comparison
-from archgen.emit import file_tree
-from archgen.emit.markdown import comparison_markdown
-from archgen.emit.picture import Picture
-from archgen.products import project_outputs
-from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
-from archgen.products.project_outputs import OutputOptions
-from archgen.views.changes.comparison_document import ComparisonDocument, outline_comparison
-from archgen.views.graphs import changes as pictures
+from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, format_version_name
+from archgen.views.changes.comparison_document import ComparisonDocument, describe_comparison
+from archgen.views.changes.reading_errors import ReadingErrors
 
-_SHORT_HASH_LENGTH = 7
-"""Digits of a commit's hash beside a name, as git prints them."""
+if TYPE_CHECKING:
+    from archgen.emit.picture import Picture
+    from archgen.products.project_outputs import OutputOptions
+    from archgen.views.shapes import Graph
 
 
-def format_version_name(version: ProjectVersion) -> str:
-    """Name a version as the user typed it, with its commit where that says more."""
-    # A hash that begins with what the user typed says nothing new.
-    name_suffices = not version.commit or version.commit.startswith(version.name)
-    return version.name if name_suffices else f"{version.name} ({version.commit[:_SHORT_HASH_LENGTH]})"
+def describe_versions(
+    comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, graphs: tuple[Graph, ...] = ()
+) -> ComparisonDocument:
+    """Describe a comparison of two versions in the words of all formats."""
+    return describe_comparison(
+        comparison,
+        format_version_name(old_version),
+        format_version_name(new_version),
+        find_reading_errors(old_version, new_version),
+        graphs,
+    )
+
+
+def find_reading_errors(old_version: ProjectVersion, new_version: ProjectVersion) -> ReadingErrors:
+    """Return what could not be read or linked in either version."""
+    return ReadingErrors(old_version.checked_project.structural_errors, new_version.checked_project.structural_errors)
+
+
+def render_comparison_text(
+    comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, *, colour: bool
+) -> str:
+    """Write a comparison for the terminal."""
+    from archgen.emit.terminal import comparison_text
+
+    document = describe_versions(comparison, old_version, new_version)
+    sources = old_version.checked_project.sources, new_version.checked_project.sources
+    lines = comparison_text.write_comparison_lines(document, sources, colour=colour)
+    return "".join(f"{line}\n" for line in lines)
+
+
+def render_comparison_json(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+    """Write a comparison for programs."""
+    from archgen.emit.data import comparison_json
+
+    return comparison_json.write_comparison_json(comparison, find_reading_errors(old_version, new_version))
 
 
 def render_comparison_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     """Write a comparison as the comment on a pull request."""
-    names = comparison_markdown.SideNames(
-        format_version_name(old_version), format_version_name(new_version), _terminal_command(old_version, new_version)
-    )
-    return comparison_markdown.write_comparison_markdown(
-        comparison,
-        names,
-        (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors),
-    )
+    from archgen.emit.markdown import comparison_markdown
+    from archgen.views.graphs import changes as pictures
+
+    graphs = pictures.draw_changes(comparison, pictures.SMALL_BUDGET)
+    document = describe_versions(comparison, old_version, new_version, graphs)
+    return comparison_markdown.write_comparison_markdown(document, _terminal_command(old_version, new_version))
 
 
 def _terminal_command(old_version: ProjectVersion, new_version: ProjectVersion) -> str:
@@ -50,17 +79,14 @@ def render_comparison_html(
 ) -> bytes:
     """Write a comparison as one self-contained HTML page."""
     from archgen.emit.site import standalone_page
+    from archgen.products import project_outputs
+    from archgen.views.changes.comparison_outline import write_comparison_outline
+    from archgen.views.graphs import changes as pictures
 
     graphs = pictures.draw_changes(comparison)
-    document = ComparisonDocument(
-        comparison,
-        format_version_name(old_version),
-        format_version_name(new_version),
-        (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors),
-        graphs,
-    )
+    outline = write_comparison_outline(describe_versions(comparison, old_version, new_version, graphs))
     return standalone_page.write_standalone_page(
-        outline_comparison(document), project_outputs.draw_or_warn(graphs, ("svg",), options) if graphs else {}
+        outline, project_outputs.draw_or_warn(graphs, ("svg",), options) if graphs else {}
     )
 
 
@@ -69,6 +95,11 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
 
     Raise OutputError where there is nothing to draw.
     """
+    from archgen.emit import file_tree
+    from archgen.emit.site import page_pictures as files
+    from archgen.products import project_outputs
+    from archgen.views.graphs import changes as pictures
+
     graphs = pictures.draw_changes(comparison)
     if not graphs:
         msg = "nothing changed that a picture could show: no component, no connection and no node"
@@ -78,7 +109,5 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     if picture is None or picture.svg is None:
         msg = "the picture could not be drawn"
         raise file_tree.OutputError(msg)
-    from archgen.emit.site import page_pictures as files
-
     # There is no page to link to: every link of the picture is dropped.
     return files.standalone_svg(picture.svg, lambda _anchor: None)

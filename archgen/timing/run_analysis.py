@@ -44,7 +44,8 @@ _last_judged: Analysis | None = None
 
 def _is_same_system(analysis: Analysis, system: TimingSystem, notes: tuple[Reason, ...]) -> bool:
     """Whether an analysis is that of this system: every figure is equal, and written at the same place."""
-    # Spans take no part in the equality of systems (`compare=False`), but findings point to them.
+    # Spans take no part in the equality of systems (`compare=False`), but findings point to them. So this asks more than
+    # whether the architecture changed (the comparison's normal form), which leaves places out.
     return (
         analysis.system == system
         and list(map(_activity_spans, analysis.system.activities.values()))

@@ -200,7 +200,7 @@ def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
         ran = run("diff", "old", "new", "--breaking")
         assert (ran.status, ran.out.splitlines()[0]) == (
             0,
-            "new is not sound; what could not be read there is left out of the comparison:",
+            "new is not sound (1 error). What cannot be read there is left out of the comparison:",
         )
         assert ran.out.endswith("\nno change breaks another partner\n")
         (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")

@@ -158,7 +158,7 @@ def test_a_side_that_does_not_load_is_told_and_the_rest_compared(run: Run, robot
     (robot / "archgen.yaml").write_text(files["archgen.yaml"].replace("cores: 1", "cores: 2"), encoding="utf-8")
     out = run("diff", "HEAD").out
     assert out.startswith(
-        "the working tree is not sound; what could not be read there is left out of the comparison:\n\nerror["
+        "the working tree is not sound (1 error). What cannot be read there is left out of the comparison:\n\nerror["
     )
     assert "Hosts\n  ~ host `pc`: cores 1 → 2\n" in out
     assert "is removed" not in out

@@ -114,3 +114,88 @@ def test_who_owns_what_stays_text(run: Run, tmp_path: Path) -> None:
     ran = run("owners", folder)
     assert "\x1b" not in ran.out
     assert "␛[31m::error::x (p)" in ran.out
+
+
+PAIR = """\
+archgen: 1
+partners: {certh: , sssa: }
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {title: Colour camera, functionality: Sees what stands in front of the robot., outputs: {image: Image}}
+  display:
+    owner: sssa
+    components:
+      screen: {inputs: {image: camera.image}}
+types: {Image: {message: sensor_msgs/msg/Image}}
+"""
+NODES = "nodes:\n  cam: {implements: camera, publishes: {image: {topic: /image}}}\n  show: {implements: screen}\n"
+RENAMES = [
+    ("  camera:", "  colour_camera:"),
+    ("camera.image", "colour_camera.image"),
+    (": camera,", ": colour_camera,"),
+]
+
+
+def since_head(run: Run, folder: Path, text: str, *edits: tuple[str, str]) -> tuple[str, str]:
+    """Commit a project, edit it, and return what `diff` and the agreement say of it since."""
+    root = repository(folder, {"archgen.yaml": text})
+    for old, new in edits:
+        text = text.replace(old, new)
+    (root / "archgen.yaml").write_text(text, encoding="utf-8")
+    diff = run("diff", "HEAD", "-C", root)
+    agreement = run("interfaces", root, "--between", "certh", "sssa", "--since", "HEAD")
+    assert (diff.err, agreement.err) == ("", "")
+    return diff.out, agreement.out
+
+
+@pytest.mark.parametrize("nodes", ["", NODES])
+def test_a_renamed_component_is_renamed_in_the_agreement_as_in_the_diff(run: Run, tmp_path: Path, nodes: str) -> None:
+    diff, agreement = since_head(run, tmp_path / "pair", PAIR + nodes, *RENAMES)
+    assert "component `sensing.camera` is called `colour_camera` now\n" in diff
+    assert "1 change (1 renamed)" in diff
+    assert "): 1 renamed.\n" in agreement
+    assert "| → renamed (was `sensing.camera.image`)" in agreement
+    assert "| Name | → renamed | sensing.camera.image | sensing.colour\\_camera.image |" in agreement
+    for word in ("added", "removed", "Removed"):
+        assert word not in agreement
+
+
+def test_a_topic_called_after_a_renamed_component_is_a_changed_term(run: Run, tmp_path: Path) -> None:
+    nodes = NODES.replace("publishes: {image: {topic: /image}}", "host: pc") + "hosts: {pc: {cores: 1}}\n"
+    _, agreement = since_head(run, tmp_path / "pair", PAIR + nodes, *RENAMES)
+    assert "| Topic | \\~ changed | /sensing/camera/image | /sensing/colour\\_camera/image |" in agreement
+
+
+def test_a_renamed_node_and_a_renamed_type_are_no_other_ends_and_no_other_type(run: Run, tmp_path: Path) -> None:
+    edits = [
+        ("cam:", "cam_driver:"),
+        ("outputs: {image: Image}", "outputs: {image: Picture}"),
+        ("{Image:", "{Picture:"),
+    ]
+    diff, agreement = since_head(run, tmp_path / "pair", PAIR + NODES, *edits)
+    assert "2 changes (2 renamed)" in diff
+    assert "| Type | → renamed | Image | Picture |" in agreement
+    for word in ("added", "removed"):
+        assert word not in agreement
+
+
+def test_a_renamed_partner_keeps_the_interfaces(run: Run, tmp_path: Path) -> None:
+    text = PAIR.replace("certh: ,", "cert: {title: CERTH, contact: a@b.example},").replace(
+        "owner: certh", "owner: cert"
+    )
+    diff, agreement = since_head(run, tmp_path / "pair", text, ("cert:", "certh:"), ("owner: cert", "owner: certh"))
+    assert "1 change (1 renamed)" in diff
+    assert "Nothing between the two has changed since HEAD" in agreement
+
+
+def test_a_component_in_another_group_is_moved_in_the_agreement_as_in_the_diff(run: Run, tmp_path: Path) -> None:
+    text = PAIR.replace("  display:", "  eyes: {owner: certh}\n  display:").replace(
+        "owner: certh\n", "owner: certh\n    title: Sensing\n", 1
+    )
+    camera = next(line for line in text.splitlines() if line.startswith("      camera:"))
+    edits = [(camera + "\n", ""), ("eyes: {owner: certh}", f"eyes:\n    owner: certh\n    components:\n{camera}")]
+    diff, agreement = since_head(run, tmp_path / "pair", text, *edits)
+    assert "1 moved" in diff
+    assert "): 1 moved.\n" in agreement

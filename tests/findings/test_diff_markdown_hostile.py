@@ -13,9 +13,11 @@ from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
-from archgen.emit.markdown.comparison_markdown import SideNames
 from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.views.changes.comparison_document import describe_comparison
+from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
 from tests.emit.markdown.test_comparison_markdown import ROBOT, comparison
 from tests.findings.hostile_findings import HOSTILE
 from tests.findings.rendered import CALLS, inner, shape, tokens, words
@@ -102,9 +104,10 @@ def comment(found: Comparison, text: str) -> str:
         chains=chains,
         concerned_owners=(text, "q"),
     )
-    return comparison_markdown.write_comparison_markdown(
-        here, SideNames(text, text, text), ((finding,), (finding, finding))
+    document = describe_comparison(
+        here, text, text, ReadingErrors((finding,), (finding, finding)), draw_changes(here, SMALL_BUDGET)
     )
+    return comparison_markdown.write_comparison_markdown(document, text)
 
 
 def _titled(found: Comparison, text: str) -> Comparison:

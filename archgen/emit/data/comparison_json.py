@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.safe_text import format_json
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
 from archgen.timing.analysis import ChainResult
+from archgen.views.changes.comparison_document import sort_by_severity
+from archgen.views.changes.reading_errors import ReadingErrors
 
 FORMAT_VERSION = 1
-ReadingErrors = tuple[Sequence[Diagnostic], Sequence[Diagnostic]]
 
 
 def write_comparison_json(comparison: Comparison, reading_errors: ReadingErrors) -> str:
-    """Return a comparison as one JSON document; `broken` are the errors of reading either version."""
+    """Return a comparison as one JSON document; programs get all of it, nothing summed up or left out."""
     return format_json(comparison_record(comparison, reading_errors))
 
 
@@ -27,9 +26,9 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
         "version": FORMAT_VERSION,
         "changes": [change_record(item) for item in comparison.changes],
         "findings": {
-            "new": [finding_to_json(item) for item in comparison.new_findings],
-            "cured": [finding_to_json(item) for item in comparison.cured_findings],
-            "silenced": [finding_to_json(item) for item in comparison.silenced_findings],
+            "new": [finding_to_json(item) for item in sort_by_severity(comparison.new_findings)],
+            "cured": [finding_to_json(item) for item in sort_by_severity(comparison.cured_findings)],
+            "silenced": [finding_to_json(item) for item in sort_by_severity(comparison.silenced_findings)],
         },
         "chains": [_chain_record(item) for item in comparison.chains],
         "owners": list(comparison.concerned_owners),

@@ -1,11 +1,15 @@
-"""Write a graph as a Mermaid flowchart. What changed between two versions is shown by signs, lines and colours."""
+"""Write a graph as a Mermaid flowchart: the only place that knows Mermaid.
+
+What changed between two versions is shown by signs, lines and colours. Comments take `write_flowchart`, templates the
+filters `mermaid_graph` and `mermaid`.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 
-from archgen.emit.text import template_filters
+from archgen.emit.safe_names import make_identifier
 from archgen.views.shapes import Arrow, Box, ElementChange, Graph
 
 _MAX_LABEL_LENGTH = 60
@@ -24,42 +28,65 @@ _LINK_STYLES: dict[ElementChange | None, str] = {
     "changed": _BOX_STYLES["changed"],
     None: "stroke:#8a8a8a,stroke-width:1px",
 }
-_ARROW_SIGNS = {"service": "-.->", "action": "==>", "physical": "-.->"}
+_ARROW_SIGNS = {"service": "-.->", "action": "==>", "physical": "-.->", "link": "---"}
+_SUBJECT_STYLE = "stroke:#0072b2,stroke-width:2px"
+_NEIGHBOUR_STYLE = "fill:#eeeeee,stroke:#8a8a8a,color:#1b2127"
+# Where changes are shown, a grey fill would stand out more than their lines.
+_NEIGHBOUR_OF_CHANGES_STYLE = "stroke:#8a8a8a,stroke-width:1px"
 
 
-def write_flowchart(graph: Graph) -> Iterator[str]:
-    """Yield the lines of a flowchart. Boxes are `n0`, `n1`: no text of the model is a name or a word of Mermaid."""
-    names = {box.id: f"n{at}" for at, box in enumerate(graph.boxes)}
+def write_flowchart(graph: Graph, *, has_stable_names: bool = False) -> Iterator[str]:
+    """Yield the lines of a flowchart. Boxes are `n0`, `n1`: no text of the model is a name or a word of Mermaid.
+
+    With `has_stable_names`, for files under version control, names are made from ids, so that a new box changes no other line.
+    """
+    frames = {
+        cluster.id: make_identifier(f"cluster {cluster.id}") if has_stable_names else f"g{at}"
+        for at, cluster in enumerate(graph.clusters)
+    }
+    boxes = {box.id: make_identifier(box.id) if has_stable_names else f"n{at}" for at, box in enumerate(graph.boxes)}
+    # Arrows of large pictures lead from frame to frame.
+    names = {**frames, **boxes}
     yield f"flowchart {'LR' if graph.direction == 'left-right' else 'TB'}"
-    cluster_ids = {cluster.id for cluster in graph.clusters}
-    for at, cluster in enumerate(graph.clusters):
-        yield f'  subgraph g{at}["{_label_text(cluster.title)}"]'
+    yield from (f"  {_write_box(box, names)}" for box in graph.boxes if box.cluster not in frames)
+    for cluster in graph.clusters:
+        yield f'  subgraph {frames[cluster.id]}["{_label_text(cluster.title)}"]'
         yield from (f"    {_write_box(box, names)}" for box in graph.boxes if box.cluster == cluster.id)
         yield "  end"
-    yield from (f"  {_write_box(box, names)}" for box in graph.boxes if box.cluster not in cluster_ids)
     yield from (f"  {_write_arrow(arrow, names)}" for arrow in graph.arrows)
     yield from _write_styles(graph)
+
+
+def escape_mermaid(text: object) -> str:
+    """Escape text for a Mermaid label in double quotes."""
+    line = " ".join(str(text).split())
+    return re.sub(r"[^\w .,:/()+·→-]", lambda found: f"#{ord(found.group())};", line) or " "
 
 
 def _write_box(box: Box, names: dict[str, str]) -> str:
     shape = "[[]]" if box.change == "changed" and box.style not in _BOX_SHAPES else _BOX_SHAPES.get(box.style, "()")
     half = len(shape) // 2
     text = "<br>".join(_label_text(line) for line in (box.title, *box.lines))
-    style_class = box.change or ("neighbour" if box.emphasis == "neighbour" else "")
+    style_class = box.change or (box.emphasis if box.emphasis != "normal" else "")
     return f'{names[box.id]}{shape[:half]}"{text}"{shape[half:]}' + (f":::{style_class}" if style_class else "")
 
 
 def _write_arrow(arrow: Arrow, names: dict[str, str]) -> str:
     line = _ARROW_SIGNS.get(arrow.style, "-->")
-    label = "<br>".join(_label_text(line) for line in arrow.label.split("\n")) if arrow.label else ""
+    text = arrow.label or (str(arrow.count) if arrow.count > 1 else "")
+    label = "<br>".join(_label_text(line) for line in text.split("\n")) if text else ""
     return f"{names[arrow.tail]} {line}" + (f'|"{label}"|' if label else "") + f" {names[arrow.head]}"
 
 
 def _write_styles(graph: Graph) -> Iterator[str]:
     kinds = {box.change for box in graph.boxes}
     yield from (f"  classDef {kind} {style}" for kind, style in _BOX_STYLES.items() if kind in kinds)
-    if any(box.emphasis == "neighbour" and not box.change for box in graph.boxes):
-        yield "  classDef neighbour stroke:#8a8a8a,stroke-width:1px"
+    shows_changes = any(kinds) or any(arrow.change for arrow in graph.arrows)
+    emphases = {box.emphasis for box in graph.boxes if not box.change}
+    if "neighbour" in emphases:
+        yield f"  classDef neighbour {_NEIGHBOUR_OF_CHANGES_STYLE if shows_changes else _NEIGHBOUR_STYLE}"
+    if "subject" in emphases:
+        yield f"  classDef subject {_SUBJECT_STYLE}"
     for kind, style in _LINK_STYLES.items() if any(arrow.change for arrow in graph.arrows) else ():
         # linkStyle addresses arrows by their position, so all of them must be counted in the order written.
         lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind]
@@ -72,4 +99,4 @@ def _label_text(text: str) -> str:
     line = " ".join(text.split())
     line = line if len(line) <= _MAX_LABEL_LENGTH else f"{line[: _MAX_LABEL_LENGTH - 1]}…"
     # Mermaid reads labels as Markdown, and some beginnings as a list: a zero-width space prevents that.
-    return ("#8203;" if _LIST_START.match(line) else "") + template_filters.escape_mermaid(line)
+    return ("#8203;" if _LIST_START.match(line) else "") + escape_mermaid(line)

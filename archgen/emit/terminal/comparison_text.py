@@ -1,107 +1,109 @@
-"""A comparison for the terminal: changes by group, then chains, findings, and who should look at it."""
+"""A comparison document for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import ChainChange, Change, Comparison
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.compare import Change
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import defuse_command, make_visible
-from archgen.emit.terminal import comparison_verdict
-from archgen.views.changes import change_wording
+from archgen.diagnostics.source_span import SourceTexts
+from archgen.emit.terminal import findings_text
+from archgen.views.changes import comparison_document
+from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
+from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
 
+# Plain ASCII, as terminals of build servers show it.
 _TERMINAL_SIGNS = {"added": "+", "removed": "-", "changed": "~", "renamed": ">", "moved": ">"}
 _SIGN_COLOURS = {"added": "32", "removed": "31", "changed": "33", "renamed": "36", "moved": "36"}
+_SEVERITY_COLOURS = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
 
 
-def write_comparison_lines(comparison: Comparison, *, colour: bool = False) -> Iterator[str]:
-    """Yield the lines of a comparison."""
-    if comparison.only_breaking:
-        yield from write_breaking_changes(comparison, colour=colour)
-        yield from comparison_verdict.verdict_lines(comparison)
+def write_comparison_lines(
+    document: ComparisonDocument, sources: tuple[SourceTexts, SourceTexts], *, colour: bool = False
+) -> Iterator[str]:
+    """Yield the lines of a comparison. `sources` are the files of both versions, which errors of reading quote."""
+    for version, source_texts in zip(document.versions, sources, strict=True):
+        if version.errors:
+            yield from _unsound_lines(version, source_texts, colour=colour)
+    yield from _breaking_lines(document, colour=colour)
+    if document.only_breaking:
+        yield from map(make_visible, document.verdict[:1])
+        if document.refusal_help:
+            yield make_visible(f"  = help: {document.refusal_help}")
+        yield from map(make_visible, document.verdict[1:])
         return
-    if comparison.is_empty:
-        yield "no changes"
+    if document.is_empty:
+        yield f"no changes{document.caveat}"
         return
-    yield from write_breaking_changes(comparison, colour=colour)
-    for change_group in change_wording.group_changes(
-        [change for change in comparison.changes if not change.breaks], comparison
-    ):
+    for change_group in document.change_groups:
         yield _paint_text(make_visible(change_group.heading), "1", colour=colour)
         for change in change_group.changes:
-            yield from _change_lines(change, colour=colour)
+            yield _change_line(change, colour=colour)
         yield ""
-    yield from _chain_lines(comparison.chains, colour=colour)
-    headed_findings = (
-        ("New findings", comparison.new_findings),
-        ("Cured findings", comparison.cured_findings),
-        ("Silenced findings", comparison.silenced_findings),
+    yield from _chain_lines(document.chain_rows, colour=colour)
+    for finding_group in document.finding_groups:
+        yield from _finding_lines(finding_group, colour=colour)
+    yield make_visible(document.summary)
+
+
+def _unsound_lines(version: NamedVersion, sources: SourceTexts, *, colour: bool) -> Iterator[str]:
+    yield make_visible(
+        f"{version.name} {comparison_document.UNSOUND_LEAD} ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
     )
-    for heading, findings in headed_findings:
-        yield from _finding_lines(heading, findings, colour=colour)
-    yield make_visible(change_wording.summarize_comparison(comparison))
+    yield ""
+    yield from findings_text.render_findings_text(version.errors, sources, colour=colour)
+    yield ""
 
 
-def write_breaking_changes(comparison: Comparison, *, colour: bool) -> Iterator[str]:
-    """Yield the changes that break a partner, with the reasons."""
-    breaking_changes = [change for change in comparison.changes if change.breaks]
-    if not breaking_changes:
+def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[str]:
+    if not document.breaking_changes:
         return
-    yield _paint_text("Breaking changes", "1", colour=colour)
+    yield _paint_text(comparison_document.BREAKING_HEADING, "1", colour=colour)
     # One cause often breaks several changes: its reason is written once, then "as above".
     told_reasons = set[str]()
-    for change in breaking_changes:
-        yield from _change_lines(change, colour=colour)
-        change_reasons = dict.fromkeys(partner_break.reason for partner_break in change.breaks)
-        for reason in change_reasons:
-            if reason not in told_reasons:
-                yield make_visible(f"      {reason}")
-        if not told_reasons.isdisjoint(change_reasons):
-            yield "      as above" if told_reasons.issuperset(change_reasons) else "      and as above"
-        told_reasons |= change_reasons.keys()
-        acceptance = change_wording.describe_acceptance(change, comparison)
-        if acceptance:
-            yield make_visible(f"      {acceptance}")
+    for item in document.breaking_changes:
+        yield _change_line(item.change, _breaks_note(item, colour=colour), colour=colour)
+        reasons = item.partners_by_reason.keys()
+        yield from (make_visible(f"      {reason}") for reason in reasons if reason not in told_reasons)
+        if not told_reasons.isdisjoint(reasons):
+            yield "      as above" if told_reasons.issuperset(reasons) else "      and as above"
+        told_reasons |= reasons
+        if item.acceptance:
+            yield make_visible(f"      {item.acceptance}")
+    if document.refusal_help and not document.only_breaking:
+        yield make_visible(f"  {comparison_document.REFUSAL_LEAD}{document.refusal_help}")
     yield ""
 
 
-def _change_lines(change: Change, *, colour: bool) -> Iterator[str]:
+def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
+    return _paint_text(f"breaks {make_visible(', '.join(item.change.broken_partners))}: ", "1;31", colour=colour)
+
+
+def _change_line(change: Change, note: str = "", *, colour: bool) -> str:
     sign = _paint_text(_TERMINAL_SIGNS[change.kind], _SIGN_COLOURS[change.kind], colour=colour)
-    breaks_note = (
-        _paint_text(f"breaks {make_visible(', '.join(change.broken_partners))}: ", "1;31", colour=colour)
-        if change.breaks
-        else ""
-    )
-    yield f"  {sign} {breaks_note}{make_visible(change.text)}"
+    return f"  {sign} {note}{make_visible(change.text)}"
 
 
-def _chain_lines(chains: Sequence[ChainChange], *, colour: bool) -> Iterator[str]:
-    if not chains:
+def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[str]:
+    if not chain_rows:
         return
-    yield _paint_text("Latency of chains", "1", colour=colour)
-    for chain_change in chains:
-        grown, deadline, verdict = (
-            change_wording.format_growth(chain_change),
-            change_wording.format_deadline(chain_change),
-            change_wording.format_verdict(chain_change),
-        )
-        grown = f" ({grown})" if grown else ""
-        deadline = f", deadline {deadline}" + (f": {verdict}" if verdict else "") if deadline else ""
-        yield make_visible(
-            f"  {chain_change.id}: {change_wording.format_bound(chain_change.before)} → {change_wording.format_bound(chain_change.after)}{grown}{deadline}"
-        )
+    yield _paint_text(comparison_document.CHAINS_HEADING, "1", colour=colour)
+    for row in chain_rows:
+        growth = f" ({row.growth.replace(MINUS_SIGN, '-')})" if row.growth else ""
+        verdict = f": {row.verdict}" if row.verdict else ""
+        deadline = f", deadline {row.deadline}{verdict}" if row.deadline else ""
+        yield make_visible(f"  {row.id}: {row.before} → {row.after}{growth}{deadline}")
     yield ""
 
 
-def _finding_lines(heading: str, findings: Sequence[Diagnostic], *, colour: bool) -> Iterator[str]:
-    if not findings:
-        return
-    severity_colours = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
-    yield _paint_text(heading, "1", colour=colour)
-    for finding in findings:
-        severity = finding.severity or Severity.ERROR
+def _finding_lines(finding_group: FindingGroup, *, colour: bool) -> Iterator[str]:
+    yield _paint_text(finding_group.heading, "1", colour=colour)
+    for finding in finding_group.findings:
+        severity = comparison_document.severity_of(finding)
         place_note = f" ({finding.span})" if finding.span.file else ""
-        yield f"  {_paint_text(f'{severity}[{finding.rule}]', severity_colours[severity], colour=colour)}: {make_visible(finding.message + place_note)}"
+        rule = _paint_text(f"{severity}[{finding.rule}]", _SEVERITY_COLOURS[severity], colour=colour)
+        yield f"  {rule}: {make_visible(finding.message + place_note)}"
     yield ""
 
 

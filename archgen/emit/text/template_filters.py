@@ -9,7 +9,9 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from archgen.emit.safe_names import make_slug
+from archgen.emit.markdown.mermaid_chart import escape_mermaid, write_flowchart
+from archgen.emit.safe_names import make_identifier, make_slug
+from archgen.emit.text.plain_graphs import graph_from_plain
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
@@ -69,17 +71,9 @@ def _is_strange(address: str) -> bool:
     return bool(_URL_SCHEME.match(address)) and not address.lower().startswith(("http://", "https://", "mailto:"))
 
 
-def escape_mermaid(text: object) -> str:
-    """Escape text for a Mermaid label in double quotes."""
-    line = " ".join(str(text).split())
-    return re.sub(r"[^\w .,:/()+·→-]", lambda found: f"#{ord(found.group())};", line) or " "
-
-
-def make_identifier(text: object) -> str:
-    """Make an identifier from any text. Different texts give different ones, and none is a word of a language."""
-    # Doubled underscores keep escapes apart from texts that look like them: `a.b` is `a_2e_b`, `a_2e_b` is `a__2e__b`.
-    doubled = str(text).replace("_", "__")
-    return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)
+def draw_mermaid(graph: object) -> str:
+    """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it."""
+    return "\n".join(write_flowchart(graph_from_plain(graph), has_stable_names=True))
 
 
 TEMPLATE_FILTERS: dict[str, Any] = {
@@ -88,5 +82,6 @@ TEMPLATE_FILTERS: dict[str, Any] = {
     "identifier": make_identifier,
     "markdown": escape_markdown,
     "mermaid": escape_mermaid,
+    "mermaid_graph": draw_mermaid,
     "slug": lambda text: make_slug(str(text)),
 }

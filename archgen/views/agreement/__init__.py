@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from archgen.compare.match_elements import match_elements
+from archgen.compare.matched_ids import MatchedIds
 from archgen.timing.system import activity_builder
-from archgen.views.agreement.agreement_outline import AgreementContent, outline_agreement
+from archgen.views.agreement.agreement_content import AgreementContent
+from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.agreement_picture import draw_agreement
-from archgen.views.agreement.interface_terms import gather_terms, plain_terms
-from archgen.views.agreement.partner_interfaces import find_interfaces_between
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, compare_revisions
+from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
+from archgen.views.agreement.partner_interfaces import PartnerPair, find_interfaces_between
+from archgen.views.agreement.plain_terms import list_plain_terms
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Graph, Outline, Paragraph
 
@@ -36,13 +40,10 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     earlier_revision: tuple[str, Lookup] | None = None,
     notices: Sequence[Paragraph] = (),
 ) -> PartnerAgreement:
-    """Make the agreement of two partners. `since` is the name of an earlier revision with its look-ups."""
-    records = _record_interfaces(lookup, first, second)
-    changes = (
-        compare_revisions(earlier_revision[0], _record_interfaces(earlier_revision[1], first, second), records)
-        if earlier_revision
-        else None
-    )
+    """Make the agreement of two partners. `earlier_revision` is the name of an earlier revision with its look-ups."""
+    # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
+    records = _record_interfaces(lookup, (first, second), MatchedIds())
+    changes = _compare_with(earlier_revision, lookup, (first, second), records) if earlier_revision else None
     graph = draw_agreement(
         lookup, f"interfaces/{first}-{second}", (first, second), [record.terms.interface for record in records]
     )
@@ -53,9 +54,31 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     return PartnerAgreement(outline_agreement(content), graph, len(records), changes)
 
 
-def _record_interfaces(lookup: Lookup, first: str, second: str) -> tuple[InterfaceRecord, ...]:
+def _compare_with(
+    earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair, records: Sequence[InterfaceRecord]
+) -> AgreementChanges:
+    """Compare with an earlier revision, in which the partners may have had other ids."""
+    name, earlier_lookup = earlier_revision
+    matched_ids = match_elements(earlier_lookup.architecture, lookup.architecture)
+    old_partners = matched_ids.old_ids.get("partner", {})
+    old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
+    old_records = _record_interfaces(earlier_lookup, old_pair, matched_ids)
+    return compare_revisions(name, old_records, records, matched_ids)
+
+
+def _record_interfaces(lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds) -> tuple[InterfaceRecord, ...]:
     activity_names = activity_builder.name_activities(lookup.architecture)
     all_terms = [
-        gather_terms(lookup, activity_names, interface) for interface in find_interfaces_between(lookup, first, second)
+        gather_terms(lookup, activity_names, interface) for interface in find_interfaces_between(lookup, *pair)
     ]
-    return tuple(InterfaceRecord(interface, plain_terms(lookup, interface)) for interface in all_terms)
+    return tuple(
+        InterfaceRecord(terms, _interface_key(terms, matched_ids), list_plain_terms(lookup, terms, matched_ids))
+        for terms in all_terms
+    )
+
+
+def _interface_key(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> InterfaceKey:
+    interface = interface_terms.interface
+    giver, taker = interface.pair
+    key = matched_ids.common_id("output", interface.key) if interface.output else interface.key
+    return key, (matched_ids.common_id("partner", giver), matched_ids.common_id("partner", taker))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
-from archgen.views.agreement.term_changes import SIGNED_KINDS, AgreementChanges, InterfaceRecord, TermChange
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
@@ -41,7 +41,7 @@ class SectionWriter:
 
     def write_removed(self, record: InterfaceRecord, anchor: str) -> Section:
         """Return the section of a removed interface, as it was."""
-        removed_notice = Paragraph(inline_text.to_inlines(Text(SIGNED_KINDS["removed"], change="removed")), "error")
+        removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
         return Section(
             anchor, record.terms.title, (removed_notice, Facts(record.terms.facts), self._ends_table(record.terms))
         )
@@ -53,7 +53,7 @@ class SectionWriter:
         change_kind = self.changes.change_kind(record.key)
         since_run = Text(f" since {self.changes.earlier_revision}")
         yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
-        rows = tuple(_change_row(change) for change in self.changes.changes_of(record.key))
+        rows = tuple(_change_row(change) for change in self.changes.terms_of(record.key))
         if rows:
             columns = (Column("Term", 0.9), Column("Change", 0.6), Column("Was", 1.3), Column("Is now", 1.3))
             interface = record.terms.interface
@@ -148,13 +148,13 @@ class SectionWriter:
 def _change_row(change: TermChange) -> tuple[Inlines, ...]:
     return (
         inline_text.to_inlines(change.name),
-        inline_text.to_inlines(Text(SIGNED_KINDS[change.kind], change=change.kind)),
-        inline_text.to_inlines(shorten_value(change.before)) if change.before is not None else (),
-        inline_text.to_inlines(shorten_value(change.after)) if change.after is not None else (),
+        inline_text.to_inlines(write_signed_kind(change.kind)),
+        inline_text.to_inlines(_shorten_value(change.before)) if change.before is not None else (),
+        inline_text.to_inlines(_shorten_value(change.after)) if change.after is not None else (),
     )
 
 
-def shorten_value(text: str) -> str:
+def _shorten_value(text: str) -> str:
     """Shorten a long value, with the number of omitted characters."""
     return (
         text

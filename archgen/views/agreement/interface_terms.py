@@ -1,11 +1,11 @@
-"""The terms of an interface: for readers, and as plain text that two revisions are compared by.
+"""The terms of an interface, as readers see them.
 
 No term names a line of a file: text that moves changes nothing between the partners.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -19,7 +19,6 @@ from archgen.views.agreement import interface_timing, message_fields
 from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
-from archgen.views.timing import value_format
 
 _FLOW_NAMES = {"topic": "Topic", "service": "Service", "action": "Action", "physical": ""}
 _SETTLED_FACTS = ("Type", "Message", "Rate", "Size", "Answers within", "QoS offered")
@@ -249,54 +248,6 @@ def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[s
         component_titles = [architecture.components[name].title for name in architecture.nodes[node_id].implements]
         if (owners := foreign_owners(architecture, architecture.nodes[node_id])) and component_titles:
             yield f"{partner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."
-
-
-def plain_terms(lookup: Lookup, interface_terms: InterfaceTerms) -> Mapping[str, tuple[str, str]]:
-    """Return the terms as plain text by a key that survives new titles: (name, text) each."""
-    terms_by_key = {"": ("Title", interface_terms.title)} | {
-        end_name: (end_name, plain_text(value)) for end_name, value in interface_terms.facts
-    }
-    for interface_end in interface_terms.ends:
-        end_name = f"{interface_end.component.title} · {interface_end.port}" if interface_end.component else ""
-        # The key holds ids: a renamed component or node is one end removed and one added, see
-        # `term_changes.compare_revisions`.
-        key = f"end {interface_end.component.id if interface_end.component else ''} {interface_end.port} {interface_end.is_taker} {interface_end.node}"
-        # What is offered is a term of its own ("QoS offered").
-        qos = interface_end.qos if interface_end.is_taker else ""  # what is offered is a term of its own
-        description = "; ".join(
-            part for part in (interface_end.role, partner_titles(lookup, interface_end.owners), qos) if part
-        )
-        terms_by_key[key] = (
-            f"{end_name} (node {interface_end.node})"
-            if end_name and interface_end.node
-            else end_name or f"Node {interface_end.node}",
-            description,
-        )
-    terms_by_key |= {f"field {row.path}": (f"Field {row.path}", row.type) for row in interface_terms.field_rows or ()}
-    titles = lookup.architecture.chains
-    terms_by_key |= {
-        f"chain {chain.id}": (f"Chain {titles[chain.id].title}", chain_figures(chain))
-        for chain in interface_terms.chains
-    }
-    terms_by_key |= {
-        f"requirement {requirement_runs[0].text}": (
-            f"Requirement {requirement_runs[0].text}",
-            plain_text(requirement_runs[1:]).strip(),
-        )
-        for requirement_runs in interface_terms.requirements
-    }
-    return terms_by_key
-
-
-def chain_figures(chain: ChainResult) -> str:
-    """Return a chain's bound, deadline and verdict in one line."""
-    deadline = f"; deadline {value_format.display_duration(chain.deadline)}" if chain.deadline else ""
-    return f"{value_format.display_duration(chain.bound)}{deadline}; {chain.verdict}"
-
-
-def plain_text(value: Inlines) -> str:
-    """Return the text of runs, lines separated by semicolons."""
-    return "".join(f"; {run.text}" if run.line_break else run.text for run in value)
 
 
 def _is_unknown(value: Inlines) -> bool:

@@ -1,57 +1,60 @@
 """What an agreement gained, lost and changed since an earlier revision, term by term.
 
-A comparison of its own beside `archgen.compare`: it knows nothing of matched ids.
+Interfaces and terms are paired by the ids that `compare.match_elements` found, never by a rule of the agreement's own.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
 
+from archgen.compare.comparison import ChangeKind
+from archgen.compare.matched_ids import MatchedIds
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.partner_interfaces import PartnerPair
+from archgen.views.agreement.plain_terms import PlainTerm
+from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
+from archgen.views.shapes import Text
 
-SIGNED_KINDS = {"added": "+ added", "removed": "\u2212 removed", "changed": "~ changed"}
-"""A sign and a word for each kind of change, so that nothing depends on colour."""
-_TERM_KIND_NAMES = {"end": "who gives and takes", "field": "fields", "chain": "chains", "requirement": "requirements"}
-PlainTerms = Mapping[str, tuple[str, str]]
-InterfaceKey = tuple[str, tuple[str, str]]
+NAME_KIND = "name"
+"""The kind of the term that a renamed interface has its old and new id in."""
+InterfaceKey = tuple[str, PartnerPair]
+"""What identifies an interface: what flows, and between whom, by the ids of the later revision."""
+
+
+def write_signed_kind(kind: ChangeKind) -> Text:
+    """Return a kind of change as a sign and a word, so that nothing depends on colour."""
+    return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=choose_mark(kind))
 
 
 @dataclass(frozen=True, slots=True)
 class InterfaceRecord:
-    """An interface of one revision with its terms as plain text."""
+    """An interface of one revision with its terms as plain text. `key` has the ids of the later revision."""
 
     terms: InterfaceTerms
-    plain_terms: PlainTerms
-
-    @property
-    def key(self) -> InterfaceKey:
-        """Return what identifies an interface: what flows, and between whom."""
-        return self.terms.interface.key, self.terms.interface.pair
+    key: InterfaceKey
+    plain_terms: Mapping[str, PlainTerm]
 
 
 @dataclass(frozen=True, slots=True)
 class TermChange:
-    """A term that was added (`before` is None), removed (`after` is None) or changed."""
+    """A term that was added (`before` is None), removed (`after` is None), changed, or only renamed."""
 
-    key: str
+    kind: ChangeKind
+    term_kind: str
     name: str
     before: str | None
     after: str | None
 
-    @property
-    def term_kind(self) -> str:
-        """Return the kind of the term in a word or two."""
-        return _TERM_KIND_NAMES.get(self.key.partition(" ")[0]) or (
-            self.name if self.name.startswith("QoS") else self.name.lower()
-        )
 
-    @property
-    def kind(self) -> Literal["added", "removed", "changed"]:
-        """Return what happened to the term."""
-        return "added" if self.before is None else "removed" if self.after is None else "changed"
+@dataclass(frozen=True, slots=True)
+class InterfaceChange:
+    """What happened to an interface that is in both revisions. `old_name` is empty if it has the same id in both."""
+
+    kind: ChangeKind
+    old_name: str
+    terms: tuple[TermChange, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,70 +66,102 @@ class AgreementChanges:
     earlier_revision: str
     added_keys: frozenset[InterfaceKey] = frozenset()
     removed_records: tuple[InterfaceRecord, ...] = ()
-    changes_by_key: Mapping[InterfaceKey, tuple[TermChange, ...]] | None = None
+    changes_by_key: Mapping[InterfaceKey, InterfaceChange] = field(default_factory=dict)
 
-    def changes_of(self, key: InterfaceKey) -> tuple[TermChange, ...]:
-        """Return the changes of an interface that is in both revisions."""
-        return (self.changes_by_key or {}).get(key, ())
+    def terms_of(self, key: InterfaceKey) -> tuple[TermChange, ...]:
+        """Return the changed terms of an interface that is in both revisions."""
+        change = self.changes_by_key.get(key)
+        return change.terms if change else ()
 
-    def change_kind(self, key: InterfaceKey) -> Literal["added", "changed", ""]:
-        """Return what happened to an interface of the later revision, empty for nothing."""
-        return "added" if key in self.added_keys else "changed" if self.changes_of(key) else ""
+    def change_kind(self, key: InterfaceKey) -> ChangeKind | None:
+        """Return what happened to an interface of the later revision, None for nothing."""
+        change = self.changes_by_key.get(key)
+        return "added" if key in self.added_keys else change.kind if change else None
 
     @property
     def has_changes(self) -> bool:
         """Whether anything changed."""
         return bool(self.added_keys or self.removed_records or self.changes_by_key)
 
+    @property
+    def kind_counts(self) -> str:
+        """Return how many interfaces there are of each kind of change: `1 added, 2 renamed`."""
+        counts = Counter[ChangeKind](change.kind for change in self.changes_by_key.values())
+        counts["added"], counts["removed"] = len(self.added_keys), len(self.removed_records)
+        order: tuple[ChangeKind, ...] = ("added", "changed", "renamed", "moved", "removed")
+        return ", ".join(f"{counts[kind]} {kind}" for kind in order if counts[kind])
+
 
 def compare_revisions(
-    earlier_revision: str, old_records: Sequence[InterfaceRecord], new_records: Sequence[InterfaceRecord]
+    earlier_revision: str,
+    old_records: Sequence[InterfaceRecord],
+    new_records: Sequence[InterfaceRecord],
+    matched_ids: MatchedIds,
 ) -> AgreementChanges:
-    """Compare two revisions. A renamed interface is the same if its topics and message stayed."""
+    """Compare two revisions."""
     old_by_key = {record.key: record for record in old_records}
     new_by_key = {record.key: record for record in new_records}
-    lost_by_key = {key: record for key, record in old_by_key.items() if key not in new_by_key}
-    old_by_new_key: dict[InterfaceKey, InterfaceRecord] = {
-        key: old_by_key[key] for key in new_by_key if key in old_by_key
-    }
-    for key in [key for key in new_by_key if key not in old_by_key]:
-        same_carrier = [
-            lost_key
-            for lost_key, record in lost_by_key.items()
-            if _carrier_of_record(record) == _carrier_of_record(new_by_key[key]) and _carrier_of_record(record)
-        ]
-        # With several candidates it is open which one was renamed; then all count as added and removed.
-        if len(same_carrier) == 1:
-            old_by_new_key[key] = lost_by_key.pop(same_carrier[0])
+    _follow_renamed_topics(old_by_key, new_by_key, matched_ids)
     changes_by_key = {
-        key: term_changes
-        for key, record in old_by_new_key.items()
-        if (term_changes := tuple(_compare_terms(record.plain_terms, new_by_key[key].plain_terms)))
+        key: change
+        for key, record in new_by_key.items()
+        if key in old_by_key and (change := _compare_records(old_by_key[key], record, matched_ids))
     }
     return AgreementChanges(
         earlier_revision,
-        frozenset(key for key in new_by_key if key not in old_by_new_key),
-        tuple(lost_by_key.values()),
+        frozenset(key for key in new_by_key if key not in old_by_key),
+        tuple(record for key, record in old_by_key.items() if key not in new_by_key),
         changes_by_key,
     )
 
 
-def _carrier_of_record(record: InterfaceRecord) -> tuple[object, ...]:
-    """Return what identifies an interface besides its name, nothing if no topic carries it."""
-    interface: PartnerInterface = record.terms.interface
-    return (interface.pair, interface.flow, interface.topic_names, interface.message) if interface.topic_names else ()
+def _follow_renamed_topics(
+    old_by_key: dict[InterfaceKey, InterfaceRecord],
+    new_by_key: Mapping[InterfaceKey, InterfaceRecord],
+    matched_ids: MatchedIds,
+) -> None:
+    """Pair topics without an output that are called after a renamed element."""
+    for key in [key for key, record in old_by_key.items() if record.terms.interface.output is None]:
+        # Only a topic that is gone: a written name may contain a renamed word by chance, and stay.
+        new_key = (matched_ids.rename_in_text(key[0]), key[1])
+        if key not in new_by_key and new_key in new_by_key and new_key not in old_by_key:
+            old_by_key[new_key] = old_by_key.pop(key)
 
 
-def _compare_terms(old_terms: PlainTerms, new_terms: PlainTerms) -> list[TermChange]:
+def _compare_records(
+    old_record: InterfaceRecord, new_record: InterfaceRecord, matched_ids: MatchedIds
+) -> InterfaceChange | None:
+    """Return what happened to an interface, None for nothing."""
+    old_name, new_name = old_record.terms.interface.key, new_record.terms.interface.key
+    term_changes = tuple(_compare_terms(old_record.plain_terms, new_record.plain_terms))
+    if old_name == new_name:
+        return InterfaceChange("changed", "", term_changes) if term_changes else None
+    kind = _rename_kind(old_record, new_record, matched_ids)
+    return InterfaceChange(kind, old_name, (TermChange(kind, NAME_KIND, "Name", old_name, new_name), *term_changes))
+
+
+def _rename_kind(old_record: InterfaceRecord, new_record: InterfaceRecord, matched_ids: MatchedIds) -> ChangeKind:
+    """Return `moved` if the component is in another group, as the comparison says it."""
+    old_output, new_output = old_record.terms.interface.output, new_record.terms.interface.output
+    if old_output is None or new_output is None:
+        return "renamed"
+    old_group = matched_ids.common_id("group", old_output.component.partition(".")[0])
+    return "renamed" if old_group == new_output.component.partition(".")[0] else "moved"
+
+
+def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, PlainTerm]) -> list[TermChange]:
     term_changes = []
-    # In the order of the later document, what is gone last.
-    for key in (*new_terms, *(key for key in old_terms if key not in new_terms)):
-        old_term, new_term = old_terms.get(key), new_terms.get(key)
-        # Names of terms hold titles; a new title alone changes no term.
-        if (old_term and old_term[1]) != (new_term and new_term[1]):
-            term_changes.append(
-                TermChange(
-                    key, (new_term or old_term or ("", ""))[0], old_term and old_term[1], new_term and new_term[1]
-                )
-            )
+    # In the order of the later document, what is gone last. Names of terms hold titles; a new title alone changes no
+    # term.
+    for key, new_term in new_terms.items():
+        old_term = old_terms.get(key)
+        if old_term is None:
+            term_changes.append(TermChange("added", new_term.kind, new_term.name, None, new_term.text))
+        elif old_term.identity != new_term.identity:
+            term_changes.append(TermChange("changed", new_term.kind, new_term.name, old_term.text, new_term.text))
+        elif old_term.text != new_term.text and new_term.name in {"Type", "Message"}:
+            term_changes.append(TermChange("renamed", new_term.kind, new_term.name, old_term.text, new_term.text))
+    for key, old_term in old_terms.items():
+        if key not in new_terms:
+            term_changes.append(TermChange("removed", old_term.kind, old_term.name, old_term.text, None))
     return term_changes

@@ -1,216 +1,239 @@
-"""The outline of a comparison: breaking changes, pictures, changes by group, chains, findings."""
+"""A comparison as a document: what every format says, in which words and in which order.
+
+`describe_comparison` decides once what is said; the printers (terminal, Markdown, HTML) hold layout only: signs,
+escaping, folding, limits, colours. JSON is written from the comparison itself, since programs want all of it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.views import inline_text
-from archgen.views.changes import change_wording
-from archgen.views.shapes import (
-    Block,
-    Bullets,
-    Column,
-    Figure,
-    Graph,
-    Inlines,
-    Outline,
-    Paragraph,
-    Section,
-    Table,
-    Text,
-)
+from archgen.views.changes import breaking_verdict
+from archgen.views.changes.chain_rows import ChainRow, make_chain_row
+from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
+from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.inline_text import count_noun
+from archgen.views.shapes import Graph
 
-_MAX_ERRORS = 8
+BREAKING_HEADING = "Breaking changes"
+CHAINS_HEADING = "Latency of chains"
+REFUSAL_LEAD = "`review.breaking: error` refuses this: "
+UNSOUND_LEAD = "is not sound"
+UNSOUND_SENTENCE = "What cannot be read there is left out of the comparison:"
+_FINDING_HEADINGS = {
+    "new": ("New findings", "What archgen finds now, and did not before"),
+    "silenced": ("Silenced findings", "What archgen found before, and a comment or a setting hides now"),
+    "cured": ("Cured findings", "What archgen found before, and does not any more"),
+}
+"""Heading and caption of each kind of findings, in the order of the document."""
+_SEVERITY_ORDER = {severity: position for position, severity in enumerate(reversed(Severity))}
+
+
+@dataclass(frozen=True, slots=True)
+class NamedVersion:
+    """A version by its name, with the errors of reading it: with any it is not sound."""
+
+    name: str
+    errors: tuple[Diagnostic, ...]
+
+    @property
+    def error_count(self) -> str:
+        """Return how many errors there are: `2 errors`."""
+        return count_noun(len(self.errors), "error")
+
+
+@dataclass(frozen=True, slots=True)
+class BreakingChange:
+    """A change that breaks partners: for each reason whom, and why it is accepted (empty: it is not)."""
+
+    change: Change
+    partners_by_reason: Mapping[str, tuple[str, ...]]
+    acceptance: str
+
+
+@dataclass(frozen=True, slots=True)
+class FindingGroup:
+    """Findings below one heading, gravest first. `kind` is `new`, `silenced` or `cured`."""
+
+    kind: str
+    heading: str
+    caption: str
+    findings: tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ComparisonDocument:
-    """A comparison with the names of its versions, the errors of reading either of them, and its pictures."""
+    """What a comparison says, section by section in the order of its fields. What is empty has no section."""
 
-    comparison: Comparison
-    old_name: str
-    new_name: str
-    reading_errors: tuple[Sequence[Diagnostic], Sequence[Diagnostic]] = ((), ())
-    graphs: tuple[Graph, ...] = ()
+    title: str
+    before: NamedVersion
+    after: NamedVersion
+    headline: str
+    """What changed in one line: `3 changes of the architecture`; names in backticks."""
+    counts: str
+    """Changes and findings by number: `3 changes (1 added, 2 removed), 1 new finding`."""
+    kind_counts: str
+    """Changes by kind: `1 added, 2 removed`."""
+    finding_counts: tuple[str, ...]
+    """New findings by severity, then how many were cured and silenced."""
+    caveat: str
+    """What restricts every statement where a version is not sound: ` in what could be read`."""
+    is_empty: bool
+    """Whether nothing differs besides errors of reading."""
+    only_breaking: bool
+    broken_partners: tuple[str, ...]
+    concerned_partners: tuple[str, ...]
+    """The owners of what changed, those who are broken included."""
+    partner_titles: Mapping[str, str]
+    breaking_changes: tuple[BreakingChange, ...]
+    refusal_help: str
+    """What to do if the project's policy refuses the changes, empty if it does not."""
+    verdict: tuple[str, ...]
+    """Where only breaking changes are shown: how many and what the policy says, then which accepted entries are idle."""
+    changes_heading: str
+    """The heading over all groups: other changes, where some are breaking."""
+    change_groups: tuple[ChangeGroup, ...]
+    """Changes that break nobody."""
+    weighty_groups: tuple[ChangeGroup, ...]
+    """The same without `textual_changes`, for formats that fold these."""
+    textual_changes: tuple[Change, ...]
+    chain_rows: tuple[ChainRow, ...]
+    finding_groups: tuple[FindingGroup, ...]
+    graphs: tuple[Graph, ...] = field(default=())
 
+    @property
+    def versions(self) -> tuple[NamedVersion, NamedVersion]:
+        """Return both versions, the earlier one first."""
+        return self.before, self.after
 
-def outline_comparison(document: ComparisonDocument) -> Outline:
-    """Return the outline of a comparison document."""
-    comparison = document.comparison
-    sections = (
-        _breaking_section(comparison),
-        _picture_section(document),
-        _change_section(comparison),
-        _chain_section(comparison),
-        _new_findings_section(comparison),
-        _silenced_findings_section(comparison),
-        _cured_findings_section(comparison),
-    )
-    return Outline(
-        title=comparison.after.architecture.project.title,
-        subtitle=f"What changed: {document.old_name} → {document.new_name}",
-        facts=tuple(_document_facts(document)),
-        notices=tuple(_document_notices(document)),
-        sections=tuple(section for section in sections if section),
-    )
+    @property
+    def summary(self) -> str:
+        """Return one line that closes a list: counts, whom it concerns, and whom it breaks."""
+        concern_note = f"; concerns {', '.join(self.concerned_partners)}" if self.concerned_partners else ""
+        breaking_note = f"; breaks {', '.join(self.broken_partners)}" if self.broken_partners else ""
+        return self.counts + concern_note + breaking_note
 
+    @property
+    def further_partners(self) -> tuple[str, ...]:
+        """Return those whom it concerns without breaking anything of theirs."""
+        return tuple(partner for partner in self.concerned_partners if partner not in self.broken_partners)
 
-def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines]]:
-    comparison = document.comparison
-    yield "From", inline_text.to_inlines(Text(document.old_name, code=True))
-    yield "To", inline_text.to_inlines(Text(document.new_name, code=True))
-    yield (
-        "Changes",
-        inline_text.to_inlines("none" if comparison.is_empty else change_wording.count_differences(comparison)),
-    )
-    broken_partners = change_wording.broken_partners(comparison.changes)
-    if broken_partners:
-        yield "Breaks", inline_text.to_inlines(_partner_titles(comparison, broken_partners))
-    if comparison.concerned_owners:
-        yield "Concerns", inline_text.to_inlines(_partner_titles(comparison, comparison.concerned_owners))
-
-
-def _partner_titles(comparison: Comparison, partner_ids: Sequence[str]) -> str:
-    partners = {**comparison.before.architecture.partners, **comparison.after.architecture.partners}
-    return ", ".join(partners[name].title if name in partners else name for name in partner_ids)
-
-
-def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
-    for version_name, errors in zip((document.old_name, document.new_name), document.reading_errors, strict=True):
-        if errors:
-            sentence = f" could not be read as a whole ({inline_text.count_noun(len(errors), 'error')}). What stands there is left out."
-            error_runs = [
-                run
-                for error in errors[:_MAX_ERRORS]
-                for run in (
-                    Text(f"{error.span}: ", code=True, line_break=True),
-                    *change_wording.text_runs(error.message),
-                )
-            ]
-            surplus_note = (
-                [Text(f"and {len(errors) - _MAX_ERRORS} more", line_break=True)] if len(errors) > _MAX_ERRORS else []
-            )
-            yield Paragraph((Text(version_name, code=True), Text(sentence), *error_runs, *surplus_note), "error")
-    if document.comparison.is_empty:
-        sentence = (
-            "No change breaks another partner."
-            if document.comparison.only_breaking
-            else "No change of the architecture."
-        )
-        yield Paragraph(inline_text.to_inlines(sentence), "note")
+    @property
+    def main_graph(self) -> Graph | None:
+        """Return the first picture that shows a change; components come before nodes."""
+        return next((graph for graph in self.graphs if graph.arrows or any(box.change for box in graph.boxes)), None)
 
 
-def _breaking_section(comparison: Comparison) -> Section | None:
-    breaking_changes = [change for change in comparison.changes if change.breaks]
-    if not breaking_changes:
-        return None
-    blocks: list[Block] = []
-    if comparison.is_refused:
-        blocks.append(Paragraph(change_wording.text_runs(change_wording.REFUSAL_HELP), "error"))
-    blocks.append(Bullets(tuple(_breaking_item(change, comparison) for change in breaking_changes)))
-    return Section("changes:breaking", "Breaking changes", tuple(blocks))
-
-
-def _breaking_item(change: Change, comparison: Comparison) -> Inlines:
-    lines: list[Text] = []
-    for reason, partners in change_wording.partners_by_reason(change).items():
-        partner_names = ", ".join(sorted(set(partners)))
-        lines += [
-            Text(f"breaks {partner_names}", strong=True, line_break=True),
-            Text(": "),
-            *change_wording.text_runs(reason),
-        ]
-    acceptance = change_wording.describe_acceptance(change, comparison)
-    return (*_change_runs(change), *lines, *([Text(acceptance, line_break=True)] if acceptance else []))
-
-
-def _picture_section(document: ComparisonDocument) -> Section | None:
-    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
-    return Section("changes:pictures", "Pictures", figures) if figures else None
-
-
-def _change_section(comparison: Comparison) -> Section | None:
-    # Breaking changes have a section of their own and are not repeated.
+def describe_comparison(
+    comparison: Comparison,
+    old_name: str,
+    new_name: str,
+    reading_errors: ReadingErrors = ReadingErrors(),  # noqa: B008 - immutable
+    graphs: tuple[Graph, ...] = (),
+) -> ComparisonDocument:
+    """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
     other_changes = [change for change in comparison.changes if not change.breaks]
-    sections = tuple(
-        Section(
-            f"changes:{change_group.group_id or change_group.title}",
-            change_group.title or change_group.group_id,
-            (Bullets(tuple(_change_runs(change) for change in change_group.changes)),),
-        )
-        for change_group in change_wording.group_changes(other_changes, comparison)
-    )
-    title = "Other changes" if len(other_changes) < len(comparison.changes) else "Changes"
-    return Section("changes:all", title, sections=sections) if sections else None
-
-
-def _change_runs(change: Change) -> Inlines:
-    return (change_wording.sign_text(change), Text(" "), *change_wording.text_runs(change.text))
-
-
-def _chain_section(comparison: Comparison) -> Section | None:
-    if not comparison.chains:
-        return None
-    rows = tuple(
-        (
-            inline_text.to_inlines(Text(chain_change.id, code=True)),
-            *(
-                inline_text.to_inlines(change_wording.format_bound(chain_result))
-                for chain_result in (chain_change.before, chain_change.after)
-            ),
-            inline_text.to_inlines(change_wording.format_growth(chain_change)),
-            inline_text.to_inlines(change_wording.format_deadline(chain_change)),
-            inline_text.to_inlines(Text(change_wording.format_verdict(chain_change), strong=True)),
-        )
-        for chain_change in comparison.chains
-    )
-    columns = (
-        Column("Chain", 1.6),
-        *(Column(name, 1, "right") for name in ("Before", "After", "Difference", "Deadline")),
-        Column("Verdict"),
-    )
-    table = Table("table:chains", "Bounds of chains", columns, rows)
-    return Section("changes:chains", "Latency of chains", (table,))
-
-
-def _new_findings_section(comparison: Comparison) -> Section | None:
-    return _findings_section(
-        "new", "New findings", "What archgen finds now, and did not before", comparison.new_findings
+    caveat = " in what could be read" if any(reading_errors) else ""
+    finding_groups = tuple(_group_findings(comparison, reading_errors))
+    verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
+    partners = {**comparison.before.architecture.partners, **comparison.after.architecture.partners}
+    return ComparisonDocument(
+        title=comparison.after.architecture.project.title,
+        before=NamedVersion(old_name, reading_errors.before),
+        after=NamedVersion(new_name, reading_errors.after),
+        headline=_write_headline(comparison, verdict, finding_groups, caveat),
+        counts=_count_differences(comparison, finding_groups),
+        kind_counts=count_by_kind(comparison.changes),
+        finding_counts=tuple(_count_findings(finding_groups)),
+        caveat=caveat,
+        is_empty=not (comparison.changes or comparison.chains or finding_groups),
+        only_breaking=comparison.only_breaking,
+        broken_partners=_sorted_partners(comparison.changes),
+        concerned_partners=comparison.concerned_owners,
+        partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
+        breaking_changes=tuple(
+            BreakingChange(
+                change, _partners_by_reason(change), breaking_verdict.describe_acceptance(change, comparison)
+            )
+            for change in comparison.changes
+            if change.breaks
+        ),
+        refusal_help=breaking_verdict.describe_refusal(comparison.changes, is_refused=comparison.is_refused),
+        verdict=verdict,
+        changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
+        change_groups=tuple(group_changes(other_changes, comparison)),
+        weighty_groups=tuple(group_changes([change for change in other_changes if not is_textual(change)], comparison)),
+        textual_changes=tuple(filter(is_textual, other_changes)),
+        chain_rows=tuple(map(make_chain_row, comparison.chains)),
+        finding_groups=finding_groups,
+        graphs=graphs,
     )
 
 
-def _silenced_findings_section(comparison: Comparison) -> Section | None:
-    return _findings_section(
-        "silenced",
-        "Silenced findings",
-        "What archgen found before, and a comment or a setting hides now",
-        comparison.silenced_findings,
-    )
+def sort_by_severity(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return findings, gravest first; those of one severity keep the order of the files."""
+    return tuple(sorted(findings, key=lambda finding: _SEVERITY_ORDER[severity_of(finding)]))
 
 
-def _cured_findings_section(comparison: Comparison) -> Section | None:
-    return _findings_section(
-        "cured", "Cured findings", "What archgen found before, and does not any more", comparison.cured_findings
-    )
+def severity_of(finding: Diagnostic) -> Severity:
+    """Return the severity of a finding; one that is not settled is an error."""
+    return finding.severity or Severity.ERROR
 
 
-def _findings_section(name: str, title: str, caption: str, findings: Sequence[Diagnostic]) -> Section | None:
-    if not findings:
-        return None
-    severity_order = list(Severity)
-    # Gravest first; the sort is stable, so that findings of one severity keep the order of the files.
-    sorted_findings = sorted(findings, key=lambda finding: -severity_order.index(finding.severity or Severity.ERROR))
-    rows = tuple(
-        (
-            inline_text.to_inlines(str(finding.severity or Severity.ERROR)),
-            inline_text.to_inlines(Text(finding.rule, code=True)),
-            change_wording.text_runs(finding.message),
-            inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),
-        )
-        for finding in sorted_findings
-    )
-    columns = (Column("Severity", 0.6), Column("Rule", 1), Column("What", 3), Column("Where", 1.4))
-    return Section(f"changes:{name}", title, (Table(f"table:{name}", caption, columns, rows),))
+def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
+    # What could not be read in the later version is told before all else, and not once more as a new finding.
+    reported_errors = frozenset(reading_errors.after)
+    findings_by_kind = {
+        "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
+        "silenced": comparison.silenced_findings,
+        "cured": comparison.cured_findings,
+    }
+    for kind, (heading, caption) in _FINDING_HEADINGS.items():
+        if findings_by_kind[kind]:
+            yield FindingGroup(kind, heading, caption, sort_by_severity(findings_by_kind[kind]))
+
+
+def _write_headline(
+    comparison: Comparison, verdict: Sequence[str], finding_groups: Sequence[FindingGroup], caveat: str
+) -> str:
+    if comparison.changes:
+        return f"{count_noun(len(comparison.changes), 'change')} of the architecture{caveat}"
+    if verdict:
+        return f"{verdict[0][:1].upper()}{verdict[0][1:]}{caveat}"
+    counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
+    counts += [count_noun(len(comparison.chains), "chain") + " with another bound"] if comparison.chains else []
+    return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
+
+
+def _count_differences(comparison: Comparison, finding_groups: Sequence[FindingGroup]) -> str:
+    kind_counts = count_by_kind(comparison.changes)
+    count_phrases = [count_noun(len(comparison.changes), "change") + (f" ({kind_counts})" if kind_counts else "")]
+    count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
+    return ", ".join(count_phrases)
+
+
+def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
+    for group in finding_groups:
+        if group.kind == "new":
+            severities = Counter(map(severity_of, group.findings))
+            counts = [count_noun(severities[name], str(name)) for name in _SEVERITY_ORDER if severities[name]]
+            yield f"new: {', '.join(counts)}"
+        else:
+            yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
+
+
+def _partners_by_reason(change: Change) -> Mapping[str, tuple[str, ...]]:
+    """Return each reason why a change breaks somebody, with the partners it breaks."""
+    partners: dict[str, set[str]] = {}
+    for partner_break in change.breaks:
+        partners.setdefault(partner_break.reason, set()).add(partner_break.partner)
+    return {reason: tuple(sorted(names)) for reason, names in partners.items()}
+
+
+def _sorted_partners(changes: Iterable[Change]) -> tuple[str, ...]:
+    """Return the partners for whom something breaks."""
+    return tuple(sorted({partner for change in changes for partner in change.broken_partners}))

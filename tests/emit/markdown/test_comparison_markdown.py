@@ -13,9 +13,11 @@ from archgen.compare import Comparison
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.diagnostic import Severity
 from archgen.emit.markdown import comparison_markdown
-from archgen.emit.markdown.comparison_markdown import SideNames
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.views.changes.comparison_document import describe_comparison
+from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
 
 ROBOT = """\
 archgen: 1
@@ -53,14 +55,18 @@ def told(tmp_path: Path) -> Told:
         for old, new in changes:
             assert old in after
             after = after.replace(old, new)
-        return comparison_markdown.write_comparison_markdown(*comparison(tmp_path, before, after), limit=most)
+        return written(*comparison(tmp_path, before, after), limit=most)
 
     return tell
 
 
-def comparison(
-    folder: Path, before: str, after: str
-) -> tuple[Comparison, SideNames, comparison_markdown.ReadingErrors]:
+def written(found: Comparison, broken: ReadingErrors, *, limit: int = MAX_COMMENT_SIZE) -> str:
+    """Write the comment on a comparison."""
+    document = describe_comparison(found, "main", "arm", broken, draw_changes(found, SMALL_BUDGET))
+    return comparison_markdown.write_comparison_markdown(document, "archgen diff main arm", limit=limit)
+
+
+def comparison(folder: Path, before: str, after: str) -> tuple[Comparison, ReadingErrors]:
     """Compare two one-file projects."""
     sides = []
     for name, text in (("before", before), ("after", after)):
@@ -68,11 +74,9 @@ def comparison(
         (folder / name / "robot.yaml").write_text(text, encoding="utf-8")
         sides.append(ProjectVersion(name, pipeline.check_project(folder / name / "robot.yaml")))
     old, new = sides
-    names = SideNames("main", "arm", "archgen diff main arm")
     return (
         compare_named_versions(old, new),
-        names,
-        (old.checked_project.structural_errors, new.checked_project.structural_errors),
+        ReadingErrors(old.checked_project.structural_errors, new.checked_project.structural_errors),
     )
 
 
@@ -90,7 +94,7 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 
 `main` → `arm`: 1 changed; new: 1 warning
 
-#### Breaking
+#### Breaking changes
 
 - \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
   - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
@@ -129,7 +133,7 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     after = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace(
         "rate: 10 Hz", "rate: 20 Hz"
     )
-    found, names, broken = comparison(tmp_path, ROBOT, after)
+    found, broken = comparison(tmp_path, ROBOT, after)
     kind, rate = found.changes
     assert (kind.element_kind, rate.element_kind) == ("type", "component")
     breaks = (
@@ -138,30 +142,27 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
         PartnerBreak("certh", "two"),
     )
     kind = replace(kind, breaks=breaks, acceptance_reason="agreed in May")
-    text = comparison_markdown.write_comparison_markdown(replace(found, changes=(rate, kind)), names, broken)
+    text = written(replace(found, changes=(rate, kind)), broken)
     assert text.startswith("""\
 ### 2 changes of the architecture: breaks `certh` and `sssa`
 
 `main` → `arm`: 2 changed
 
-#### Breaking
+#### Breaking changes
 
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
   - breaks `sssa`: `display.finder` takes `Image`
   - breaks `certh` and `sssa`: two
   - accepted: agreed in May
 
-#### Changes
+#### Other changes
 
 **Sensing · `sensing`**
 
 - \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
 """)
     refused = replace(found, changes=(replace(kind, acceptance_reason=None),), breaking_severity=Severity.ERROR)
-    assert (
-        "\n`review.breaking: error` refuses this: mend it, or agree on it"
-        in comparison_markdown.write_comparison_markdown(refused, names, broken)
-    )
+    assert "\n`review.breaking: error` refuses this: mend it, or agree on it" in written(refused, broken)
 
 
 def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:

@@ -7,14 +7,29 @@ from markdown_it import MarkdownIt
 
 from archgen.emit import text
 from archgen.emit.backend_manifests import read_shipped_backend
+from archgen.emit.markdown.mermaid_chart import escape_mermaid
+from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (
+    draw_mermaid,
     escape_markdown,
-    escape_mermaid,
     make_code_span,
-    make_identifier,
     safe_commonmark,
 )
-from archgen.views.shapes import Arrow, Box, Cluster, Column, Facts, Figure, Graph, Markdown, Page, Section, Table, Text
+from archgen.views.shapes import (
+    Arrow,
+    Box,
+    Cluster,
+    Column,
+    Facts,
+    Figure,
+    Graph,
+    Markdown,
+    Page,
+    Section,
+    Table,
+    Text,
+    shape_to_plain,
+)
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
 HOME = ("Overview", "page:index")
@@ -141,3 +156,27 @@ def test_commonmark_with_html_or_strange_addresses_is_shown_as_text(evil: str) -
 def test_good_commonmark_is_left_as_it_is() -> None:
     good = "See *this* [paper](https://example.org):\n\n- `a < b`\n"
     assert safe_commonmark(good) == good
+
+
+def test_arrows_between_frames_lead_from_frame_to_frame() -> None:
+    """Mermaid would draw a box of its own for a name that it does not know."""
+    boxes = (Box("a.x", "X", cluster="a"), Box("b.y", "Y", cluster="b"))
+    arrows = (Arrow("e", "a", "b", label="* 2 types\n1. one", style="link"), Arrow("f", "a.x", "b.y", count=3))
+    graph = Graph("g", "G", "two-step", boxes, arrows, (Cluster("a", "A"), Cluster("b", "B")))
+    assert draw_mermaid(shape_to_plain(graph)).split("\n") == [
+        "flowchart LR",
+        '  subgraph n_cluster_20_a["A"]',
+        '    n_a_2e_x("X")',
+        "  end",
+        '  subgraph n_cluster_20_b["B"]',
+        '    n_b_2e_y("Y")',
+        "  end",
+        '  n_cluster_20_a ---|"#8203;#42; 2 types<br>#8203;1. one"| n_cluster_20_b',
+        '  n_a_2e_x -->|"3"| n_b_2e_y',
+    ]
+
+
+@pytest.mark.parametrize("given", ["text", {"shape": "table"}, None])
+def test_what_is_no_graph_is_not_drawn(given: object) -> None:
+    with pytest.raises(TypeError, match="`mermaid_graph` takes one of `graphs`"):
+        draw_mermaid(given)

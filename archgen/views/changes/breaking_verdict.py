@@ -2,34 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from archgen.compare import Comparison
+from archgen.compare import Change, Comparison
 from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.review_settings import AcceptedChange
+from archgen.views.inline_text import count_noun
 
 
-def verdict_lines(comparison: Comparison) -> Iterator[str]:
-    """Yield the verdict as plain text, one sentence a line."""
-    yield make_visible(describe_verdict(comparison))
-    yield from map(make_visible, _describe_cure(comparison))
+def describe_verdict(comparison: Comparison) -> Iterator[str]:
+    """Yield how many changes break whom and what the policy says, then the accepted entries that are idle."""
+    yield _describe_policy(comparison)
     for entry in comparison.idle_acceptances:
-        yield make_visible(_describe_idle(comparison, entry))
+        yield _describe_idle(comparison, entry)
 
 
-def describe_verdict(comparison: Comparison) -> str:
-    """Describe how many changes break whom, and whether the project refuses them."""
+def describe_refusal(changes: Sequence[Change], *, is_refused: bool) -> str:
+    """Describe what to do about the first change that the policy refuses; empty if it refuses none."""
+    refused_change = next((item for item in changes if item.breaks and item.acceptance_reason is None), None)
+    if not is_refused or refused_change is None:
+        return ""
+    return f"mend it, or agree on it and say why: `review: {{accepted: {{{refused_change.element_id}: THE REASON}}}}`"
+
+
+def describe_acceptance(change: Change, comparison: Comparison) -> str:
+    """Describe why a breaking change is accepted, and whether the entry is older; empty if it is not."""
+    if change.acceptance_reason is None:
+        return ""
+    old_entry = comparison.before.architecture.review.accepted.get(change.element_id)
+    # Old entries count, since many teams agree first; whoever reviews should see that this one was not written for the
+    # change (docs/decisions/0007-breaking-changes.md).
+    entry_note = (
+        " (by an entry that was there before)" if old_entry and old_entry.reason == change.acceptance_reason else ""
+    )
+    return f"accepted{entry_note}: {change.acceptance_reason}"
+
+
+def _describe_policy(comparison: Comparison) -> str:
     if comparison.breaking_severity is Severity.OFF:
         return "`review.breaking` is off: this project does not ask what breaks another partner"
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
         return "no change breaks another partner"
     partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
-    count_phrase = (
-        f"{len(breaking_changes)} breaking change{'' if len(breaking_changes) == 1 else 's'} for {', '.join(partners)}"
-    )
+    count_phrase = f"{count_noun(len(breaking_changes), 'breaking change')} for {', '.join(partners)}"
     accepted_count = sum(change.acceptance_reason is not None for change in breaking_changes)
     if accepted_count == len(breaking_changes):
         return f"{count_phrase}, accepted"
@@ -37,14 +54,6 @@ def describe_verdict(comparison: Comparison) -> str:
     if comparison.is_refused:
         return f"error: {count_phrase}{accepted_note}; `review.breaking: error` refuses what is not accepted"
     return f"{comparison.breaking_severity}: {count_phrase}{accepted_note}"
-
-
-def _describe_cure(comparison: Comparison) -> Iterator[str]:
-    """Describe what to write to accept the first change that is refused."""
-    refused_changes = [change for change in comparison.changes if change.breaks and change.acceptance_reason is None]
-    if comparison.is_refused and refused_changes:
-        element_id = refused_changes[0].element_id
-        yield f"  = help: mend it, or agree on it and say why: `review: {{accepted: {{{element_id}: THE REASON}}}}`"
 
 
 def _describe_idle(comparison: Comparison, entry: AcceptedChange) -> str:

@@ -1,0 +1,32 @@
+"""Graphs as templates hold them, back in the shape that emitters draw."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from archgen.views.shapes import Arrow, Box, Cluster, Graph
+
+Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph)
+
+
+def graph_from_plain(data: object) -> Graph:
+    """Return the graph that `shape_to_plain` made plain data of. Raise TypeError for anything else."""
+    if not isinstance(data, Mapping) or data.get("shape") != "graph":
+        msg = "`mermaid_graph` takes one of `graphs`"
+        raise TypeError(msg)
+    parts: dict[str, Any] = {
+        "boxes": tuple(_from_plain(Box, box) for box in data["boxes"]),
+        "arrows": tuple(_from_plain(Arrow, arrow) for arrow in data["arrows"]),
+        "clusters": tuple(_from_plain(Cluster, cluster) for cluster in data["clusters"]),
+    }
+    return _from_plain(Graph, {**data, **parts})
+
+
+def _from_plain(shape: type[Shape], data: Mapping[str, Any]) -> Shape:
+    names = {field.name for field in dataclasses.fields(shape)}
+    values: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in data.items() if name in names
+    }
+    return shape(**values)

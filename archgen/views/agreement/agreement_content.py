@@ -1,0 +1,30 @@
+"""What an agreement is made of, as its chapters read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Graph, Paragraph
+
+
+@dataclass(frozen=True, slots=True)
+class AgreementContent:
+    """What an agreement is made of. `earlier_lookup` is None unless changes are asked for; `notices` come first."""
+
+    lookup: Lookup
+    pair: tuple[str, str]
+    records: tuple[InterfaceRecord, ...]
+    graph: Graph
+    revision: str = ""
+    changes: AgreementChanges | None = None
+    notices: tuple[Paragraph, ...] = ()
+    earlier_lookup: Lookup | None = None
+    """Look-ups of the architecture at the earlier revision."""
+
+    @property
+    def pair_titles(self) -> tuple[str, str]:
+        """Return the titles of both partners."""
+        return partner_titles(self.lookup, self.pair[:1]), partner_titles(self.lookup, self.pair[1:])

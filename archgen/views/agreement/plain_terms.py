@@ -1,0 +1,113 @@
+"""The terms of an interface as plain text, under the ids by which two revisions are compared.
+
+Which element is which is the comparison's answer (`compare.match_elements`), so that `diff` and an agreement never
+disagree about a rename. Most terms are derived (rates, gaps, chains) and no element has them: their texts are compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from archgen.compare.matched_ids import MatchedIds
+from archgen.timing.analysis import ChainResult
+from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Inlines
+from archgen.views.timing import value_format
+
+_NODE_FACTS = ("Rate", "Largest gap", "Answers within")
+"""Facts that name their node where several nodes give (`Rate of camera_driver`)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlainTerm:
+    """A term for comparing: `kind` sums it up in a word or two, `name` and `text` are shown.
+
+    `identity` is the text with the ids of the later revision: terms with one identity mean the same.
+    """
+
+    kind: str
+    name: str
+    text: str
+    identity: str
+
+
+def list_plain_terms(
+    lookup: Lookup, interface_terms: InterfaceTerms, matched_ids: MatchedIds
+) -> Mapping[str, PlainTerm]:
+    """Return the terms by a key that survives new titles and ids. For the later revision no ids are matched."""
+    terms = {"": _unchanged_term("title", "Title", interface_terms.title)}
+    terms |= _fact_terms(lookup, interface_terms, matched_ids)
+    terms |= dict(_end_term(lookup, end, matched_ids) for end in interface_terms.ends)
+    for row in interface_terms.field_rows or ():
+        terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.type)
+    for chain in interface_terms.chains:
+        title = lookup.architecture.chains[chain.id].title
+        key = f"chain {matched_ids.common_id('chain', chain.id)}"
+        terms[key] = _unchanged_term("chains", f"Chain {title}", _chain_figures(chain))
+    for requirement_runs in interface_terms.requirements:
+        requirement = requirement_runs[0].text
+        key = f"requirement {matched_ids.common_id('requirement', requirement)}"
+        text = _plain_text(requirement_runs[1:]).strip()
+        terms[key] = _unchanged_term("requirements", f"Requirement {requirement}", text)
+    return terms
+
+
+def _unchanged_term(kind: str, name: str, text: str) -> PlainTerm:
+    """Return a term without ids in its text."""
+    return PlainTerm(kind, name, text, text)
+
+
+def _fact_terms(
+    lookup: Lookup, interface_terms: InterfaceTerms, matched_ids: MatchedIds
+) -> Iterator[tuple[str, PlainTerm]]:
+    interface = interface_terms.interface
+    for name, value in interface_terms.facts:
+        text = _plain_text(value)
+        identity = text
+        if name == "Type" and interface.type:
+            identity = matched_ids.common_id("type", interface.type)
+        elif name == "Message" and interface.message:
+            identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
+        elif name.startswith(_NODE_FACTS):
+            # "derived from NODE". A topic that is called after a renamed component is not treated so: whoever
+            # subscribes to it has to follow.
+            identity = matched_ids.rename_in_text(text)
+        kind = name if name.startswith("QoS") else name.lower()
+        yield _fact_key(lookup, name, matched_ids), PlainTerm(kind, name, text, identity)
+
+
+def _fact_key(lookup: Lookup, name: str, matched_ids: MatchedIds) -> str:
+    head, separator, node_id = name.rpartition(" of ")
+    if separator and name.startswith(_NODE_FACTS) and node_id in lookup.architecture.nodes:
+        return f"{head} of {matched_ids.common_id('node', node_id)}"
+    return name
+
+
+def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tuple[str, PlainTerm]:
+    component_id = port_id = ""
+    if end.component:
+        component_id = matched_ids.common_id("component", end.component.id)
+        port_kind = "input" if end.is_taker else "output"
+        port_id = matched_ids.common_id(port_kind, f"{end.component.id}.{end.port}") if end.port else ""
+    node_id = matched_ids.common_id("node", end.node) if end.node else ""
+    name = f"{end.component.title} · {end.port}" if end.component else ""
+    if end.node:
+        name = f"{name} (node {end.node})" if name else f"Node {end.node}"
+    # What is offered is a term of its own ("QoS offered").
+    qos = end.qos if end.is_taker else ""
+    text = "; ".join(part for part in (end.role, partner_titles(lookup, end.owners), qos) if part)
+    key = f"end {component_id} {port_id} {end.is_taker} {node_id}"
+    return key, _unchanged_term("who gives and takes", name, text)
+
+
+def _chain_figures(chain: ChainResult) -> str:
+    """Return a chain's bound, deadline and verdict in one line."""
+    deadline = f"; deadline {value_format.display_duration(chain.deadline)}" if chain.deadline else ""
+    return f"{value_format.display_duration(chain.bound)}{deadline}; {chain.verdict}"
+
+
+def _plain_text(value: Inlines) -> str:
+    """Return the text of runs, lines separated by semicolons."""
+    return "".join(f"; {run.text}" if run.line_break else run.text for run in value)

@@ -1,0 +1,85 @@
+"""The rows of the table of chains in a comparison, as text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from archgen.compare import ChainChange
+from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.figures.value_arithmetic import is_boundless
+
+MINUS_SIGN = "\u2212"
+
+
+@dataclass(frozen=True, slots=True)
+class ChainRow:
+    """A chain whose bound or deadline changed. `growth`, `deadline` and `verdict` are empty where there is none."""
+
+    id: str
+    before: str
+    after: str
+    growth: str
+    """Signed: `+40 ms`, or with a true minus."""
+    deadline: str
+    verdict: str
+
+
+def make_chain_row(chain_change: ChainChange) -> ChainRow:
+    """Return the row of a chain."""
+    return ChainRow(
+        chain_change.id,
+        _format_bound(chain_change.before),
+        _format_bound(chain_change.after),
+        _format_growth(chain_change),
+        _format_deadline(chain_change),
+        _format_verdict(chain_change),
+    )
+
+
+def _format_bound(result: ChainResult | None) -> str:
+    """Format how long a chain takes at most."""
+    if result is None:
+        return "not there"
+    if is_boundless(result.bound):
+        return "no bound"
+    if result.bound.value is None:
+        return "unknown"
+    return ("" if result.bound.complete else "at least ") + format_duration(result.bound.value)
+
+
+def _format_growth(chain_change: ChainChange) -> str:
+    """Format by how much a bound grew or shrank; empty if that is unknown or nothing."""
+    # The difference to an "at least" is no difference.
+    old_bound, new_bound = (
+        chain_result.bound.value if chain_result and chain_result.bound.complete else None
+        for chain_result in (chain_change.before, chain_change.after)
+    )
+    if old_bound is None or new_bound is None or old_bound == new_bound:
+        return ""
+    return f"{'+' if new_bound > old_bound else MINUS_SIGN}{format_duration(abs(new_bound - old_bound))}"
+
+
+def _format_deadline(chain_change: ChainChange) -> str:
+    """Format the deadline of the second version; if it changed, with the old one."""
+    old_deadline, new_deadline = (
+        _format_result_deadline(chain_result) for chain_result in (chain_change.before, chain_change.after)
+    )
+    if chain_change.before and chain_change.after and old_deadline != new_deadline:
+        return f"{old_deadline or 'none'} → {new_deadline or 'none'}"
+    return new_deadline or old_deadline
+
+
+def _format_result_deadline(result: ChainResult | None) -> str:
+    return format_duration(result.deadline.value) if result and result.deadline and result.deadline.value else ""
+
+
+def _format_verdict(chain_change: ChainChange) -> str:
+    """Format whether the deadline is met, and whether it was before if that differs."""
+    old_verdict, new_verdict = (
+        chain_result.verdict if chain_result and chain_result.deadline and chain_result.deadline.value else ""
+        for chain_result in (chain_change.before, chain_change.after)
+    )
+    if not new_verdict:
+        return ""
+    return f"{new_verdict} (was {old_verdict})" if old_verdict and old_verdict != new_verdict else new_verdict

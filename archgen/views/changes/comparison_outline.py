@@ -1,0 +1,139 @@
+"""A comparison document as the outline of a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from archgen.compare import Change
+from archgen.views import inline_text
+from archgen.views.changes import comparison_document
+from archgen.views.changes.chain_rows import ChainRow
+from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
+from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.shapes import Block, Bullets, Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text
+
+_MAX_ERRORS = 8
+
+
+def write_comparison_outline(document: ComparisonDocument) -> Outline:
+    """Return the outline of a comparison document."""
+    sections = (
+        _breaking_section(document),
+        _picture_section(document),
+        _change_section(document),
+        _chain_section(document.chain_rows),
+        *(_findings_section(group) for group in document.finding_groups),
+    )
+    return Outline(
+        title=document.title,
+        subtitle=f"What changed: {document.before.name} → {document.after.name}",
+        facts=tuple(_document_facts(document)),
+        notices=tuple(_document_notices(document)),
+        sections=tuple(section for section in sections if section),
+    )
+
+
+def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines]]:
+    yield "From", inline_text.to_inlines(Text(document.before.name, code=True))
+    yield "To", inline_text.to_inlines(Text(document.after.name, code=True))
+    yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
+    for name, partners in (("Breaks", document.broken_partners), ("Concerns", document.concerned_partners)):
+        if partners:
+            titles = [document.partner_titles.get(partner, partner) for partner in partners]
+            yield name, inline_text.to_inlines(", ".join(titles))
+
+
+def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
+    yield from (_unsound_notice(version) for version in document.versions if version.errors)
+    if document.is_empty:
+        yield Paragraph(text_runs(f"{document.headline}."), "note")
+    # Without any change the verdict is the headline.
+    for line in document.verdict[1 if document.is_empty else 0 :]:
+        yield Paragraph(text_runs(line), "note")
+
+
+def _unsound_notice(version: NamedVersion) -> Paragraph:
+    lead = f" {comparison_document.UNSOUND_LEAD} ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
+    error_runs = [
+        run
+        for error in version.errors[:_MAX_ERRORS]
+        for run in (Text(f"{error.span}: ", code=True, line_break=True), *text_runs(error.message))
+    ]
+    surplus = len(version.errors) - _MAX_ERRORS
+    surplus_note = [Text(f"and {surplus} more", line_break=True)] if surplus > 0 else []
+    return Paragraph((Text(version.name, code=True), Text(lead), *error_runs, *surplus_note), "error")
+
+
+def _breaking_section(document: ComparisonDocument) -> Section | None:
+    if not document.breaking_changes:
+        return None
+    blocks: list[Block] = []
+    if document.refusal_help:
+        blocks.append(Paragraph(text_runs(comparison_document.REFUSAL_LEAD + document.refusal_help), "error"))
+    blocks.append(Bullets(tuple(map(_breaking_item, document.breaking_changes))))
+    return Section("changes:breaking", comparison_document.BREAKING_HEADING, tuple(blocks))
+
+
+def _breaking_item(item: BreakingChange) -> Inlines:
+    lines: list[Text] = []
+    for reason, partners in item.partners_by_reason.items():
+        lines += [Text(f"breaks {', '.join(partners)}", strong=True, line_break=True), Text(": "), *text_runs(reason)]
+    acceptance = [Text(item.acceptance, line_break=True)] if item.acceptance else []
+    return (*_change_runs(item.change), *lines, *acceptance)
+
+
+def _picture_section(document: ComparisonDocument) -> Section | None:
+    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
+    return Section("changes:pictures", "Pictures", figures) if figures else None
+
+
+def _change_section(document: ComparisonDocument) -> Section | None:
+    sections = tuple(
+        Section(
+            f"changes:{change_group.group_id or change_group.title}",
+            change_group.title or change_group.group_id,
+            (Bullets(tuple(_change_runs(change) for change in change_group.changes)),),
+        )
+        for change_group in document.change_groups
+    )
+    return Section("changes:all", document.changes_heading, sections=sections) if sections else None
+
+
+def _change_runs(change: Change) -> Inlines:
+    sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
+    return (sign, Text(" "), *text_runs(change.text))
+
+
+def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
+    if not chain_rows:
+        return None
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(row.id, code=True)),
+            *(inline_text.to_inlines(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
+            inline_text.to_inlines(Text(row.verdict, strong=True)),
+        )
+        for row in chain_rows
+    )
+    columns = (
+        Column("Chain", 1.6),
+        *(Column(name, 1, "right") for name in ("Before", "After", "Difference", "Deadline")),
+        Column("Verdict"),
+    )
+    table = Table("table:chains", "Bounds of chains", columns, rows)
+    return Section("changes:chains", comparison_document.CHAINS_HEADING, (table,))
+
+
+def _findings_section(group: FindingGroup) -> Section:
+    rows = tuple(
+        (
+            inline_text.to_inlines(str(comparison_document.severity_of(finding))),
+            inline_text.to_inlines(Text(finding.rule, code=True)),
+            text_runs(finding.message),
+            inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),
+        )
+        for finding in group.findings
+    )
+    columns = (Column("Severity", 0.6), Column("Rule", 1), Column("What", 3), Column("Where", 1.4))
+    table = Table(f"table:{group.kind}", group.caption, columns, rows)
+    return Section(f"changes:{group.kind}", group.heading, (table,))

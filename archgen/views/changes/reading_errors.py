@@ -1,0 +1,14 @@
+"""The errors of reading two versions that are compared."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic
+
+
+class ReadingErrors(NamedTuple):
+    """The errors of reading and linking either version: what they are about is missing in the comparison."""
+
+    before: tuple[Diagnostic, ...] = ()
+    after: tuple[Diagnostic, ...] = ()
