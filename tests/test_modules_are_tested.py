@@ -154,13 +154,17 @@ def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
 def _executed_shares(test: str, modules: list[str], folder: Path) -> dict[str, float]:
     """Run a test, and return which share of the lines in each module's functions it executed."""
     files = {module: str(_list_modules()[module]) for module in modules}
-    command = [sys.executable, "-m", "coverage", "run", "--data-file", str(folder / "data"), "--include"]
-    command += [",".join(files.values()), "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", test]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTEST_ADDOPTS": ""}
+    settings = folder / "coveragerc"
+    settings.write_text(
+        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ninclude =\n    " + "\n    ".join(files.values())
+    )
+    # Coverage begins by this variable in every process: many tests run verbs as users do.
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COVERAGE_PROCESS_START": str(settings)}
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", test]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False, text=True)  # noqa: S603
     assert done.returncode == 0, done.stdout[-3000:]
-    measured = coverage.Coverage(data_file=str(folder / "data"))
-    measured.load()
+    measured = coverage.Coverage(config_file=str(settings))
+    measured.combine([str(folder)])
     shares = {}
     for module, file in files.items():
         _, statements, _, missing, _ = measured.analysis2(file)
