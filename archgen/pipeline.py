@@ -16,7 +16,7 @@ from pathlib import Path
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.source_span import SourceTexts
-from archgen.findings import error_aftermath, ignore_comments, rule_table
+from archgen.findings import error_aftermath, finding_limit, ignore_comments, rule_table
 from archgen.frozen import dataclass
 from archgen.link import interface_sources, report_chapters, shipped_types, slice_merging
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
@@ -97,7 +97,7 @@ class CheckedProject:
             self.chapters.read_pictures(),
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
-        return pack_project(self.merged_table, self.architecture, ignores, attachments)
+        return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
 
 
 def check_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
@@ -196,13 +196,14 @@ def judge_project(loaded_project: LoadedProject) -> CheckedProject:
         _RULES_BY_NAME,
         loaded_project.rule_settings,
     )
+    reported_findings = finding_limit.limit_findings(settled_findings)
     silenced_findings = (
         _find_silenced(raw_diagnostics, settled_findings, loaded_project.rule_settings)
         if ignores or Severity.OFF in loaded_project.rule_settings.values()
         else ()
     )
     return CheckedProject(
-        loaded_project, merged_table, architecture, project_chapters, settled_findings, silenced_findings
+        loaded_project, merged_table, architecture, project_chapters, reported_findings, silenced_findings
     )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.model import flow_graph
+from archgen.model.graph_search import find_reachable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -58,7 +59,7 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
                 readers[waypoint.id] if waypoint.kind == "output" else _components_of_waypoint(architecture, waypoint)
             )
             goals = _components_of_waypoint(architecture, next_waypoint)
-            reached = flow_graph.find_reachable(successors, starts).keys()
+            reached = find_reachable(successors, starts).keys()
             # Inputs whose `from` could not be resolved are reported already, and one of them may be the missing step:
             # `unsure - reached` are the components with such inputs that cannot be reached from here.
             if (

@@ -13,7 +13,16 @@ from pathlib import Path
 
 from archgen import resources
 
-_LIBRARY_NAMES = ("jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "python-docx", "pyyaml")
+_LIBRARY_NAMES = (
+    "jinja2",
+    "jsonschema-rs",
+    "lxml",
+    "markdown-it-py",
+    "py-svg-hush",
+    "pygraphviz",
+    "python-docx",
+    "pyyaml",
+)
 _EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
 
 

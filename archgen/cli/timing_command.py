@@ -133,7 +133,8 @@ def _print_chain(request: TimingRequest, chain_id: str) -> None:
 
     analysis, chains = _analyse_chains(request.architecture)
     result = _find_chain(chains, chain_id)
-    published = duerr_bounds.bound_periodic_chain(analysis, result.through)
+    # Without terms the chain is open: its elements may be components that no activity stands for.
+    published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
     if request.as_json:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -25,15 +26,15 @@ def find_closest(word: str, candidates: Iterable[str]) -> str | None:
             return name
     if len(word) > _MAX_WORD_LENGTH:
         return None
-    limit = max(1, len(word) // 3)
-    best_match: tuple[int, str] | None = None
-    for name in names:
-        if abs(len(name) - len(word)) > limit:
-            continue  # the difference of lengths is a lower bound of the distance, and much cheaper
-        distance = _edit_distance(word, name, limit)
-        if distance <= limit and (best_match is None or distance < best_match[0]):
-            best_match = (distance, name)
-    return best_match[1] if best_match else None
+    # Imported here: it takes as long as a tenth of a check, and a project without a slip needs no guess. It is a hundred
+    # times as fast as the same in Python, which took 2 ms for two words of 58 letters: minutes for a hostile project.
+    from rapidfuzz import process
+    from rapidfuzz.distance import OSA
+
+    # Optimal string alignment: Levenshtein's distance, where a swap of adjacent letters counts as one slip, too. The
+    # first of several equally good names is returned, and they are sorted.
+    best_match = process.extractOne(word, names, scorer=OSA.distance, score_cutoff=max(1, len(word) // 3))
+    return best_match[0] if best_match else None
 
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
@@ -42,26 +43,6 @@ def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     return f"did you mean `{name}`?" if name is not None and name != word else None
 
 
+@lru_cache(maxsize=50_000)  # each name is compared with many words
 def _fold_word(word: str) -> str:
     return word.casefold().replace("-", "").replace("_", "").replace(" ", "")
-
-
-def _edit_distance(first: str, second: str, limit: int) -> int:
-    """Count the slips between two words; above `limit` return `limit + 1`.
-
-    This is the optimal string alignment distance: Levenshtein's, where a swap of adjacent letters counts as one slip.
-    """
-    # Three rows of the table of distances between prefixes are kept: a swap looks back two of them.
-    previous_row: list[int] = []
-    row = list(range(len(second) + 1))
-    for i, x in enumerate(first, 1):
-        row_before_previous, previous_row, row = previous_row, row, [i] + [0] * len(second)
-        for j, y in enumerate(second, 1):
-            row[j] = min(previous_row[j] + 1, row[j - 1] + 1, previous_row[j - 1] + (x != y))
-            if i > 1 and j > 1 and x == second[j - 2] and first[i - 2] == y:
-                row[j] = min(row[j], row_before_previous[j - 2] + 1)
-        # No row can be below its predecessor's minimum, except by a swap, which builds on the row before that one. That
-        # row's minimum is at least `limit` here (it is at most 1 less than this one's), and the swap adds 1.
-        if min(row) > limit:
-            return limit + 1
-    return row[-1]

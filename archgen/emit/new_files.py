@@ -11,24 +11,28 @@ from pathlib import Path
 
 from archgen.emit.file_tree import OutputError
 
+MARKER = "archgen.yaml"
+"""The file that makes a folder a project."""
+
 
 def write_new_files(files: Mapping[Path, bytes], top: Path) -> None:
     """Write files below a folder, which may be new itself. An error, or Ctrl-C, leaves nothing behind.
 
-    Raise OutputError where a file exists already, or a link leads out of the folder.
+    A new folder appears with all that is in it at once; what begins a project (`archgen.yaml`) comes last. So a run that
+    is killed leaves no half project: the next one takes what is there and the same for its own, and goes on. Raise
+    OutputError where a file exists already and is another, or a link leads out of the folder.
     """
     created_paths: list[Path] = []
     try:
-        _create_folder(top, created_paths)
-        staging_folder = Path(tempfile.mkdtemp(prefix=".archgen-", dir=top))
+        staging_parent = next(folder for folder in (top, *top.parents) if folder.is_dir())
+        staging_folder = Path(tempfile.mkdtemp(prefix=".archgen-", dir=staging_parent))
         try:
-            for number, (path, data) in enumerate(files.items()):
-                (staging_folder / str(number)).write_bytes(data)
-                _create_folder(path.parent, created_paths)
-                # After the parent exists, so that a link anywhere in the path is seen; before the file is placed.
-                _refuse_outside(path.parent, top)
-                _place_file(staging_folder / str(number), path)
-                created_paths.append(path)
+            for number, (folder, members) in enumerate(_group_by_new_folder(files)):
+                staged_top = staging_folder / str(number)
+                if folder is None:
+                    _place_loose_files(members, staged_top, top, created_paths)
+                else:
+                    _place_new_folder(folder, members, staged_top, top, created_paths)
         finally:
             shutil.rmtree(staging_folder, ignore_errors=True)
     except OSError as error:
@@ -41,12 +45,48 @@ def write_new_files(files: Mapping[Path, bytes], top: Path) -> None:
         raise
 
 
-def _create_folder(folder: Path, created_paths: list[Path]) -> None:
-    """Create a folder with its missing parents, and append the new ones to `created_paths`."""
-    missing = [missing_folder for missing_folder in (folder, *folder.parents) if not missing_folder.is_dir()]
-    for missing_folder in reversed(missing):
-        missing_folder.mkdir()
-        created_paths.append(missing_folder)
+def _group_by_new_folder(files: Mapping[Path, bytes]) -> list[tuple[Path | None, dict[Path, bytes]]]:
+    """Group files by the outermost folder that is still missing (None: there is none); the project's file comes last."""
+    groups: dict[Path | None, dict[Path, bytes]] = {}
+    for path, data in sorted(files.items(), key=lambda item: item[0].name == MARKER):
+        missing_folders = [folder for folder in path.parents if not os.path.lexists(folder)]
+        groups.setdefault(missing_folders[-1] if missing_folders else None, {})[path] = data
+    return sorted(groups.items(), key=lambda group: any(path.name == MARKER for path in group[1]))
+
+
+def _place_loose_files(members: Mapping[Path, bytes], staged_file: Path, top: Path, created_paths: list[Path]) -> None:
+    """Put files into folders that exist."""
+    for path, data in members.items():
+        _refuse_outside(path.parent, top)
+        if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
+            continue  # left by a run that was killed
+        staged_file.write_bytes(data)
+        _place_file(staged_file, path)
+        staged_file.unlink(missing_ok=True)
+        created_paths.append(path)
+
+
+def _place_new_folder(
+    folder: Path, members: Mapping[Path, bytes], staged_top: Path, top: Path, created_paths: list[Path]
+) -> None:
+    """Make a folder with all its files aside, and move it to its place as a whole."""
+    for path, data in members.items():
+        staged_file = staged_top / path.relative_to(folder)
+        staged_file.parent.mkdir(parents=True, exist_ok=True)
+        staged_file.write_bytes(data)
+    staged_top.chmod(0o777 & ~_read_umask())
+    _refuse_outside(folder.parent, top if top.is_dir() else folder.parent)
+    if os.path.lexists(folder):  # since it was looked for
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
+    staged_top.rename(folder)
+    created_paths.append(folder)
+    created_paths += sorted(folder.rglob("*"))
+
+
+def _read_umask() -> int:
+    umask = os.umask(0)
+    os.umask(umask)
+    return umask
 
 
 def _refuse_outside(folder: Path, top: Path) -> None:

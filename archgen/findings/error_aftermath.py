@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.diagnostics.source_span import SourceTexts, Span
+    from archgen.diagnostics.source_span import SourceTexts
 
 _LACK_RULES = frozenset(
     {
@@ -51,7 +51,11 @@ def drop_aftermath(
     errors = tuple(errors)
     damaged_elements = {error.element for error in errors if error.element}
     # Where reading failed there is no tree to look at: words of the text stand in for it.
-    damaged_words = {word for error in errors for word in _words_below(error.span, sources)}
+    damaged_words = {
+        word
+        for file, number in _list_damaged_lines(errors, sources)
+        for word in _WORD_PATTERN.findall(sources.line_of(file, number) or "")
+    }
     for diagnostic in diagnostics:
         is_explained_lack = diagnostic.rule in _LACK_RULES and diagnostic.element in damaged_elements
         is_explained_unused = diagnostic.rule in _UNUSED_RULES and not damaged_words.isdisjoint(
@@ -61,16 +65,22 @@ def drop_aftermath(
             yield diagnostic
 
 
-def _words_below(span: Span, sources: SourceTexts) -> Iterator[str]:
-    """Yield the words of the line with the error, and of the lines below it that are indented more."""
-    first_line = sources.line_of(span.file, span.line) or ""
-    yield from _WORD_PATTERN.findall(first_line)
-    depth = len(first_line) - len(first_line.lstrip())
-    for number in range(span.line + 1, span.line + _MAX_LINES):
-        line = sources.line_of(span.file, number)
-        if line is None or (line.strip() and len(line) - len(line.lstrip()) <= depth):
-            return
-        yield from _WORD_PATTERN.findall(line)
+def _list_damaged_lines(errors: Iterable[Diagnostic], sources: SourceTexts) -> dict[tuple[str, int], None]:
+    """Return the lines with an error, and those below each that are indented more, by file and number.
+
+    Each line once: thousands of errors may lie in one line of megabytes.
+    """
+    damaged_lines: dict[tuple[str, int], None] = {}
+    for file, first_number in dict.fromkeys((error.span.file, error.span.line) for error in errors):
+        damaged_lines[file, first_number] = None
+        first_line = sources.line_of(file, first_number) or ""
+        depth = len(first_line) - len(first_line.lstrip())
+        for number in range(first_number + 1, first_number + _MAX_LINES):
+            line = sources.line_of(file, number)
+            if line is None or (line.strip() and len(line) - len(line.lstrip()) <= depth):
+                break
+            damaged_lines[file, number] = None
+    return damaged_lines
 
 
 def _names_in_finding(diagnostic: Diagnostic, sources: SourceTexts) -> Iterator[str]:

@@ -8,8 +8,12 @@ import os
 from collections.abc import Mapping
 
 from archgen.forge import github_request, gitlab_request
-from archgen.forge.comment_post import CommentOutcome, put_comment
+from archgen.forge.comment_post import CommentOutcome, CommentTarget, put_comment
 from archgen.forge.forge_api import ForgeError
+from archgen.forge.time_limit import run_within
+
+TOTAL_SECONDS = 120.0
+"""All requests together. Each waits at most 30 s for the next byte, but a server may send a byte now and then."""
 
 __all__ = ["CommentOutcome", "ForgeError", "post_comment"]
 
@@ -18,11 +22,15 @@ def post_comment(text: str, key: str, environment: Mapping[str, str] = os.enviro
     """Put a text on the pull request that a CI job runs for, replacing the one that was put there under this key.
 
     The job's environment says where: GitHub's or GitLab's own variables, and a token that may write comments. Raises
-    `ForgeError` where there is no pull request or the forge refuses.
+    `ForgeError` where there is no pull request, or the forge refuses or does not answer within two minutes.
     """
+    return run_within(TOTAL_SECONDS, lambda: put_comment(_find_target(environment), text, key))
+
+
+def _find_target(environment: Mapping[str, str]) -> CommentTarget:
     if environment.get("GITLAB_CI"):
-        return put_comment(gitlab_request.find_merge_request(environment), text, key)
+        return gitlab_request.find_merge_request(environment)
     if environment.get("GITHUB_ACTIONS"):
-        return put_comment(github_request.find_pull_request(environment), text, key)
+        return github_request.find_pull_request(environment)
     msg = "this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set"
     raise ForgeError(msg)

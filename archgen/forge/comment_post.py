@@ -11,6 +11,8 @@ from archgen.forge.forge_api import ForgeApi, ForgeError
 
 CommentOutcome = Literal["created", "updated", "unchanged"]
 _PAGE_SIZE = 100
+_MAX_PAGES = 50
+"""5,000 comments. A server that always has another full page would be asked for ever."""
 _KEY_PATTERN = re.compile(r"[A-Za-z0-9_./-]+")
 
 
@@ -46,7 +48,7 @@ def put_comment(target: CommentTarget, text: str, key: str) -> CommentOutcome:
         # Forges may change line ends and blanks; an unchanged comment is not written again.
         if old_body.replace("\r\n", "\n").strip() == body.strip():
             return "unchanged"
-        target.api.send_request(target.change_method, f"{target.comment_path}/{int(comment['id'])}", {"body": body})
+        target.api.send_request(target.change_method, f"{target.comment_path}/{comment['id']}", {"body": body})
         return "updated"
     target.api.send_request("POST", target.list_path, {"body": body})
     return "created"
@@ -55,16 +57,18 @@ def put_comment(target: CommentTarget, text: str, key: str) -> CommentOutcome:
 def _own_comments(target: CommentTarget) -> Iterator[dict[str, Any]]:
     """Yield the comments that we wrote; the comment of a stranger who copies the mark is never changed."""
     user_key, id_key, our_id = target.author_path
-    page = 1
-    while True:
+    for page in range(1, _MAX_PAGES + 1):
         comments = target.api.send_request("GET", f"{target.list_path}?per_page={_PAGE_SIZE}&page={page}")
         if not isinstance(comments, list):
             msg = "the list of comments is no list"
             raise ForgeError(msg)
         for comment in comments:
-            if isinstance(comment, dict) and (comment.get(user_key) or {}).get(id_key) == our_id:
+            author = comment.get(user_key) if isinstance(comment, dict) else None
+            # The number becomes part of an address.
+            if isinstance(author, dict) and author.get(id_key) == our_id and isinstance(comment.get("id"), int):
                 yield comment
         # A short page is the last one; the Link header is not needed.
         if len(comments) < _PAGE_SIZE:
             return
-        page += 1
+    msg = f"the pull request has more than {_MAX_PAGES * _PAGE_SIZE:,} comments, and ours is not among them"
+    raise ForgeError(msg)

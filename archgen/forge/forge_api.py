@@ -40,7 +40,11 @@ class ForgeApi:
 
     def __post_init__(self) -> None:
         """Refuse to send a token over a line that anybody can read."""
-        url_parts = urlsplit(self.url)
+        try:
+            url_parts = urlsplit(self.url)
+        except ValueError as error:
+            msg = f"the API's address {self.url!r} is no address: {error}"
+            raise ForgeError(msg) from None
         if url_parts.scheme != "https" and not (url_parts.scheme == "http" and url_parts.hostname in _LOOPBACK_HOSTS):
             msg = f"the API's address {self.url!r} does not begin with https://"
             raise ForgeError(msg)
@@ -54,11 +58,12 @@ class ForgeApi:
             with build_opener(_NoRedirects).open(request, timeout=_TIMEOUT_SECONDS) as answer:
                 return json.loads(answer.read(_MAX_ANSWER_BYTES))
         except HTTPError as error:
+            error.close()  # it holds the connection
             msg = f"{method} {path} was answered with {error.code} {error.reason}"
             raise ForgeError(msg, error.code) from None
         except (URLError, TimeoutError, HTTPException) as error:
             msg = f"{method} {path} got no answer: {getattr(error, 'reason', error)}"
             raise ForgeError(msg) from None
-        except ValueError:
+        except (ValueError, RecursionError):
             msg = f"{method} {path} was answered with something that is no JSON"
             raise ForgeError(msg) from None

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from archgen.git.git_errors import GitError
+
 SAFE_COMMAND = (
     "git",
     "--no-pager",
@@ -53,6 +55,33 @@ def run_git(folder: Path, *arguments: str, stdin: bytes = b"") -> GitResult:
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
         return GitResult(_NOT_FOUND_STATUS, b"", f"git cannot be run: {error}")
     return GitResult(completed.returncode, completed.stdout, completed.stderr.decode("utf-8", "replace").strip())
+
+
+def read_git_output(folder: Path, *arguments: str, max_bytes: int) -> bytes | None:
+    """Return what a git command prints, None where it fails. Raise GitError where it prints more than `max_bytes`.
+
+    It is stopped there: trees that name each other ten times a level make a list of gigabytes from a few hundred bytes.
+    """
+    import subprocess
+
+    try:
+        process = subprocess.Popen(  # noqa: S603 - a fixed program; what users type stands behind --end-of-options or --
+            [*SAFE_COMMAND, *arguments],
+            cwd=folder,
+            env=git_environment(os.environ),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+    except (OSError, ValueError):
+        return None
+    with process:
+        output = process.stdout.read(max_bytes + 1) if process.stdout else b""
+        if len(output) > max_bytes:
+            process.kill()
+            msg = f"git prints more than {max_bytes:,} bytes"
+            raise GitError(msg)
+    return None if process.returncode else output
 
 
 def git_environment(variables: Mapping[str, str]) -> dict[str, str]:

@@ -6,7 +6,8 @@ import os
 import weakref
 from typing import IO, TYPE_CHECKING, NamedTuple
 
-from archgen.git.git_call import SAFE_COMMAND, git_environment, run_git
+from archgen.git.git_call import SAFE_COMMAND, git_environment, read_git_output
+from archgen.git.git_errors import GitError
 from archgen.git.repository_lookup import GitRepository
 
 if TYPE_CHECKING:
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
 LINK_MODE = "120000"
 SUBMODULE_MODE = "160000"
+MAX_LIST_BYTES = 32_000_000
+"""The longest list of a commit's files that is read: about 300,000 files."""
 _SMALL_BYTES = 65_536
 _MAX_CACHED = 4096
 """The most small files that are cached: most are the same in most commits."""
@@ -37,11 +40,25 @@ class GitObjects:
         self._cached_blobs: dict[str, bytes] = {}
 
     def list_tree(self, commit: str, prefix: str = "") -> dict[str, TreeEntry] | None:
-        """Return everything below a folder of a commit, by path; None where there is no such folder."""
-        result = run_git(self.repository.top, "ls-tree", "-r", "-z", "--full-tree", f"{commit}:{prefix}")
-        if result.status:
+        """Return everything below a folder of a commit, by path; None where there is no such folder.
+
+        Raise GitError where there is more than any project has.
+        """
+        try:
+            output = read_git_output(
+                self.repository.top,
+                *("ls-tree", "-r", "-z", "--full-tree", f"{commit}:{prefix}"),
+                max_bytes=MAX_LIST_BYTES,
+            )
+        except GitError:
+            place = f"below `{prefix}` " if prefix else ""
+            msg = f"the commit {commit[:10]} holds more files {place}than a project may have: their list is longer than"
+            msg = f"{msg} {MAX_LIST_BYTES // 1_000_000} MB"
+            raise GitError(msg) from None
+        if output is None:
             return None
-        rows = (row.partition("\t") for row in result.text.split("\0") if row)
+        text = output.decode("utf-8", "surrogateescape")
+        rows = (row.partition("\t") for row in text.split("\0") if row)
         return {path: TreeEntry(fields[:6], fields.rpartition(" ")[2]) for fields, _, path in rows}
 
     def blob_size(self, blob_id: str) -> int | None:

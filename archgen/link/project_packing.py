@@ -6,9 +6,12 @@ The packed file must give the same report as the folder (docs/decisions/0002-pac
 from __future__ import annotations
 
 import base64
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
@@ -43,14 +46,59 @@ class PackedAttachments:
     pictures: Mapping[str, bytes] = field(default_factory=dict)
 
 
+class _CommentPlacer:
+    """Decides which packed value gets the ignore comment of a line: one line may become several.
+
+    A comment silences what points at its line. `silenced_findings` say where that was, so that each rule goes to the
+    value that its finding will point at again; the others (of elements that begin there) to the outermost value.
+    """
+
+    def __init__(self, ignores: Iterable[IgnoreComment], silenced_findings: Iterable[Diagnostic]) -> None:
+        self._ignores = {(ignore.span.file, ignore.span.line): ignore for ignore in ignores}
+        self._rules_by_place: dict[tuple[str, int, int], set[str]] = defaultdict(set)
+        for finding in silenced_findings:
+            self._rules_by_place[finding.span.file, finding.span.line, finding.span.column].add(finding.rule)
+        self._paths_by_place: dict[tuple[str, int, int], DataPath] = {}
+        self._first_paths: dict[tuple[str, int], DataPath] = {}
+
+    def visit_value(self, path: DataPath, *spans: Span) -> None:
+        """See a value, outer ones before inner ones, with the spans of its key and of itself."""
+        for span in spans:
+            if (span.file, span.line) in self._ignores:
+                self._first_paths.setdefault((span.file, span.line), path)
+                # Keys that a short form leaves out have the place of its value: the innermost one is the value.
+                self._paths_by_place[span.file, span.line, span.column] = path
+
+    def place_comments(self) -> dict[DataPath, str]:
+        """Return the comments by the path of their values."""
+        comments: dict[DataPath, str] = {}
+        for (file, line), first_path in self._first_paths.items():
+            ignore = self._ignores[file, line]
+            path_of_rule: dict[str, set[DataPath]] = defaultdict(set)
+            for place, path in self._paths_by_place.items():
+                if place[:2] == (file, line):
+                    for rule in self._rules_by_place.get(place, ()):
+                        path_of_rule[rule].add(path)
+            rules_at: dict[DataPath, list[str]] = defaultdict(list)
+            for rule in ignore.rules:
+                for path in path_of_rule.get(rule, {first_path}):
+                    rules_at[path].append(rule)
+            for path, rules in rules_at.items():
+                comments[path] = f"archgen: ignore[{', '.join(rules)}] {ignore.why}".rstrip()
+        return comments
+
+
 def pack_project(
-    root: MappingNode, architecture: Architecture, ignores: Iterable[IgnoreComment], attachments: PackedAttachments
+    root: MappingNode,
+    architecture: Architecture,
+    ignores: Iterable[IgnoreComment],
+    attachments: PackedAttachments,
+    silenced_findings: Iterable[Diagnostic] = (),
 ) -> PackedProject:
-    """Return the packed project."""
-    # Comments are found by their line and taken out of this dict as their elements are packed.
-    pending_ignores = {(ignore.span.file, ignore.span.line): ignore for ignore in ignores}
-    packed_project = PackedProject()
-    project_data = _pack_mapping(root, (), packed_project.comments, pending_ignores, is_raw=False)
+    """Return the packed project. `silenced_findings` are what the comments silence."""
+    placer = _CommentPlacer(ignores, silenced_findings)
+    project_data = _pack_mapping(root, (), placer, is_raw=False)
+    packed_project = PackedProject(comments=placer.place_comments())
     project_identity = {"id": architecture.project.id, "title": architecture.project.title}
     project_data["archgen"] = 1
     project_data["project"] = {**project_identity, **_copy_dict(project_data.get("project"))}
@@ -93,18 +141,17 @@ def _pack_type(shipped_type: ConceptualType) -> dict[str, object]:
 def _pack_value(
     node: YamlNode,
     path: DataPath,
-    comments: dict[DataPath, str],
-    pending_ignores: dict[tuple[str, int], IgnoreComment],
+    placer: _CommentPlacer,
     *,
     is_raw: bool,
 ) -> object:
     if isinstance(node, MappingNode):
-        return _pack_mapping(node, path, comments, pending_ignores, is_raw=is_raw)
+        return _pack_mapping(node, path, placer, is_raw=is_raw)
     if isinstance(node, SequenceNode):
         items = []
         for number, item in enumerate(node.items):
-            _attach_comment(item.span.file, item.span.line, (*path, number), comments, pending_ignores)
-            items.append(_pack_value(item, (*path, number), comments, pending_ignores, is_raw=is_raw))
+            placer.visit_value((*path, number), item.span)
+            items.append(_pack_value(item, (*path, number), placer, is_raw=is_raw))
         return items
     return _pack_scalar(node, is_raw=is_raw)
 
@@ -117,8 +164,7 @@ def _pack_scalar(scalar: ScalarNode, *, is_raw: bool) -> object:
 def _pack_mapping(
     mapping: MappingNode,
     path: DataPath,
-    comments: dict[DataPath, str],
-    pending_ignores: dict[tuple[str, int], IgnoreComment],
+    placer: _CommentPlacer,
     *,
     is_raw: bool,
 ) -> dict[str, object]:
@@ -126,25 +172,13 @@ def _pack_mapping(
     # An entry before what is in it: of several values on one line the outermost gets the comment.
     for entry in mapping:
         entry_path = (*path, entry.key)
-        _attach_comment(entry.key_span.file, entry.key_span.line, entry_path, comments, pending_ignores)
-        data[entry.key] = _pack_value(
-            entry.value, entry_path, comments, pending_ignores, is_raw=is_raw or _holds_raw_values(entry)
+        # A scalar is written behind its key, so that a comment about either stands on the line of both.
+        placer.visit_value(
+            entry_path, entry.key_span, *([entry.value.span] if isinstance(entry.value, ScalarNode) else [])
         )
+        data[entry.key] = _pack_value(entry.value, entry_path, placer, is_raw=is_raw or _holds_raw_values(entry))
     return data
 
 
 def _holds_raw_values(entry: MappingEntry) -> bool:
     return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and isinstance(entry.value, ScalarNode))
-
-
-def _attach_comment(
-    file: str,
-    line: int,
-    path: DataPath,
-    comments: dict[DataPath, str],
-    pending_ignores: dict[tuple[str, int], IgnoreComment],
-) -> None:
-    """Attach the ignore comment of a line to the first value on that line; it is taken out of `pending_ignores`."""
-    ignore = pending_ignores.pop((file, line), None)
-    if ignore is not None:
-        comments[path] = f"archgen: ignore[{', '.join(ignore.rules)}] {ignore.why}".rstrip()

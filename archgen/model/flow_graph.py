@@ -1,13 +1,9 @@
-"""The flow of data between components or between nodes: adjacency, and what is upstream and downstream of an element.
-
-Plain dictionaries and a breadth-first search instead of networkx, whose import takes 116 ms, a third of what a whole
-`archgen check` may take (docs/decisions/0001-no-networkx.md).
-"""
+"""The flow of data between components or between nodes, as adjacency: what each element feeds, and what feeds it."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -34,27 +30,6 @@ def build_component_graph(architecture: Architecture) -> FlowGraph:
 def build_node_graph(architecture: Architecture) -> FlowGraph:
     """Build the graph of nodes from the topics, services and actions they use; the last two carry data both ways."""
     return _build_graph(_node_flow_pairs(architecture))
-
-
-def find_reachable(
-    neighbours: Mapping[str, Collection[str]], starts: Iterable[str], max_steps: int | None = None
-) -> dict[str, int]:
-    """Return all elements that can be reached, the starts included, each with its least number of steps.
-
-    `steps` limits the number of steps; None is no limit.
-    """
-    distances = dict.fromkeys(starts, 0)
-    frontier, distance = list(distances), 0
-    while frontier and (max_steps is None or distance < max_steps):
-        distance += 1
-        next_frontier: list[str] = []
-        for element in frontier:
-            for neighbour in neighbours.get(element, ()):
-                if neighbour not in distances:
-                    distances[neighbour] = distance
-                    next_frontier.append(neighbour)
-        frontier = next_frontier
-    return distances
 
 
 def _build_graph(pairs: Iterable[tuple[str, str]]) -> FlowGraph:

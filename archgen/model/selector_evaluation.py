@@ -14,6 +14,7 @@ from archgen.diagnostics.suggestions import find_closest
 from archgen.frozen import dataclass
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
+from archgen.model.graph_search import find_reachable
 from archgen.model.path_resolver import ElementRef, PathResolver
 from archgen.model.selector_keys import SelectorHit, find_by_key, matches_wildcard
 from archgen.model.selector_parser import ALL_STEPS, SelectorAtom, SelectorProblem, SelectorWord, parse_selector
@@ -134,12 +135,12 @@ class SelectorEvaluator:
         """Add what feeds a hit and what it feeds, up to some steps each; None is any number of steps."""
         # Steps are steps between nodes only if the word names nodes and nothing else.
         if hit.only_nodes:
-            reached = flow_graph.find_reachable(
-                self.node_graph.predecessors, hit.nodes, steps_before
-            ) | flow_graph.find_reachable(self.node_graph.successors, hit.nodes, steps_after)
+            reached = find_reachable(self.node_graph.predecessors, hit.nodes, steps_before) | find_reachable(
+                self.node_graph.successors, hit.nodes, steps_after
+            )
             return SelectorHit(frozenset(), frozenset(reached), hit.elements, only_nodes=True)
         full_hit = self._add_other_level(hit)
-        upstream = flow_graph.find_reachable(self.component_graph.predecessors, full_hit.components, steps_before)
+        upstream = find_reachable(self.component_graph.predecessors, full_hit.components, steps_before)
         return SelectorHit(
             full_hit.components.union(upstream, self._reach_downstream(full_hit, steps_after)),
             full_hit.nodes,
@@ -149,24 +150,20 @@ class SelectorEvaluator:
     def _reach_downstream(self, hit: SelectorHit, max_steps: int | None) -> dict[str, int]:
         """Return the components that a hit feeds, with their steps; the first step of outputs is their own readers."""
         if not hit.outputs or max_steps == 0:
-            return flow_graph.find_reachable(self.component_graph.successors, hit.components, max_steps)
+            return find_reachable(self.component_graph.successors, hit.components, max_steps)
         starts = (reader for output in hit.outputs for reader in self.readers_by_output.get(output, ()))
-        return flow_graph.find_reachable(
-            self.component_graph.successors, starts, None if max_steps is None else max_steps - 1
-        )
+        return find_reachable(self.component_graph.successors, starts, None if max_steps is None else max_steps - 1)
 
     def _find_ways(self, first_hit: SelectorHit, last_hit: SelectorHit) -> SelectorHit:
         """Return all ways from one hit to another: what is both downstream of the first and upstream of the last."""
         elements = (*first_hit.elements, *last_hit.elements)
         if first_hit.only_nodes and last_hit.only_nodes:
-            downstream = flow_graph.find_reachable(self.node_graph.successors, first_hit.nodes)
-            way_elements = (
-                downstream.keys() & flow_graph.find_reachable(self.node_graph.predecessors, last_hit.nodes).keys()
-            )
+            downstream = find_reachable(self.node_graph.successors, first_hit.nodes)
+            way_elements = downstream.keys() & find_reachable(self.node_graph.predecessors, last_hit.nodes).keys()
             hit = SelectorHit(frozenset(), frozenset(way_elements), elements, only_nodes=True)
         else:
             first_hit, last_hit = self._add_other_level(first_hit), self._add_other_level(last_hit)
-            upstream = flow_graph.find_reachable(self.component_graph.predecessors, last_hit.components).keys()
+            upstream = find_reachable(self.component_graph.predecessors, last_hit.components).keys()
             way_elements = self._reach_downstream(first_hit, None).keys() & upstream
             # The components of outputs are no part of what the outputs feed, but where the way begins.
             if first_hit.outputs and way_elements:

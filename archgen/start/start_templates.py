@@ -45,7 +45,6 @@ def _make_environment() -> jinja2.Environment:
         "yaml": yaml_writer.format_scalar,
         "flow": yaml_writer.format_flow,
         "markdown": escape_markdown,
-        "entry": _entry_filter,
     }
     return environment
 
@@ -60,18 +59,14 @@ def read_plain_file(name: str) -> bytes:
     return resources.resource_path("start", *name.split("/")).read_bytes()
 
 
-def fill_project_file(
-    answers: StartAnswers, requirements: Mapping[str, object], types: Mapping[str, object], *, sources: bool
-) -> bytes:
-    """Return archgen.yaml; with `sources` it names its slices, since there are other YAML files beside them."""
+def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
+    """Return the beginning of archgen.yaml: with `sources` it names its slices, since other YAML files lie beside them."""
     return fill_template(
         "archgen.yaml.j2",
         id=answers.id,
         title=answers.title,
         distro=answers.distro,
         partners=answers.partners,
-        requirements=requirements,
-        types=types,
         sources=sources,
     )
 
@@ -133,11 +128,6 @@ def _example_component(example: Mapping[str, Any], group: GroupAnswer, kind: str
         "first": False,
         "node": {"id": name, "body": {"implements": f"{group.id}.{example['id']}", **node}},
     }
-
-
-def _entry_filter(value: object) -> str:
-    """Return what follows a key's colon: nothing for what is not known yet."""
-    return f" {yaml_writer.format_flow(value)}" if value is not None else ""
 
 
 def compact_schema() -> bytes:

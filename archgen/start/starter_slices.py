@@ -2,45 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from archgen.project import PROJECT_FILE
 from archgen.start import start_templates
 from archgen.start.start_answers import StartAnswers
-from archgen.syntax import yaml_writer
+from archgen.syntax import block_documents
 
-_MAX_WIDTH = 110
-"""The columns of a line; what is longer continues below."""
 _EXAMPLE_REQUIREMENT = "The robot touches neither people nor things that it should not touch"
 _KEY_HINTS = {
-    "functionality": "  # what it does, in a sentence or two",
-    "inputs": "  # id: group.component.output",
-    "outputs": "  # id: conceptual type",
-    "output": "  # of which conceptual type?",
+    "functionality": "# what it does, in a sentence or two",
+    "inputs": "# id: group.component.output",
+    "outputs": "# id: conceptual type",
+}
+_OUTPUT_HINT = "# of which conceptual type?"
+_SECTION_HINTS = {
+    "requirements": "# components name what they serve; archgen says what nobody serves",
+    "types": "# conceptual types and the ROS messages that carry them",
 }
 
 
 def example_files(answers: StartAnswers, has_other_yaml: bool) -> dict[str, bytes]:  # noqa: FBT001 - what `other_yaml` found
     """Return the files of a project that begins with an example."""
-    project_file = start_templates.fill_project_file(answers, {"R-1": _EXAMPLE_REQUIREMENT}, {}, sources=has_other_yaml)
-    return {PROJECT_FILE: project_file, **start_templates.fill_group_files(answers)}
+    sections = {"requirements": {"R-1": _EXAMPLE_REQUIREMENT}}
+    return {
+        PROJECT_FILE: _fill_project_file(answers, sections, has_other_yaml=has_other_yaml),
+        **start_templates.fill_group_files(answers),
+    }
 
 
 def imported_files(answers: StartAnswers, data: Mapping[str, Any], has_other_yaml: bool) -> dict[str, bytes]:  # noqa: FBT001 - as above
     """Return the files of a project whose groups, nodes, types and requirements were imported."""
-    project_file = start_templates.fill_project_file(
-        answers, data.get("requirements", {}), data.get("types", {}), sources=has_other_yaml
-    )
-    files = {PROJECT_FILE: project_file}
+    files = {PROJECT_FILE: _fill_project_file(answers, data, has_other_yaml=has_other_yaml)}
     for name, group in data.get("groups", {}).items():
         # With the dot, so that the group `arm` does not take the nodes of `arm_left`.
         id_prefix = f"{name}."
         nodes = {
             key: node for key, node in data.get("nodes", {}).items() if _first_implemented(node).startswith(id_prefix)
         }
-        files[f"groups/{name}.yaml"] = ("\n".join(_slice_lines(name, group, nodes)) + "\n").encode()
+        files[f"groups/{name}.yaml"] = _write_slice(name, group, nodes).encode()
     return files
+
+
+def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any], *, has_other_yaml: bool) -> bytes:
+    """Return archgen.yaml: the template, and below it the sections that the data have."""
+    sections = block_documents.BlockMapping()
+    for key, hint in _SECTION_HINTS.items():
+        if key in data:
+            # In the column of the template's own comments.
+            section = sections.add_mapping(key, f"{hint:>{len(hint) + 28 - len(key)}}", is_spaced=True)
+            for name, value in data[key].items():
+                section.add_entry(name, value)
+    project_file = start_templates.fill_project_file(answers, sources=has_other_yaml)
+    return project_file + (block_documents.write_document(sections).encode() if sections.content else b"")
 
 
 def _first_implemented(node: Mapping[str, Any]) -> str:
@@ -49,55 +64,31 @@ def _first_implemented(node: Mapping[str, Any]) -> str:
     return str(implements if isinstance(implements, str) else implements[0])
 
 
-def _slice_lines(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) -> Iterator[str]:
-    yield f"# yaml-language-server: $schema=../{start_templates.SCHEMA_PATH}"
-    yield "groups:"
-    yield f"  {name}:"
+def _write_slice(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) -> str:
+    root = block_documents.BlockMapping()
+    group_mapping = root.add_mapping("groups").add_mapping(name)
     for key, value in group.items():
         if key != "components":
-            yield from _entry_lines(key, value, "    ")
-    yield "    components:"
+            group_mapping.add_entry(key, value)
+    components = group_mapping.add_mapping("components")
     for component, body in group["components"].items():
-        yield ""
-        yield f"      {component}:"
-        yield from _component_lines(body)
+        _add_component(components.add_mapping(component, is_spaced=True), body)
     if nodes:
-        yield ""
-        yield "nodes:"
+        node_section = root.add_mapping("nodes", is_spaced=True)
         for node, body in nodes.items():
-            yield from _entry_lines(node, body, "  ")
+            node_section.add_entry(node, body)
+    return block_documents.write_document(root, f"# yaml-language-server: $schema=../{start_templates.SCHEMA_PATH}\n")
 
 
-def _component_lines(body: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of a component; unknown keys are left empty, with a comment on what belongs there."""
+def _add_component(component: block_documents.BlockMapping, body: Mapping[str, Any]) -> None:
+    """Add the keys of a component; unknown keys are left empty, with a comment on what belongs there."""
     keys = dict.fromkeys((*(key for key in body if key not in {"inputs", "outputs"}), "functionality"))
     for key in keys:
-        yield from _entry_lines(key, body.get(key), "        ")
+        component.add_entry(key, body.get(key), _KEY_HINTS.get(key, ""))
     for key in ("inputs", "outputs"):
-        ports = body.get(key)
-        if ports:
-            yield f"        {key}:"
+        if ports := body.get(key):
+            port_section = component.add_mapping(key)
             for port, value in ports.items():
-                yield from _entry_lines(port, value, "          ", "output" if key == "outputs" else "")
+                port_section.add_entry(port, value, _OUTPUT_HINT if key == "outputs" else "")
         else:
-            yield from _entry_lines(key, ports, "        ")
-
-
-def _entry_lines(key: str, value: object, indent: str, hint: str = "") -> Iterator[str]:
-    """Yield the lines of one key: on one line where it fits, long text folded, long lists and mappings below."""
-    head = f"{indent}{yaml_writer.format_scalar(key)}:"
-    if value is None:
-        yield f"{head}{_KEY_HINTS.get(hint or key, '')}"
-        return
-    line = f"{head} {yaml_writer.format_flow(value)}"
-    if isinstance(value, str) and (len(line) > _MAX_WIDTH or "\n" in value):
-        yield from yaml_writer.write_paragraph(head, value, f"{indent}  ", _MAX_WIDTH)
-    elif len(line) > _MAX_WIDTH and isinstance(value, Mapping):
-        yield head
-        for inner_key, inner_value in value.items():
-            yield from _entry_lines(inner_key, inner_value, f"{indent}  ", " ")
-    elif len(line) > _MAX_WIDTH and isinstance(value, (list, tuple)):
-        yield head
-        yield from (f"{indent}  - {yaml_writer.format_flow(item)}" for item in value)
-    else:
-        yield line
+            component.add_entry(key, ports, _KEY_HINTS[key])

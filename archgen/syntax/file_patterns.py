@@ -42,8 +42,10 @@ def expand_pattern(files: ProjectFiles, pattern: str, skipped_folders: frozenset
     prefix = "/".join(parts[:fixed_count])
     if fixed_count == len(parts):
         return (prefix,) if files.has_path(prefix) else ()
-    name_pattern = re.compile(_pattern_to_regex(parts[fixed_count:]))
-    matching_names = (name for name in _walk_files(files, prefix, skipped_folders) if name_pattern.fullmatch(name))
+    path_pattern = _compile_path(parts[fixed_count:])
+    matching_names = (
+        name for name in _walk_files(files, prefix, skipped_folders) if _matches_path(path_pattern, name.split("/"))
+    )
     # Sorted name by name, not as strings: `a/b` comes before `a-b/c`, as in a listing of folders.
     return tuple(
         sorted((f"{prefix}/{name}" if prefix else name for name in matching_names), key=lambda name: name.split("/"))
@@ -52,9 +54,7 @@ def expand_pattern(files: ProjectFiles, pattern: str, skipped_folders: frozenset
 
 def matches_pattern(pattern: str, file: str) -> bool:
     """Whether a pattern matches a path, whether or not the file exists."""
-    return (
-        is_inside_project(pattern) and re.fullmatch(_pattern_to_regex(PurePosixPath(pattern).parts), file) is not None
-    )
+    return is_inside_project(pattern) and _matches_path(_compile_path(PurePosixPath(pattern).parts), file.split("/"))
 
 
 def _walk_files(files: ProjectFiles, top: str, skipped_folders: frozenset[str]) -> Iterator[str]:
@@ -72,27 +72,70 @@ def _walk_files(files: ProjectFiles, top: str, skipped_folders: frozenset[str]) 
         yield from (f"{path_prefix}{name}" for name in folders if name.endswith(".yaml"))
 
 
-def _pattern_to_regex(parts: tuple[str, ...]) -> str:
-    regex = ""
-    for position, part in enumerate(parts):
-        is_last = position == len(parts) - 1
-        if part == "**":
-            regex += ".*" if is_last else "(?:[^/]+/)*"
+def _compile_path(parts: tuple[str, ...]) -> tuple[re.Pattern[str] | None, ...]:
+    """Return one expression for each name of a pattern, None for `**`. A last `**` stands for one name at least."""
+    names = (*parts, "*") if parts[-1:] == ("**",) else parts
+    return tuple(None if part == "**" else re.compile(_name_to_regex(part), re.DOTALL) for part in names)
+
+
+def _matches_path(path_pattern: tuple[re.Pattern[str] | None, ...], names: list[str]) -> bool:
+    """Whether the names of a path match, `**` standing for any number of them.
+
+    Only the last `**` is ever widened: what an earlier one could still take, a later one can take as well. So the time
+    is bounded by the product of both lengths; one regular expression for the whole path takes exponential time.
+    """
+    position, index = 0, 0
+    widened_position, widened_index = -1, 0
+    while index < len(names):
+        name_pattern = path_pattern[position] if position < len(path_pattern) else None
+        if position < len(path_pattern) and name_pattern is None:
+            widened_position, widened_index = position, index
+            position += 1
+        elif name_pattern is not None and name_pattern.fullmatch(names[index]):
+            position, index = position + 1, index + 1
+        elif widened_position >= 0:
+            widened_index += 1
+            position, index = widened_position + 1, widened_index
         else:
-            regex += _name_to_regex(part) + ("" if is_last else "/")
-    return regex
+            return False
+    return all(name_pattern is None for name_pattern in path_pattern[position:])
 
 
 def _name_to_regex(part: str) -> str:
-    """Translate one name of a pattern with `*`, `?` and `[abc]` into a regular expression."""
-    regex, remaining = "", part
+    """Translate one name of a pattern with `*`, `?` and `[abc]` into a regular expression.
+
+    Each `*` but the last takes as little as lets the next piece match, and never takes more (an atomic group): what it
+    could still take, the next `*` can take as well. Without that a stranger's `*a*a*a*` takes time without end.
+    """
+    first_piece, *other_pieces = _split_at_stars(part)
+    if not other_pieces:
+        return first_piece
+    middle = "".join(f"(?>[^/]*?{piece})" for piece in other_pieces[:-1])
+    return f"{first_piece}{middle}[^/]*{other_pieces[-1]}"
+
+
+def _split_at_stars(part: str) -> list[str]:
+    """Return the expressions of the pieces between the stars of a name; a run of stars counts as one."""
+    pieces, remaining = [""], part
     while remaining:
         match = re.match(r"\[(!?)([^\]/]+)\]", remaining)
         if match:
-            # `[!a]` must not match a slash; re.escape also escapes `-`, which means a range here as it does in a shell.
-            regex += f"[{'^/' if match[1] else ''}{re.escape(match[2]).replace(chr(92) + '-', '-')}]"
+            pieces[-1] += _character_class(match[2], negated=bool(match[1]))
             remaining = remaining[match.end() :]
+        elif remaining[0] == "*":
+            remaining = remaining.lstrip("*")
+            pieces.append("")
         else:
-            regex += {"*": "[^/]*", "?": "[^/]"}.get(remaining[0]) or re.escape(remaining[0])
+            pieces[-1] += "[^/]" if remaining[0] == "?" else re.escape(remaining[0])
             remaining = remaining[1:]
-    return regex
+    return pieces
+
+
+def _character_class(characters: str, *, negated: bool) -> str:
+    # `[!a]` must not match a slash; re.escape also escapes `-`, which means a range here as it does in a shell.
+    character_class = f"[{'^/' if negated else ''}{re.escape(characters).replace(chr(92) + '-', '-')}]"
+    try:
+        re.compile(character_class)
+    except re.error:  # a range that ends before it begins: no character lies in it
+        return "[^/]" if negated else "(?!)"
+    return character_class

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import json
 import re
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 ElementPath = tuple[str | int, ...]
@@ -51,7 +50,7 @@ def _write_entry(
         yield f"{head}{comment}"
         for number, item in enumerate(value):
             yield from _write_item(item, inner_indent, (*element_path, number), comments)
-    elif isinstance(value, str) and _fits_literal_block(value):
+    elif isinstance(value, str) and fits_literal_block(value):
         lines = value.split("\n")
         chomping = "" if value.endswith("\n") else "-"
         yield f"{head} |{chomping}{comment}"
@@ -87,20 +86,17 @@ def format_scalar(value: object) -> str:
 def format_flow(value: object) -> str:
     """Format a value on one line: mappings in braces, lists in brackets."""
     if isinstance(value, Mapping) and value:
-        return "{" + ", ".join(f"{format_scalar(key)}: {format_flow(inner)}" for key, inner in value.items()) + "}"
+        return "{" + ", ".join(f"{_format_item(key)}: {_format_item(inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, (list, tuple)) and value:
-        return "[" + ", ".join(format_flow(item) for item in value) + "]"
+        return "[" + ", ".join(_format_item(item) for item in value) + "]"
     return format_scalar(value)
 
 
-def write_paragraph(head: str, text: str, indent: str, width: int) -> Iterator[str]:
-    """Yield the lines of a long text: folded (`>-`) where single blanks separate its words, else as `write_yaml`."""
-    if text == " ".join(text.split()) and not _UNSAFE_IN_BLOCK.search(text):
-        yield f"{head} >-"
-        for line in textwrap.wrap(text, width - len(indent), break_long_words=False, break_on_hyphens=False):
-            yield f"{indent}{line}"
-    else:
-        yield from _write_entry(head, text, indent[:-2], (), {})
+def _format_item(value: object) -> str:
+    """Format what stands inside braces or brackets."""
+    if isinstance(value, str):
+        return _quote_text(value) if needs_quotes(value, in_flow=True) else value
+    return format_flow(value)
 
 
 def _format_float(value: float) -> str:
@@ -112,22 +108,41 @@ def _format_key(key: str) -> str:
 
 
 def _format_text(text: str) -> str:
-    is_plain = _PLAIN_SCALAR.match(text) and not _AMBIGUOUS_SCALAR.match(text) and text[-1] not in " \t"
-    return text if is_plain else _quote_text(text)
+    return _quote_text(text) if needs_quotes(text) else text
+
+
+def needs_quotes(text: str, *, in_flow: bool = False) -> bool:
+    """Return whether a reader of YAML 1.1 or 1.2 might take this text, unquoted, for something else.
+
+    `in_flow` is inside braces or brackets.
+    """
+    # PyYAML ends a plain scalar in braces at any question mark.
+    if in_flow and "?" in text:
+        return True
+    return not _PLAIN_SCALAR.match(text) or bool(_AMBIGUOUS_SCALAR.match(text)) or text[-1] in " \t"
+
+
+def replace_surrogates(text: str) -> str:
+    """Return a text without lone surrogates, which YAML cannot hold: they become `?`."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def has_unsafe_characters(text: str) -> bool:
+    """Return whether a text holds characters that no block scalar keeps, such as tabs."""
+    return bool(_UNSAFE_IN_BLOCK.search(text))
 
 
 def _quote_text(text: str) -> str:
-    """Quote a text. What YAML cannot hold (lone surrogates) becomes `?`."""
     # A JSON string is a double-quoted scalar of YAML, but for the characters in the table: YAML wants them escaped.
-    return json.dumps(text.encode("utf-8", "replace").decode("utf-8"), ensure_ascii=False).translate(_CONTROL_ESCAPES)
+    return json.dumps(replace_surrogates(text), ensure_ascii=False).translate(_CONTROL_ESCAPES)
 
 
 _CONTROL_ESCAPES = {c: f"\\u{c:04x}" for c in (*range(0x7F, 0xA1), 0x2028, 0x2029, 0xFEFF, 0xFFFE, 0xFFFF)}
 
 
-def _fits_literal_block(text: str) -> bool:
+def fits_literal_block(text: str) -> bool:
     """Return whether a literal block (`|`) holds this text exactly."""
     # A leading blank would be taken for indentation, and two line feeds at the end need `+`: such texts are quoted.
-    if "\n" not in text or text[0] in " \n" or _UNSAFE_IN_BLOCK.search(text) or text.endswith("\n\n"):
+    if "\n" not in text or text[0] in " \n" or has_unsafe_characters(text) or text.endswith("\n\n"):
         return False
     return all(line == line.rstrip() for line in text.split("\n"))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -196,7 +199,7 @@ def test_a_link_that_leads_out_is_not_followed(run: Run, tmp_path: Path) -> None
 def test_a_failure_half_way_leaves_nothing(
     error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "kept").mkdir()
+    (tmp_path / "r" / "b").mkdir(parents=True)
     placed: list[Path] = []
     place = new_files._place_file  # noqa: SLF001 - the failing disk stands in its place
 
@@ -207,11 +210,43 @@ def test_a_failure_half_way_leaves_nothing(
         place(staged, path)
 
     monkeypatch.setattr(new_files, "_place_file", failing)
-    files = {tmp_path / "r" / name: b"x" for name in ("a", "b/c", "d/e")}
+    files = {tmp_path / "r" / name: b"x" for name in ("a", "b/c", "b/d", "e/f")}
     with pytest.raises(file_tree.OutputError if isinstance(error, OSError) else KeyboardInterrupt):
         new_files.write_new_files(files, tmp_path / "r")
     assert len(placed) == 2
-    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+    assert [path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*")] == ["r", "r/b"]
+
+
+@pytest.mark.parametrize("steps", range(5))
+@pytest.mark.parametrize("exists", [False, True])
+def test_a_run_that_is_killed_leaves_no_half_project(
+    steps: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, exists: bool
+) -> None:
+    """Killed after so many moves, without a chance to take anything back; the next run ends what this one began."""
+    top = tmp_path / "r"
+    if exists:
+        top.mkdir()
+    files = {top / name: name.encode() for name in ("archgen.yaml", ".gitattributes", "groups/a.yaml", ".github/b.yml")}
+    moves: list[object] = []
+
+    def move_or_die(*words: Any) -> None:  # noqa: ANN401 - whatever is moved
+        if len(moves) == steps:
+            raise SystemError
+        moves.append(words)
+        move(*words)
+
+    move = os.rename
+    with monkeypatch.context() as patch:
+        patch.setattr(new_files, "_undo_creation", lambda _: None)
+        patch.setattr(os, "link", move_or_die)
+        patch.setattr(Path, "rename", move_or_die)
+        with contextlib.suppress(SystemError):
+            new_files.write_new_files(files, top)
+    there = {path for path in files if path.exists()}
+    assert top / "archgen.yaml" not in there or there == set(files)
+    if there != set(files):
+        new_files.write_new_files(files, top)
+    assert {path: path.read_bytes() for path in top.rglob("*") if path.is_file()} == files
 
 
 def test_what_appears_meanwhile_is_not_replaced(tmp_path: Path) -> None:

@@ -160,3 +160,18 @@ def test_wrong_usage_is_said(run: Run, project: Path, words: tuple[str, ...], sa
     ran = run("timing", project, *words)
     assert (ran.status, ran.out) == (2, "")
     assert said in ran.err
+
+
+BROKEN_CHAIN = """archgen: 1
+project: {id: x}
+groups: {g: {components: {a: {outputs: {o: T}}, b: {}}}}
+chains: {see: {through: [a, b]}}
+"""
+
+
+@pytest.mark.parametrize("question", [("--chain", "see"), ("--sensitivity", "see"), ("--why", "see"), ()])
+def test_a_chain_that_is_not_connected_says_where(run: Run, tmp_path: Path, question: tuple[str, ...]) -> None:
+    (tmp_path / "archgen.yaml").write_text(BROKEN_CHAIN, encoding="utf-8")
+    ran = run("timing", tmp_path, *question)
+    assert (ran.status, ran.err) == (0, "")
+    assert "no way leads from `g.a` to `g.b`" in ran.out

@@ -17,6 +17,7 @@ from click.testing import CliRunner
 from archgen.cli import main
 from archgen.forge import ForgeError, post_comment
 from archgen.forge.forge_api import ForgeApi
+from archgen.forge.time_limit import run_within
 
 
 @dataclass
@@ -207,3 +208,39 @@ def test_the_verb_says_what_it_did(forge: Forge, tmp_path: Path) -> None:
     assert CliRunner().invoke(main, ["comment", str(text)], env=job).output == "comment unchanged\n"
     done = CliRunner().invoke(main, ["comment", str(text)], env={**job, "GITHUB_TOKEN": ""})
     assert (done.exit_code, done.stderr.startswith("Error: GITHUB_TOKEN is not set")) == (1, True)
+
+
+@pytest.mark.parametrize(
+    "strange",
+    [
+        {"user": "x", "body": "b"},
+        {"user": {"login": "github-actions[bot]"}, "body": "<!-- archgen: diff -->\n"},
+        7,
+        None,
+    ],
+)
+def test_odd_comments_are_not_taken_for_ours(forge: Forge, tmp_path: Path, strange: Any) -> None:  # noqa: ANN401 - JSON
+    forge.comments.append(strange)
+    assert post_comment("text", "diff", github(forge, tmp_path)) == "created"
+
+
+def test_a_list_without_an_end_is_given_up(forge: Forge, tmp_path: Path) -> None:
+    class Endless(list[dict[str, Any]]):
+        def __getitem__(self, part: Any) -> Any:  # noqa: ANN401 - an index or a slice
+            return [{"id": 1, "user": {"login": "mallory"}, "body": ""}] * 100
+
+    forge.comments = Endless()
+    with pytest.raises(ForgeError, match="more than 5,000 comments"):
+        post_comment("text", "diff", github(forge, tmp_path))
+
+
+def test_all_requests_together_have_a_time_limit() -> None:
+    blocked = threading.Event()
+    with pytest.raises(ForgeError, match=r"no answer within 0\.05 s"):
+        run_within(0.05, blocked.wait)
+    blocked.set()
+
+
+def test_an_address_that_is_none_is_refused() -> None:
+    with pytest.raises(ForgeError, match="is no address"):
+        ForgeApi("http://[::1", {})

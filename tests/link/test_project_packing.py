@@ -151,7 +151,10 @@ groups:
     assert [d.rule for d in checked.findings if d.severity != "note"] == []
     text = text_of(checked)
     assert "          o:  # archgen: ignore[unread-output] for later\n" in text
-    assert "          p:  # archgen: ignore[unread-output, unmapped-type]\n" in text
+    assert (
+        "          p:  # archgen: ignore[unread-output]\n            type: Flagg  # archgen: ignore[unmapped-type]\n"
+        in text
+    )
     assert '  idle:  # archgen: ignore[unjustified-node] it is a "tool"\n' in text
     packed_again(checked, tmp_path)
 
@@ -261,3 +264,13 @@ def test_whatever_is_written_packs_to_a_fixed_point(tmp_path_factory: pytest.Tem
     # A reading error keeps what it may explain quiet; packed, the wrong value is gone, and then it is told.
     if not checked.has_errors:
         assert [d for d in again.findings if d.severity == "error"] == []
+
+
+def test_what_comments_silence_stays_silent_where_short_forms_are_written_out(tmp_path: Path) -> None:
+    """`points: a.b` becomes three lines; the finding points at the last of them."""
+    checked = check_project(ROOT / "examples" / "reference_system")
+    assert checked.findings == ()
+    assert checked.silenced_findings
+    again = packed_again(checked, tmp_path)
+    assert again.findings == ()
+    assert len(again.silenced_findings) == len(checked.silenced_findings)

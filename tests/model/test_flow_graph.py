@@ -38,10 +38,3 @@ nodes:
 """)
     )
     assert found.successors == {"x": ("y",)}
-
-
-def test_reach_counts_steps() -> None:
-    neighbours = {"a": ("b", "c"), "b": ("d",), "c": ("d",), "d": ("a",)}
-    assert flow_graph.find_reachable(neighbours, ["a"]) == {"a": 0, "b": 1, "c": 1, "d": 2}
-    assert flow_graph.find_reachable(neighbours, ["a"], 1) == {"a": 0, "b": 1, "c": 1}
-    assert flow_graph.find_reachable(neighbours, ["x"], 0) == {"x": 0}

@@ -67,6 +67,12 @@ def test_text_stays_text(text: str) -> None:
     assert pyyaml.safe_load(yaml_writer.write_yaml({"key": text})) == {"key": text}
 
 
+@pytest.mark.parametrize("text", [*_ODD.replace("\n", "|").split("|"), *_CONTROLS])
+def test_text_in_braces_stays_text(text: str) -> None:
+    value = {"key": text, "list": [text, {text: "x"}]}
+    assert pyyaml.safe_load(yaml_writer.format_flow(value)) == value
+
+
 @given(
     st.dictionaries(
         _TEXT,

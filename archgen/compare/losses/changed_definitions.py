@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
+from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import Interface
 
 _INNER_TYPE_KEYS = ("request", "response", "feedback")
@@ -147,14 +148,7 @@ def _messages_containing(context: ChangeContext, message_name: str) -> list[str]
         for part in definition.parts if definition else ():
             for field in part:
                 containers_by_type[field.type].append(container_name)
-    message_names = {message_name: None}
-    # The list grows while it is iterated: a breadth-first search.
-    for inner_name in (waiting := [message_name]):
-        for container_name in containers_by_type.get(inner_name, ()):
-            if container_name not in message_names:
-                message_names[container_name] = None
-                waiting.append(container_name)
-    return list(message_names)
+    return list(find_reachable(containers_by_type, [message_name]))
 
 
 def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> str:

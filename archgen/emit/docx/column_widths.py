@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -68,16 +69,16 @@ def share_width(writer: DocxWriter, content: TableContent, total: float, styles:
     """
     words, lines = _measure_columns(writer, content, styles)
     least = [min(width, total * _MAX_WORD_SHARE) for width in words]
-    if sum(least) >= total:
-        return [width * total / sum(least) for width in least]
+    if math.fsum(least) >= total:
+        return [width * total / math.fsum(least) for width in least]
     # A weight of 0 or less is no mistake to stop at: such a column gets what its words need.
     weights = [max(column.weight, 0.01) for column in content.columns]
-    shares = [total * weight / sum(weights) for weight in weights]
+    shares = [total * weight / math.fsum(weights) for weight in weights]
     desired = [max(share, min(line, share * _MAX_GROWTH)) for share, line in zip(shares, lines, strict=True)]
     extras = [max(want - need, 0) for want, need in zip(desired, least, strict=True)]
-    room = total - sum(least)
+    room = total - math.fsum(least)
     return [
-        need + room * (extra / sum(extras) if sum(extras) else 1 / len(least))
+        need + room * (extra / math.fsum(extras) if any(extras) else 1 / len(least))
         for need, extra in zip(least, extras, strict=True)
     ]
 
@@ -104,7 +105,7 @@ def _measure_cells(writer: DocxWriter, content: TableContent, styles: TableStyle
                 scale = text.size * (text.factor if not item.code else MONOSPACE_FACTOR)
                 widths = [width * scale for width in measure_words(item.text)]
                 words[index] = max(words[index], *widths, 0)
-                line_width = sum(widths) + (0.0 if item.line_break else line_width)
+                line_width = math.fsum(widths) + (0.0 if item.line_break else line_width)
                 # A blank is about a quarter of the type size.
                 lines[index] = max(lines[index], line_width + len(widths) * scale / 4)
     return [width + CELL_MARGINS for width in words], [width + CELL_MARGINS for width in lines]
@@ -115,4 +116,4 @@ def _fits_sheet(
 ) -> bool:
     """Tell whether the longest words of all columns stand beside each other; none claims more than a share of the sheet."""
     words, _ = _measure_columns(writer, content, styles)
-    return sum(min(width, sheet.text_width * max_share) for width in words) <= sheet.text_width
+    return math.fsum(min(width, sheet.text_width * max_share) for width in words) <= sheet.text_width

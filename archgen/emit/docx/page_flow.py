@@ -6,6 +6,7 @@ be close. Everything that decides them is known but the exact breaking of lines:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -40,12 +41,12 @@ class FlowPiece:
     def first_height(self) -> float:
         """Return the height of what stands on the first page at least, with the space before it."""
         whole = self.whole or len(self.rows) <= _WIDOW_LINES + 1
-        return self.before + sum(self.rows if whole else self.rows[:_WIDOW_LINES])
+        return self.before + math.fsum(self.rows if whole else self.rows[:_WIDOW_LINES])
 
     @property
     def height(self) -> float:
         """Return the height of all of it, with the spaces around it."""
-        return self.before + sum(self.rows) + self.after
+        return self.before + math.fsum(self.rows) + self.after
 
 
 def assign_sheets(pieces: Sequence[FlowPiece], base: PaperSheet) -> tuple[FlowPiece, ...]:
@@ -61,7 +62,7 @@ def assign_sheets(pieces: Sequence[FlowPiece], base: PaperSheet) -> tuple[FlowPi
         sheets.append(following)
     sheets.reverse()
     for start, end in _find_base_stretches(pieces, sheets, base):
-        if sum(piece.height for piece in pieces[start:end]) <= _MIN_PAGE_TEXT:
+        if math.fsum(piece.height for piece in pieces[start:end]) <= _MIN_PAGE_TEXT:
             before = sheets[start - 1] if start and not pieces[start].new_page else base
             after = sheets[end] if end < len(pieces) and not pieces[end].new_page else base
             sheets[start:end] = [after if after != base else before] * (end - start)

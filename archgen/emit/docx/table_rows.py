@@ -6,6 +6,7 @@ report takes 1.2 s. As text its 457 tables take 0.04 s, and less than 0.06 s to 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -59,7 +60,7 @@ def write_table_rows(
     styles = writer.styles
     heights = [_measure_row(row, frame.widths, styles.find_face(frame.styles.text)) for row in body]
     header_height = _measure_row(header, frame.widths, styles.find_face(frame.styles.heading)) if header else 0.0
-    short = header_height + sum(heights) <= _SHORT_HEIGHT
+    short = header_height + math.fsum(heights) <= _SHORT_HEIGHT
     # A template's plain grid does not tell its first row from the others.
     shade = _HEADER_SHADE if styles.find_style_id(frame.style) == styles.find_style_id("Table Grid") else ""
     starts = [f'<w:tc><w:tcPr><w:tcW w:w="{points_to_twips(width)}" w:type="dxa"/>' for width in frame.widths]
@@ -78,7 +79,7 @@ def write_table_rows(
     xml = _format_opening(writer, frame, headed=bool(header)) + "".join(rows) + "</w:tbl>" + _format_spacer(writer)
     # What stays together is one row to the estimate of pages.
     together = heights if short else heights[:2]
-    piece_rows = (header_height + sum(together), *heights[len(together) :], _SPACER_HEIGHT)
+    piece_rows = (header_height + math.fsum(together), *heights[len(together) :], _SPACER_HEIGHT)
     return FlowPiece(xml, piece_rows, repeat=header_height, sheet=frame.sheet)
 
 

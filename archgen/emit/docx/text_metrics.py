@@ -6,6 +6,7 @@ what is estimated here only fills in the page numbers that it shows until the fi
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from dataclasses import dataclass
 from functools import lru_cache
@@ -58,7 +59,7 @@ class TextFace:
 @lru_cache(maxsize=65536)
 def measure_word(word: str) -> float:
     """Return the width of a word, in units of the type size."""
-    return sum(_measure_character(ord(sign)) for sign in word) / 1000
+    return math.fsum(_measure_character(ord(sign)) for sign in word) / 1000
 
 
 @lru_cache(maxsize=65536)

@@ -117,7 +117,7 @@ def _choose_scale(chart: Chart, title_width: float, value_width: float) -> _Char
     """Choose the scale so that all known stretches fit, the limit too unless it is far away, and unknown ones have
     room.
     """
-    bar_ends = [bar.start + sum(each.length or 0.0 for each in bar.segments) for bar in chart.bars]
+    bar_ends = [bar.start + math.fsum(each.length or 0.0 for each in bar.segments) for bar in chart.bars]
     maximum = max([*bar_ends, *(bar.mark for bar in chart.bars if bar.mark is not None)], default=0.0)
     if chart.limit and (not maximum or chart.limit[0] <= _FAR_LIMIT_FACTOR * maximum):
         maximum = max(maximum, chart.limit[0])
@@ -163,9 +163,9 @@ def _stretch_widths(stretches: Sequence[BarSegment], factor: float) -> list[floa
     does.
     """
     exact_widths = [(each.length or 0.0) * factor for each in stretches]
-    thin_total = sum(_HAIRLINE for width in exact_widths if 0 < width < _HAIRLINE)
-    thick_total = sum(width for width in exact_widths if width >= _HAIRLINE)
-    share = max(sum(exact_widths) - thin_total, 0.0) / thick_total if thick_total else 1.0
+    thin_total = math.fsum(_HAIRLINE for width in exact_widths if 0 < width < _HAIRLINE)
+    thick_total = math.fsum(width for width in exact_widths if width >= _HAIRLINE)
+    share = max(math.fsum(exact_widths) - thin_total, 0.0) / thick_total if thick_total else 1.0
     return [
         0.0 if not width else _HAIRLINE if width < _HAIRLINE else max(width * share, _HAIRLINE)
         for width in exact_widths

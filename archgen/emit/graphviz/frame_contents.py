@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import StyledGraph, measure_nodes, read_layout, write_dot
+from archgen.model.graph_search import find_strong_components
 from archgen.views.shapes import Arrow, Box
 
 _PIECE_GAP = 12.0
@@ -23,7 +24,7 @@ def lay_out_inside(
     pieces = [_lay_out_part(styled_graph, part, arrows) for part in _connected_parts(boxes, arrows)]
     sizes = [scene.bounds() for scene in pieces]
     widest = max((bounds[2] - bounds[0] for bounds in sizes), default=0.0)
-    total = sum(bounds[2] - bounds[0] + _PIECE_GAP for bounds in sizes)
+    total = math.fsum(bounds[2] - bounds[0] + _PIECE_GAP for bounds in sizes)
     widths = [bounds[2] - bounds[0] for bounds in sizes]
     # Row widths from the widest piece alone to everything in one row; narrow steps where most good packings are.
     row_choices = [
@@ -42,21 +43,16 @@ def _shape_cost(scene: Scene, aspect_ratio: float) -> float:
 
 def _connected_parts(boxes: Sequence[Box], arrows: Sequence[NumberedArrow]) -> list[list[Box]]:
     """Split boxes into connected parts, the largest first, else in order."""
-    # Union-find: each box points to another one of its part, its root to itself.
-    root = {box.id: box.id for box in boxes}
-
-    def find_root(box_id: str) -> str:
-        while root[box_id] != box_id:
-            box_id = root[box_id]
-        return box_id
-
+    boxes_by_id = {box.id: box for box in boxes}
+    neighbours: dict[str, list[str]] = {box_id: [] for box_id in boxes_by_id}
     for _, arrow in arrows:
-        if arrow.tail in root and arrow.head in root:
-            root[find_root(arrow.head)] = find_root(arrow.tail)
-    parts: dict[str, list[Box]] = {}
-    for box in boxes:
-        parts.setdefault(find_root(box.id), []).append(box)
-    return sorted(parts.values(), key=lambda part: -len(part))
+        if arrow.tail in boxes_by_id and arrow.head in boxes_by_id:
+            neighbours[arrow.tail].append(arrow.head)
+            neighbours[arrow.head].append(arrow.tail)
+    position = {box_id: number for number, box_id in enumerate(boxes_by_id)}
+    parts = find_strong_components(neighbours, neighbours.__getitem__)
+    parts.sort(key=lambda part: (-len(part), position[part[0]]))
+    return [[boxes_by_id[box_id] for box_id in part] for part in parts]
 
 
 def _lay_out_part(styled_graph: StyledGraph, boxes: Sequence[Box], arrows: Sequence[NumberedArrow]) -> Scene:

@@ -61,7 +61,7 @@ def _bounds_of(points: Sequence[ScenePoint]) -> Rectangle:
 
 def line_length(line: SceneLine) -> float:
     """Measure the length of a line, in points."""
-    return sum(math.dist(one, other) for one, other in _line_segments(line))
+    return math.fsum(math.dist(one, other) for one, other in _line_segments(line))
 
 
 def _line_segments(line: SceneLine) -> list[LineSegment]:

@@ -152,8 +152,8 @@ def _estimate_cost(
 
     `sizes` are along and across the rows.
     """
-    along_rows = max(sum(sizes[item][0] + 30 for item in row) for row in rows)
-    across = sum(max(sizes[item][1] for item in row) + 40 for row in rows)
+    along_rows = max(math.fsum(sizes[item][0] + 30 for item in row) for row in rows)
+    across = math.fsum(max(sizes[item][1] for item in row) + 40 for row in rows)
     total_width, total_height = (along_rows, across) if direction == "TB" else (across, along_rows)
     positions = {item: (at, to) for at, row in enumerate(rows) for to, item in enumerate(row)}
     passed_boxes = 0
@@ -239,7 +239,9 @@ def _scene_cost(scene: Scene, outer_lines: Sequence[SceneLine], arrows: Sequence
     back.
     """
     left, bottom, right, top = scene.bounds()
-    relative_length = sum(line_length(line) for line in outer_lines) / (sum(_PAGE_SIZE) * max(len(outer_lines), 1))
+    relative_length = math.fsum(line_length(line) for line in outer_lines) / (
+        math.fsum(_PAGE_SIZE) * max(len(outer_lines), 1)
+    )
     missing = len(arrows) - len(outer_lines)
     return (
         _page_overflow(right - left, top - bottom) * (1 + 0.5 * relative_length + 0.6 * _backward_share(scene, arrows))

@@ -5,6 +5,7 @@ These are functions, not template macros: measured on 350 pages they take a quar
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -185,7 +186,7 @@ def _write_heads(columns: Iterable[Column]) -> str:
 
 def _write_widths(columns: tuple[Column, ...]) -> str:
     """Return the columns' shares of the width, where they differ. A browser takes them as hints."""
-    total = sum(column.weight for column in columns)
+    total = math.fsum(column.weight for column in columns)
     if len({column.weight for column in columns}) == 1 or not total:
         return ""
     cols = "".join([f'<col style="width:{column.weight / total * 100:.3g}%">' for column in columns])

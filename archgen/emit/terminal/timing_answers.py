@@ -8,7 +8,7 @@ from typing import Any
 
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
-from archgen.emit.terminal.timing_text import AlignedRow, align_columns, format_figure
+from archgen.emit.terminal.timing_text import AlignedRow, align_columns, describe_gaps, format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity
 from archgen.timing.chains.figure_explanations import ReasonLine
@@ -127,6 +127,9 @@ def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
 
 def format_sensitivity(chain: ChainResult, ranking: ChainSensitivity) -> Iterator[str]:
     """Yield a ranking of what decides a chain."""
+    if not chain.terms:
+        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain)}"
+        return
     yield f"{chain.id}: {format_figure(chain.bound)}"
     yield ""
     if ranking.gains:

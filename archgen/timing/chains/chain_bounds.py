@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Literal
 
 from archgen.frozen import dataclass
@@ -19,8 +20,6 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, sum_bounds
 from archgen.timing.system.timing_system import Arc
-
-NO_PATH = TimingValue(None, complete=False, assumptions=("no way leads through all elements",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +47,7 @@ def bound_chain(
     network = network or CostNetwork.of_analysis(analysis)
     chain_points = chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
     regions = chain_regions.lay_out_chain(network, chain_points)
-    return _build_result(network, regions, asked_chain)
+    return _build_result(network, regions, asked_chain, chain_points)
 
 
 def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainResult]:
@@ -124,15 +123,22 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
 
 
 def _build_result(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], asked_chain: Chain
+    network: CostNetwork,
+    regions: Sequence[chain_regions.RouteRegion],
+    asked_chain: Chain,
+    chain_points: Sequence[chain_regions.ChainPoint],
 ) -> ChainResult:
-    """Return all figures of a chain, with the terms of its worst path."""
+    """Return all figures of a chain, with the terms of its worst path; without terms where there is no path."""
     deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
     path_set = _paths_for_aim(network, regions, "bound") if regions else None
     path = next(path_set.best_paths(), None) if path_set else None
     if asked_chain.unresolved or path_set is None or path is None:
         waypoint_ids = tuple(point.id for point in asked_chain.through)
-        no_bound = _unresolved_value(asked_chain.unresolved) if asked_chain.unresolved else NO_PATH
+        no_bound = (
+            _unresolved_value(asked_chain.unresolved)
+            if asked_chain.unresolved
+            else _unconnected_value(network, asked_chain, chain_points)
+        )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
     return ChainResult(
@@ -153,6 +159,20 @@ def _unresolved_value(words: tuple[str, ...]) -> TimingValue:
     return TimingValue(
         None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words)
     )
+
+
+def _unconnected_value(
+    network: CostNetwork, asked_chain: Chain, chain_points: Sequence[chain_regions.ChainPoint]
+) -> TimingValue:
+    """Return the value of a chain without a path, which names the first two elements that no path joins."""
+    for (source, target), pair in zip(pairwise(asked_chain.through), pairwise(chain_points), strict=True):
+        regions = chain_regions.lay_out_between(network, pair)
+        path_set = _paths_for_aim(network, regions, "bound") if regions else None
+        if path_set is None or next(path_set.best_paths(), None) is None:
+            gap = f"no way leads from `{source.id}` to `{target.id}`"
+            return TimingValue(None, complete=False, assumptions=(gap,))
+    # Each two are joined, but not by paths that meet in one and the same activity of the element between them.
+    return TimingValue(None, complete=False, assumptions=("no way leads through all elements",))
 
 
 def _note_event_start(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:

@@ -10,6 +10,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.declared_timing import Timing
+from archgen.model.graph_search import find_reachable
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_chain
@@ -64,6 +65,8 @@ def find_sensitivity(
     """
     analysis = analyse(architecture)
     current_result = results[asked_chain.id]
+    if not current_result.terms:  # open: no path, so no figure bears on it
+        return ChainSensitivity((), (), 0)
     candidates = list(_improved_architectures(architecture, analysis, current_result))
     gains: list[FigureGain] = []
     for figure, written, span, changed_architecture in candidates[:MAX_TRIED_FIGURES]:
@@ -136,13 +139,11 @@ def _improve_timing(timing: Timing, figure: str, quantity: Quantity) -> Timing:
 def _relevant_activities(analysis: Analysis, result: ChainResult) -> list[str]:
     """Return the activities that bear on a chain: its own, what fires them, and what shares their hosts."""
     arrivals, activities = TriggerArrivals(analysis), analysis.system.activities
-    relevant_ids = dict.fromkeys(result.through)
-    queue = list(relevant_ids)
-    for name in queue:
-        for arc in analysis.system.arcs_into.get(name, ()):
-            if arrivals.fires_reader(arc) and arc.source not in relevant_ids:
-                relevant_ids[arc.source] = None
-                queue.append(arc.source)
+    firing_sources = {
+        name: [arc.source for arc in arcs if arrivals.fires_reader(arc)]
+        for name, arcs in analysis.system.arcs_into.items()
+    }
+    relevant_ids = dict.fromkeys(find_reachable(firing_sources, result.through))
     hosts = {activities[name].host for name in result.through} - {None}
     relevant_ids |= dict.fromkeys(name for name, activity in activities.items() if activity.host in hosts)
     return list(relevant_ids)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from archgen.frozen import dataclass
-from archgen.timing.system.strong_components import find_rings
+from archgen.model.graph_search import find_reachable, find_rings
 
 MAX_STATES = 20_000
 """How many states the unfolding of loops may make before arcs that lead back are cut instead."""
@@ -86,16 +85,7 @@ class StateGraph:
         for state, hops in enumerate(self.hops):
             for hop in hops:
                 predecessors[hop.target].append(state)
-        reaches_end = bytearray(len(self.hops))
-        queue = deque(self.end_states)
-        for state in queue:
-            reaches_end[state] = 1
-        while queue:
-            for state in predecessors[queue.popleft()]:
-                if not reaches_end[state]:
-                    reaches_end[state] = 1
-                    queue.append(state)
-        return [state for state in range(len(reaches_end)) if reaches_end[state]]
+        return sorted(find_reachable(dict(enumerate(predecessors)), self.end_states))
 
 
 def _number_state(

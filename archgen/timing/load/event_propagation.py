@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, unite_causes
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import (
@@ -28,7 +29,6 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, find_resources
-from archgen.timing.system.strong_components import find_strong_components
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from archgen.timing.system.strong_components import find_strong_components
+from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
 ThreadUnit = tuple[str, ...]

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.frozen import dataclass
-from archgen.timing.system.strong_components import find_strong_components
+from archgen.model.graph_search import find_strong_components, is_ring
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 
 
@@ -49,7 +49,7 @@ def find_triggers(system: TimingSystem) -> TriggerGraph:
     open_inputs = frozenset((name, key) for name, keys in gated_inputs.items() for key in keys)
     cut_successors = search.find_successors(open_inputs) if open_inputs else successors
     ordered_rings = find_strong_components(system.activities, cut_successors.__getitem__) if open_inputs else rings
-    unknown_rates = {member for ring in ordered_rings if search.is_ring(ring, cut_successors) for member in ring}
+    unknown_rates = {member for ring in ordered_rings if is_ring(ring, cut_successors) for member in ring}
     # From here on only what is wrong: activities that never fire, rings that never rest.
     firing = search.find_firing()
     return TriggerGraph(
@@ -121,10 +121,6 @@ class _TriggerSearch:
                     yield from arcs
                 yield from self.requests[name]
 
-    def is_ring(self, members: tuple[str, ...], successors: Mapping[str, list[str]]) -> bool:
-        """Whether a strong component holds a loop: several members, or one that fires itself."""
-        return len(members) > 1 or members[0] in successors[members[0]]
-
     def find_gates(self, name: str, ring: tuple[str, ...]) -> tuple[str, ...]:
         """Return the inputs by which a ring enters an all-of activity that also waits for something from outside."""
         activity = self.system.activities[name]
@@ -191,7 +187,7 @@ class _TriggerSearch:
             if arc.target not in gated_names and self._surely_fires(arc) and self._can_start(arc.target, firing):
                 successors[arc.source].append(arc.target)
         for ring in find_strong_components(self.system.activities, successors.__getitem__):
-            if self.is_ring(ring, successors):
+            if is_ring(ring, successors):
                 yield ring
 
     def _can_start(self, name: str, firing: frozenset[str]) -> bool:
@@ -216,7 +212,7 @@ class _TriggerSearch:
             if ring[0] in firing:
                 continue
             waits_for_all = any(self.system.activities[name].mode == "all" for name in ring)
-            if (waits_for_all and self.is_ring(ring, successors)) or any(self.unfed_inputs(name) for name in ring):
+            if (waits_for_all and is_ring(ring, successors)) or any(self.unfed_inputs(name) for name in ring):
                 yield ring
 
     def unfed_inputs(self, name: str) -> tuple[str, ...]:

@@ -196,4 +196,4 @@ def test_nothing_leads_there() -> None:
     found = analysis([periodic("a", 10), periodic("b", 10)], [], {"a": 1, "b": 1}, {"a": 10, "b": 10})
     result = _one(found, "a", "b", deadline=100)
     assert (result.bound.value, result.verdict) == (None, "open")
-    assert result.bound.assumptions == ("no way leads through all elements",)
+    assert result.bound.assumptions == ("no way leads from `a` to `b`",)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from archgen.timing.chains.chain_bounds import bound_all_chains, find_data_age
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.loop_rounds import find_loop_rounds
-from archgen.timing.system.strong_components import find_rings
 from tests.timing.made import analysis, arc, architecture, event, ms, periodic
 
 
@@ -20,12 +19,6 @@ def test_one_round_is_the_sum_over_its_edges() -> None:
     assert only.through == ("ctrl", "motor", "sense", "ctrl")
     assert only.members == 3
     assert only.latency == ms(0 + 2 + 5 + 3 + 10 + 1)
-
-
-def test_rings_are_found_without_recursion() -> None:
-    chain = {at: [at + 1] for at in range(50_000)}
-    assert find_rings(chain) == []
-    assert find_rings({**chain, 50_000: [49_999], 7: [7, 8]}) == [(7,), (49_999, 50_000)]
 
 
 def test_data_of_an_event_is_the_newest_until_the_next_event_comes() -> None:

@@ -1,15 +1,43 @@
-"""Strongly connected components and loops, without recursion (R. Tarjan, 1972, with an explicit stack)."""
+"""The searches on graphs that the whole package shares: what can be reached, strong components, rings, parts.
+
+Plain dictionaries and functions instead of networkx, whose import alone takes a third of a whole `archgen check`
+(docs/decisions/0009-graphs.md).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import Generic, TypeVar
 
 T = TypeVar("T", bound=Hashable)
 
 
+def find_reachable(
+    neighbours: Mapping[T, Collection[T]], starts: Iterable[T], max_steps: int | None = None
+) -> dict[T, int]:
+    """Return all elements that can be reached, the starts included, nearest first, each with its least number of steps.
+
+    `max_steps` limits the number of steps; None is no limit.
+    """
+    distances = dict.fromkeys(starts, 0)
+    frontier, distance = list(distances), 0
+    while frontier and (max_steps is None or distance < max_steps):
+        distance += 1
+        next_frontier: list[T] = []
+        for element in frontier:
+            for neighbour in neighbours.get(element, ()):
+                if neighbour not in distances:
+                    distances[neighbour] = distance
+                    next_frontier.append(neighbour)
+        frontier = next_frontier
+    return distances
+
+
 def find_strong_components(elements: Iterable[T], successors: Callable[[T], Iterable[T]]) -> list[tuple[T, ...]]:
-    """Return the strong components, each behind all that lead to it; members are in the order of `elements`."""
+    """Return the strong components, each behind all that lead to it; members are in the order of `elements`.
+
+    Where each element is a successor of its successors, these are the connected parts.
+    """
     order = list(elements)
     position = {element: index for index, element in enumerate(order)}
     search = _TarjanSearch(successors)
@@ -27,12 +55,17 @@ def find_rings(successors: Mapping[T, Sequence[T]]) -> list[tuple[T, ...]]:
     """Return the components that hold a loop, in order of appearance."""
     all_components = find_strong_components(successors, lambda element: successors.get(element, ()))
     position = {element: index for index, element in enumerate(successors)}
-    looped_rings = (ring for ring in all_components if len(ring) > 1 or ring[0] in successors.get(ring[0], ()))
-    return sorted(looped_rings, key=lambda ring: position[ring[0]])
+    rings = (component for component in all_components if is_ring(component, successors))
+    return sorted(rings, key=lambda ring: position[ring[0]])
+
+
+def is_ring(component: Sequence[T], successors: Mapping[T, Sequence[T]]) -> bool:
+    """Return whether a strong component holds a loop: several members, or one that is its own successor."""
+    return len(component) > 1 or component[0] in successors.get(component[0], ())
 
 
 class _TarjanSearch(Generic[T]):
-    """One depth-first search."""
+    """One depth-first search (R. Tarjan, 1972), with an explicit stack instead of recursion."""
 
     def __init__(self, successors: Callable[[T], Iterable[T]]) -> None:
         self.numbers: dict[T, int] = {}

@@ -1,0 +1,78 @@
+"""Start-up time is a feature: a verb imports what it needs, and nothing that is slow to import without need."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.running import RAMCIP, ROOT
+
+HEAVY = {
+    "asyncio",
+    "docx",
+    "http",
+    "jinja2",
+    "lxml",
+    "markdown_it",
+    "networkx",
+    "numpy",
+    "pygraphviz",
+    "ruamel",
+    "xml.dom",
+}
+LISTING = """
+import json, sys
+from archgen.__main__ import main
+try:
+    main()
+except SystemExit:
+    pass
+with open({file!r}, "w") as file:
+    json.dump(sorted(sys.modules), file)
+"""
+
+
+def imported_modules(folder: Path, *words: str) -> set[str]:
+    """Run a verb with a cache of its own, so that nothing is taken from an earlier run; list what it imported."""
+    file = folder / "modules.json"
+    code = LISTING.format(file=str(file))
+    environment = {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache"), "PATH": "/usr/bin:/bin"}
+    ran = subprocess.run([sys.executable, "-c", code, *words], cwd=folder, env=environment, capture_output=True)  # noqa: S603, PLW1510
+    assert b"Traceback" not in ran.stderr
+    return set(json.loads(file.read_text(encoding="utf-8")))
+
+
+def test_the_package_alone_imports_nothing_heavy() -> None:
+    code = "import sys, archgen; print(*sorted(sys.modules), sep='\\n')"
+    ran = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=True)  # noqa: S603
+    assert HEAVY & set(ran.stdout.decode().split()) == set()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("--help",), ("--version",), ("check", "--help"), ("check", str(RAMCIP)), ("stats", str(RAMCIP))],
+    ids=" ".join,
+)
+def test_a_verb_imports_nothing_heavy_without_need(tmp_path: Path, words: tuple[str, ...]) -> None:
+    assert HEAVY & imported_modules(tmp_path, *words) == set()
+
+
+def test_build_needs_neither_ruamel_nor_networkx(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "build", str(ROOT / "examples/first_robot"), "-o", "out")
+    assert (tmp_path / "out/packed.yaml").exists()
+    assert {"networkx", "ruamel.yaml"} & modules == set()
+
+
+def test_the_baseline_is_written_without_ruamel(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "check", str(RAMCIP), "--baseline", "b.yaml", "--update-baseline")
+    assert (tmp_path / "b.yaml").exists()
+    assert HEAVY & modules == set()
+
+
+def test_a_new_project_is_written_by_ruamel(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text("Group,Component\narm,grip\n", encoding="utf-8")
+    assert "ruamel.yaml" in imported_modules(tmp_path, "init", "robot", "--from", "t.csv", "--yes")
