@@ -36,7 +36,7 @@ def test_the_example_flows_from_the_first_group_to_the_last(names: tuple[str, ..
 @pytest.mark.parametrize("title", ["A: b", "# x", "'", "[[ 7 * 7 ]]", "{% x %}", "a\nb", "機械"])
 def test_any_title_is_text_and_nothing_else(title: str) -> None:
     answers = replace(start_answers.collect_answers("robot"), title=title)
-    data = yaml.safe_load(start_templates.fill_project_file(answers, {}, {}, sources=False))
+    data = yaml.safe_load(start_templates.fill_project_file(answers, sources=False))
     assert " ".join(data["project"]["title"].split()) == " ".join(title.split())
     assert b"49" not in start_templates.fill_readme(answers)
 
