@@ -4,18 +4,19 @@ PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
 
-.PHONY: demo test check lint format bench mutants golden pages clean
+.PHONY: demo test test-all check lint format bench mutants golden pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
 help:
-	@echo "make demo    set up, and make report, site, diagrams and packed file of example_ramcip"
-	@echo "make test    set up, and run all tests"
-	@echo "make check   ruff, mypy, lint-imports and all tests"
-	@echo "make bench   measure speed and scale"
-	@echo "make golden  renew the expected outputs of example_ramcip"
-	@echo "make mutants change one condition at a time, and see which changes no test notices"
-	@echo "make pages   renew what is generated from the code: rule pages, interface data"
+	@echo "make demo      set up, and make report, site, diagrams and packed file of example_ramcip"
+	@echo "make check     ruff, mypy, lint-imports and the tests of make test"
+	@echo "make test      set up, and run the tests that take at most 20 s each"
+	@echo "make test-all  all tests: also those that take longer, build a wheel or need an installed ROS"
+	@echo "make mutants   change one condition at a time, and see which changes no test notices"
+	@echo "make bench     measure speed and scale"
+	@echo "make golden    renew the expected outputs of example_ramcip"
+	@echo "make pages     renew what is generated from the code: rule pages, interface data"
 
 demo: .make/run
 	$(BIN)/archgen build example_ramcip -o archgen-out/example_ramcip
@@ -24,6 +25,9 @@ demo: .make/run
 
 test: .make/test
 	$(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
+
+test-all: .make/test
+	$(BIN)/python -m pytest -m "" -n auto --dist worksteal $(TESTS)
 
 check: lint test
 

@@ -16,6 +16,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.transform import transform_architecture
+from tests import property_sizes
 from tests.running import RAMCIP, REVISION, archgen, made_once
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
@@ -72,6 +73,10 @@ def derived() -> Callable[[str], Architecture]:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-golden", action="store_true", help="Renew what stands in tests/golden.")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    property_sizes.choose_profile(config)
 
 
 @pytest.fixture(scope="session")

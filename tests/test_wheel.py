@@ -21,6 +21,7 @@ import pytest
 from archgen import __version__
 from tests.running import REVISION, ROOT, contents, made_once
 
+pytestmark = pytest.mark.build
 NAME = f"archgen-{__version__}"
 DATA = ("backends", "schemas", "start", "example_ramcip", "ros_type_mapper.yaml")
 LEFT_OUT = {"__pycache__", "archgen-out"}

@@ -88,8 +88,7 @@ def _find_scopes(architecture: Architecture) -> dict[str, frozenset[tuple[str, s
         group_scope = {("group", group.id)}
         scopes[group.id] = frozenset(group_scope | {("partner", owner) for owner in group.owners})
         for component in group.components.values():
-            # {("partner", owner) for owner in component.owners or ("",)}) | The partner "" collects the components that
-            # nobody owns.
+            # The partner "" collects the components that nobody owns.
             scopes[component.id] = frozenset(group_scope | {("partner", owner) for owner in component.owners or ("",)})
     for node in architecture.nodes.values():
         implemented_scopes = frozenset[tuple[str, str]]().union(

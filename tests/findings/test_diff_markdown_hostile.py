@@ -21,6 +21,7 @@ from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
 from tests.emit.markdown.test_comparison_markdown import ROBOT, comparison
 from tests.findings.hostile_findings import HOSTILE
 from tests.findings.rendered import CALLS, inner, shape, tokens, words
+from tests.property_sizes import count_examples
 
 MARKS = "@#!$%~&^*_`<>[]()|\\\"':;/.-+={}\n\t \u200b\u202e\x00a1fW"
 PIECES = [
@@ -132,7 +133,7 @@ def check(found: Comparison, text: str) -> None:
 
 
 @given(TEXTS)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=count_examples(150), deadline=None)
 def test_no_text_changes_the_form_or_calls_anybody(sound: Comparison, text: str) -> None:
     check(sound, text)
 

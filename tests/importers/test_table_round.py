@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from archgen import importers
 from archgen.pipeline import CheckedProject, check_project
 from archgen.start import start_answers, start_plan, starter_slices
+from tests.property_sizes import count_examples
 from tests.running import RAMCIP, ROOT, archgen
 
 FIRST = ROOT / "examples" / "first_robot"
@@ -69,7 +70,7 @@ HEADS = st.sampled_from(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=count_examples(150), deadline=None)
 @given(
     st.lists(HEADS, min_size=2, max_size=7), st.lists(st.lists(NAMES, max_size=7), max_size=6), st.sampled_from(",;\t")
 )
@@ -82,7 +83,7 @@ def test_whatever_stands_in_a_table_checks_without_an_error(heads: list[str], ro
         assert found.diagnostics
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=count_examples(100), deadline=None)
 @given(st.binary(max_size=200))
 def test_no_bytes_are_too_strange(data: bytes) -> None:
     read(b"Group,Component,Inputs\n" + data)

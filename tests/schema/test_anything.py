@@ -12,6 +12,7 @@ from archgen.link.slice_merging import merge_documents
 from archgen.schema import normalise_document, validate_document
 from archgen.schema.schema_validation import load_schema
 from archgen.syntax import yaml_parser
+from tests.property_sizes import count_examples
 
 
 def _names(part: Any) -> set[str]:  # noqa: ANN401
@@ -75,7 +76,7 @@ DOCUMENTS = st.one_of(
 )
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=count_examples(400), deadline=None)
 @given(st.lists(DOCUMENTS, min_size=1, max_size=3))
 def test_any_data(trees: list[object]) -> None:
     documents = []
@@ -93,7 +94,7 @@ def test_any_data(trees: list[object]) -> None:
     merge_documents(documents)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=count_examples(300), deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes(data: bytes) -> None:
     document, found = yaml_parser.parse_yaml("f", data.decode("latin-1"))

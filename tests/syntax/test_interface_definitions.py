@@ -243,6 +243,7 @@ def test_parts_have_their_own_names() -> None:
     assert parts(definition) == [[["a", "int32", ""]], [["a", "int32", ""], ["ok", "bool", ""]], []]
 
 
+@pytest.mark.ros
 def test_ros_agrees_with_the_tables() -> None:
     cases = [(False, "demo_msgs/msg/Foo", text) for text, _ in (*VALID_2, *INVALID_2)]
     cases += [(True, "demo_msgs/msg/Foo", text) for text, _ in (*VALID_1, *INVALID_1)]
@@ -287,6 +288,7 @@ def made_up_line(source: random.Random) -> str:
     return source.choice(TYPES) + gap + source.choice(NAMES) + equals + source.choice(VALUES) + comment
 
 
+@pytest.mark.ros
 def test_ros_agrees_on_made_up_definitions() -> None:
     """ROS 2: the same in every case. ROS 1: what genmsg refuses we refuse, and what we take it reads the same.
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from archgen.diagnostics.source_span import Span
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlDocument, YamlNode, node_to_data
+from tests.property_sizes import count_examples
 
 
 def read(text: str) -> YamlDocument:
@@ -222,7 +223,7 @@ YAMLISH = st.lists(
 ).map("".join)  # fmt: skip
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=count_examples(400), deadline=None)
 @given(st.one_of(YAMLISH, st.text()))
 def test_any_text_gives_a_tree_or_a_place(text: str) -> None:
     document, found = yaml_parser.parse_yaml("f", text)
@@ -233,7 +234,7 @@ def test_any_text_gives_a_tree_or_a_place(text: str) -> None:
         assert 1 <= diagnostic.span.column <= len(lines[diagnostic.span.line - 1]) + 1
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=count_examples(200), deadline=None)
 @given(YAMLISH)
 def test_both_parsers_agree_where_both_read(text: str) -> None:
     fast, _ = yaml_parser.parse_yaml("f", text)

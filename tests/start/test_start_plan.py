@@ -1,0 +1,69 @@
+"""Which files a new project gets, and where they go."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from archgen.start import start_answers, start_plan, starter_slices
+from archgen.start.start_answers import ForgeName, GroupAnswer, PartnerAnswer, StartAnswers
+
+ANSWERS = replace(
+    start_answers.collect_answers("robot"),
+    partners=(PartnerAnswer("certh", "CERTH", "@certh"),),
+    groups=(GroupAnswer("sensing", "Sensing", "certh"),),
+)
+
+
+def _plan(folder: Path, answers: StartAnswers = ANSWERS) -> start_plan.StartPlan:
+    files = starter_slices.example_files(answers, has_other_yaml=False)
+    return start_plan.plan_files(folder, answers, files, start_plan.judge_files(files, "robot"))
+
+
+def _names(plan: start_plan.StartPlan) -> set[str]:
+    return {path.relative_to(plan.repository_folder).as_posix() for path in plan.files}
+
+
+@pytest.mark.parametrize(
+    ("forge", "name"), [("github", ".github/workflows/architecture.yml"), ("gitlab", ".gitlab-ci.yml"), ("none", "")]
+)
+def test_what_a_forge_reads_stands_at_the_top_of_the_repository(tmp_path: Path, forge: ForgeName, name: str) -> None:
+    (tmp_path / ".git").mkdir()
+    names = _names(_plan(tmp_path / "robot", replace(ANSWERS, forge=forge)))
+    assert {"robot/archgen.yaml", "robot/groups/sensing.yaml", "robot/README.md", "CODEOWNERS"} <= names
+    assert {other for other in names if other.startswith(".")} == ({name} if name else set())
+
+
+def test_outside_of_a_repository_all_stands_in_the_project(tmp_path: Path) -> None:
+    assert _plan(tmp_path / "robot").repository_folder == tmp_path / "robot"
+
+
+def test_what_exists_stays_even_a_broken_link(tmp_path: Path) -> None:
+    (tmp_path / "README.md").symlink_to("gone")
+    plan = _plan(tmp_path)
+    assert plan.existing_files == (tmp_path / "README.md",)
+    assert "README.md" not in _names(plan)
+
+
+def test_code_owners_are_written_where_they_are_already(tmp_path: Path) -> None:
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "CODEOWNERS").touch()
+    plan = _plan(tmp_path)
+    assert plan.existing_files == (tmp_path / "docs" / "CODEOWNERS",)
+    assert "CODEOWNERS" not in _names(plan)
+
+
+@pytest.mark.parametrize(("reviewers", "missing"), [("", True), ("@certh", False)])
+def test_partners_without_reviewers_are_noticed(tmp_path: Path, reviewers: str, missing: bool) -> None:  # noqa: FBT001
+    plan = _plan(tmp_path, replace(ANSWERS, partners=(PartnerAnswer("certh", "CERTH", reviewers),)))
+    assert plan.reviewers_missing is missing
+    assert ("CODEOWNERS" in _names(plan)) is not missing
+
+
+def test_other_yaml_files_are_noticed(tmp_path: Path) -> None:
+    assert not start_plan.has_other_yaml(tmp_path)
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "launch" / "params.yaml").touch()
+    assert start_plan.has_other_yaml(tmp_path)

@@ -1,0 +1,61 @@
+"""What a new project begins with: a flow from a sensor to an actuator, whatever groups the user names."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from archgen.start import start_answers, start_plan, start_templates, starter_slices
+from archgen.start.start_answers import GroupAnswer
+
+
+@pytest.mark.parametrize(
+    ("names", "kinds"),
+    [
+        (("one",), [["sensor", "step", "actuator"]]),
+        (("one", "two"), [["sensor"], ["step", "actuator"]]),
+        (("one", "two", "three"), [["sensor"], ["step"], ["actuator"]]),
+        (("one", "two", "three", "four"), [["sensor"], ["step"], ["step"], ["actuator"]]),
+    ],
+)
+def test_the_example_flows_from_the_first_group_to_the_last(names: tuple[str, ...], kinds: list[list[str]]) -> None:
+    answers = replace(start_answers.collect_answers("robot"), groups=tuple(GroupAnswer(name, name) for name in names))
+    files = start_templates.fill_group_files(answers)
+    components = [
+        yaml.safe_load(data)["groups"][name]["components"] for name, data in zip(names, files.values(), strict=True)
+    ]
+    assert [len(each) for each in components] == [len(each) for each in kinds]
+    checked = start_plan.judge_files(starter_slices.example_files(answers, has_other_yaml=False), "robot")
+    assert [finding for finding in checked.findings if finding.severity == "error"] == []
+    assert len(checked.architecture.connections) == sum(map(len, kinds)) - 1
+
+
+@pytest.mark.parametrize("title", ["A: b", "# x", "'", "[[ 7 * 7 ]]", "{% x %}", "a\nb", "機械"])
+def test_any_title_is_text_and_nothing_else(title: str) -> None:
+    answers = replace(start_answers.collect_answers("robot"), title=title)
+    data = yaml.safe_load(start_templates.fill_project_file(answers, sources=False))
+    assert " ".join(data["project"]["title"].split()) == " ".join(title.split())
+    assert b"49" not in start_templates.fill_readme(answers)
+
+
+@pytest.mark.parametrize("folder", ["", "robot", "a b", "${{ secrets.X }}", "ro'bot"])
+def test_a_folder_is_no_expression_of_a_workflow(folder: str) -> None:
+    workflow = start_templates.fill_workflow(folder).decode()
+    yaml.safe_load(workflow)
+    assert "${{ secrets" not in workflow
+    assert ("paths:" in workflow) == (folder == "robot")
+
+
+@pytest.mark.parametrize(("folder", "written"), [("", "."), ("$HOME", "$$HOME"), ("robot", "robot")])
+def test_a_folder_is_no_variable_of_a_pipeline(folder: str, written: str) -> None:
+    assert written in start_templates.fill_pipeline(folder).decode()
+    yaml.safe_load(start_templates.fill_pipeline(folder))
+
+
+def test_the_schema_for_editors_is_the_shipped_one() -> None:
+    compact = start_templates.compact_schema()
+    assert json.loads(compact)["title"]
+    assert compact.count(b"\n") > 100

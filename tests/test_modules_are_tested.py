@@ -1,0 +1,187 @@
+"""Every module with logic is imported by a test of its room, or tests/covered_by.yaml names the test that covers it.
+
+What the table says is proved by running: the slow test runs each test that it names, and looks whether the module's
+functions were executed. Before that, cheaply: the test exists, and imports lead from it to the module.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import coverage
+import pytest
+import yaml
+
+from tests.running import ROOT
+
+TABLE = ROOT / "tests" / "covered_by.yaml"
+COVERED_BY: dict[str, list[str]] = yaml.safe_load(TABLE.read_text(encoding="utf-8"))
+"""Modules by the test that covers them."""
+COVERED_MODULES = [module for modules in COVERED_BY.values() for module in modules]
+LEAST_EXECUTED_SHARE = 0.4
+"""The share of the lines in a module's functions that its test must execute."""
+_FROM_IMPORT = re.compile(r"^ *from ((?:archgen|tests)[\w.]*) import (?:\(([^)]*)\)|(.*))", re.MULTILINE)
+_FUNCTION = re.compile(r"^ *def ", re.MULTILINE)
+_ATTRIBUTE = re.compile(r"\b(\w+)\.(\w+)")
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """What a Python file imports: what each name stands for (`module` or `module.name`), and whether it has functions.
+
+    Read by patterns: ruff writes imports in one way, and Python's own parser takes five times as long for 700 files.
+    """
+
+    text: str
+    imported: Mapping[str, str]
+    has_functions: bool
+
+
+@cache
+def _read_source(path: Path) -> SourceFile:
+    text = path.read_text(encoding="utf-8")
+    imported: dict[str, str] = {}
+    for module, in_brackets, in_line in _FROM_IMPORT.findall(text):
+        for part in (in_brackets or in_line).split(","):
+            name, _, alias = part.partition("#")[0].strip().partition(" as ")
+            imported[alias or name] = f"{module}.{name}"
+    return SourceFile(text, imported, _FUNCTION.search(text) is not None)
+
+
+@cache
+def _list_modules() -> dict[str, Path]:
+    """Return the file of each module of archgen and of the tests."""
+    folders = (ROOT / "archgen", *(folder for folder in (ROOT / "tests").iterdir() if folder.name != "judges"))
+    files = [file for folder in folders for file in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))]
+    return {".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file for file in files}
+
+
+def _resolve_name(name: str) -> str | None:
+    """Return the module of archgen or of the tests in which `package.name` is defined."""
+    modules = _list_modules()
+    if name in modules:
+        return name
+    module, _, own_name = name.rpartition(".")
+    if module not in modules:
+        return None
+    # A package hands on what it imports: the module behind it counts.
+    behind = _read_source(modules[module]).imported.get(own_name)
+    return (_resolve_name(behind) or module) if behind and behind != name else module
+
+
+@cache
+def _find_imports(module: str) -> frozenset[str]:
+    """Return the modules that a module imports, those that it uses through a package (`git.find_repository`) too."""
+    source = _read_source(_list_modules()[module])
+    names = {*source.imported.values()}
+    names |= {
+        f"{source.imported[name]}.{part}" for name, part in _ATTRIBUTE.findall(source.text) if name in source.imported
+    }
+    return frozenset(found for name in names if (found := _resolve_name(name)))
+
+
+@cache
+def _list_next(module: str) -> frozenset[str]:
+    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb."""
+    from archgen.cli import VERBS
+
+    found = set(_find_imports(module))
+    if module == "archgen.cli":
+        found |= {f"archgen.cli.{verb}_command" for verb in VERBS}
+    if module == "tests.running":
+        found.add("archgen.__main__")
+    if _is_test(module):
+        found |= {name for name in _list_modules() if name.endswith("conftest") and module.startswith(name[:-8])}
+    return frozenset(found)
+
+
+def _is_test(module: str) -> bool:
+    return module.startswith("tests.") and module.rpartition(".")[2].startswith("test_")
+
+
+def _find_reachable(module: str) -> set[str]:
+    reached, pending = {module}, [module]
+    while pending:
+        new = _list_next(pending.pop()) - reached
+        reached |= new
+        pending += new
+    return reached
+
+
+def _list_logic() -> Iterator[str]:
+    """Yield the modules of archgen that hold a function."""
+    for module, path in _list_modules().items():
+        if module.startswith("archgen") and _read_source(path).has_functions:
+            yield module
+
+
+@cache
+def _list_tested() -> frozenset[str]:
+    """Return the modules that a test of the same room imports; those at the top of archgen, that any test imports."""
+    tested = set[str]()
+    for test in filter(_is_test, _list_modules()):
+        room = f"archgen.{test.split('.')[1]}."
+        tested |= {name for name in _find_imports(test) if name.count(".") <= 1 or name.startswith(room)}
+    return frozenset(tested)
+
+
+def test_every_module_with_logic_has_a_test_or_one_that_covers_it() -> None:
+    untested = sorted(set(_list_logic()) - _list_tested() - set(COVERED_MODULES))
+    assert untested == [], f"write a test in the folder that mirrors theirs, or add them to {TABLE.name}"
+
+
+def test_nothing_is_listed_that_is_tested_twice_or_gone() -> None:
+    assert len(set(COVERED_MODULES)) == len(COVERED_MODULES)
+    assert sorted(set(COVERED_MODULES) - set(_list_logic())) == [], f"take them out of {TABLE.name}: no such modules"
+    assert sorted(set(COVERED_MODULES) & _list_tested()) == [], f"take them out of {TABLE.name}: their rooms test them"
+
+
+@pytest.mark.parametrize("test", COVERED_BY)
+def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
+    name = ".".join(Path(test).with_suffix("").parts)
+    assert name in _list_modules(), f"there is no {test}"
+    assert sorted(set(COVERED_BY[test]) - _find_reachable(name)) == []
+
+
+def _executed_shares(test: str, modules: list[str], folder: Path) -> dict[str, float]:
+    """Run a test, and return which share of the lines in each module's functions it executed."""
+    files = {module: str(_list_modules()[module]) for module in modules}
+    settings = folder / "coveragerc"
+    settings.write_text(
+        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ninclude =\n    " + "\n    ".join(files.values())
+    )
+    # Coverage begins by this variable in every process: many tests run verbs as users do.
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COVERAGE_PROCESS_START": str(settings)}
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", test]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False, text=True)  # noqa: S603
+    assert done.returncode == 0, done.stdout[-3000:]
+    measured = coverage.Coverage(config_file=str(settings))
+    measured.combine([str(folder)])
+    shares = {}
+    for module, file in files.items():
+        _, statements, _, missing, _ = measured.analysis2(file)
+        # What stands outside of functions is executed by the import alone.
+        inner = {line for start, end in _function_bodies(file) for line in range(start, end + 1)} & set(statements)
+        shares[module] = len(inner - set(missing)) / len(inner)
+    return shares
+
+
+def _function_bodies(file: str) -> Iterator[tuple[int, int]]:
+    for node in ast.walk(ast.parse(Path(file).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            yield node.body[0].lineno, node.end_lineno or 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("test", COVERED_BY)
+def test_the_test_executes_what_it_covers(test: str, tmp_path: Path) -> None:
+    shares = _executed_shares(test, COVERED_BY[test], tmp_path)
+    assert {module: round(share, 2) for module, share in shares.items() if share < LEAST_EXECUTED_SHARE} == {}
