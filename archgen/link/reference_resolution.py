@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -14,6 +15,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
+_NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 _GUESS_BUDGET = 300_000
 """How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
 components, as many as anybody needs in a project of usual size. What comes later is reported without a guess. Without
@@ -23,10 +25,7 @@ the limit, thousands of unknown references would take time that grows with the s
 
 @dataclass(slots=True)
 class ReferenceResolver:
-    """Resolves references to everything that can be referred to, and collects what is wrong with them.
-
-    `implements` is filled in from outside once the nodes' components are resolved, which itself needs this object.
-    """
+    """Resolves references to everything that can be referred to, and collects what is wrong with them."""
 
     spans: Mapping[str, Mapping[str, Span]]
     """Where elements that dotted paths can name were declared, by kind and complete id."""
@@ -35,11 +34,10 @@ class ReferenceResolver:
     diagnostics: list[Diagnostic]
     lost_keys: frozenset[str] = frozenset()
     """The keys in files that could not be read: what they may declare is not reported as unknown."""
-    implements: Mapping[str, Collection[str]] = field(default_factory=dict)
-    """The components of each node, once they are known."""
     suspect_ids: set[str] = field(default_factory=set)
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     names: PathResolver = field(init=False)
+    _is_finished: bool = False
     _guesses_left: int = _GUESS_BUDGET
     _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
@@ -47,13 +45,20 @@ class ReferenceResolver:
         self.names = PathResolver(self.spans)
 
     def resolve_reference(
-        self, reference: ScalarNode, kinds: Sequence[str], element_id: str, component_id: str | None = None
+        self,
+        reference: ScalarNode,
+        kinds: Sequence[str],
+        element_id: str,
+        component_id: str | None = None,
+        implements: Mapping[str, Collection[str]] = _NO_NODES,
     ) -> ElementRef | None:
         """Return the element that a reference means; None, and a diagnostic, if that is not clear.
 
         `kinds` are the kinds that are allowed here; the diagnostic is about `element_id`. `component_id` is the
         component that writes the reference: elements of its group win; a single word never means itself or its output.
+        Where nodes are allowed, `implements` holds the components of each: a node never hides one of its own.
         """
+        self._refuse_if_finished()
         dotted_path = reference.text
         match = self.names.resolve_path(dotted_path, kinds, component_id=component_id)
         target = match.unique_element
@@ -65,11 +70,21 @@ class ReferenceResolver:
         elif target is None and not self.is_lost(dotted_path):
             self.diagnostics.append(self._diagnose_unknown(reference, kinds, element_id, component_id))
         elif target and match.hidden_elements:
-            self._warn_hidden(reference, target, match.hidden_elements, element_id)
+            # A node and the component that it implements often have the same name: either is meant, nothing is hidden.
+            own_components = implements.get(target.id, ())
+            hidden_elements = [element for element in match.hidden_elements if element.id not in own_components]
+            if hidden_elements:
+                self._warn_hidden(reference, target, hidden_elements, element_id)
         return target
+
+    def finish_resolving(self) -> frozenset[str]:
+        """Return the suspects of all references; from here on the resolver refuses to resolve any more."""
+        self._is_finished = True
+        return frozenset(self.suspect_ids)
 
     def resolve_plain_id(self, reference: ScalarNode | None, kind: str, element_id: str) -> str | None:
         """Return the id of a partner, host, container or use case; None, and a diagnostic, if there is no such one."""
+        self._refuse_if_finished()
         known_spans = self.plain_spans[kind]
         if reference is None or reference.text in known_spans:
             return reference.text if reference else None
@@ -80,6 +95,11 @@ class ReferenceResolver:
             diagnose_unknown_reference(reference, kind, guess, known_spans.get(guess or "", NO_SPAN), element_id)
         )
         return None
+
+    def _refuse_if_finished(self) -> None:
+        if self._is_finished:
+            msg = "a reference is resolved after the suspects were taken: they would lack what it may have meant"
+            raise RuntimeError(msg)
 
     def resolve_owners(self, body: MappingNode, element_id: str, inherited_owners: Iterable[str]) -> tuple[str, ...]:
         """Return the owners of an element, each once: those written, or the inherited ones if none are written."""
@@ -160,21 +180,18 @@ class ReferenceResolver:
         )
 
     def _warn_hidden(
-        self, reference: ScalarNode, visible: ElementRef, hidden: Iterable[ElementRef], element_id: str
+        self, reference: ScalarNode, visible: ElementRef, hidden: Sequence[ElementRef], element_id: str
     ) -> None:
-        # A node and the component that it implements often have the same name: either is meant, nothing is hidden.
-        others = [name for name in hidden if name.id not in self.implements.get(visible.id, ())]
-        if others:
-            self.diagnostics.append(
-                Diagnostic(
-                    "hidden-reference",
-                    f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {others[0].kind} `{others[0].id}`",
-                    reference.span,
-                    labels=tuple(Label(self._span_of(name), "hidden") for name in others),
-                    help=f"write `{others[0].id}` if that is meant",
-                    element=element_id,
-                )
+        self.diagnostics.append(
+            Diagnostic(
+                "hidden-reference",
+                f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
+                reference.span,
+                labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
+                help=f"write `{hidden[0].id}` if that is meant",
+                element=element_id,
             )
+        )
 
     def _guess_path(self, dotted_path: str, kinds: Sequence[str]) -> str | None:
         """Return the path that was most likely meant, or None.
