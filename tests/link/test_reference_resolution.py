@@ -338,11 +338,14 @@ def test_a_group_where_components_are_asked_for(told: Told) -> None:
 
 def test_a_chain_through_a_node_named_as_its_component_hides_nothing(told: Told) -> None:
     # The chain knows what the node implements, wherever its section stands.
-    assert told("""
+    assert (
+        told("""
 chains: {c: {through: [camera]}}
 groups: {g: {components: {camera: {outputs: {x: std_msgs/msg/Empty}}}}}
 nodes: {camera: {implements: g.camera}}
-""") == []
+""")
+        == []
+    )
 
 
 def test_after_the_suspects_are_taken_no_reference_is_resolved() -> None:

@@ -86,7 +86,7 @@ class _Propagation:
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
-        self.previous_threads: dict[str, list[ThreadWork]] = {}
+        self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         self.successors = self._find_successors()
 
     def run_to_fixed_point(self) -> PropagationState:
@@ -167,12 +167,12 @@ class _Propagation:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
         if step in self.resources:
-            new_responses = find_responses(
+            new_responses, self.previous_threads[step] = find_responses(
                 state.system,
                 self.resources[step],
                 state.event_models,
                 state.responses,
-                AnalysisEffort(self.budget, self._stale_activities(step), self.previous_threads.setdefault(step, [])),
+                AnalysisEffort(self.budget, self._stale_activities(step), self.previous_threads.get(step)),
             )
             changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
             state.responses.update(new_responses)

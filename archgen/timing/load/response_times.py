@@ -46,13 +46,20 @@ from archgen.timing.system.timing_system import TimingSystem
 class AnalysisEffort(NamedTuple):
     """How much may still be computed, and for whom.
 
-    `stale_ids` are those whose event models have changed, None at first. `previous_threads` holds the threads of
-    several cores as they were when responses were last found; `find_responses` writes to it.
+    `stale_ids` are those whose event models have changed, None at first. `previous_threads` are the threads of the
+    resource as they were when its responses were last found, None at first.
     """
 
     budget: SearchBudget
     stale_ids: frozenset[str] | None = None
-    previous_threads: list[ThreadWork] | None = None
+    previous_threads: tuple[ThreadWork, ...] | None = None
+
+
+class ResourceResponses(NamedTuple):
+    """The responses of activities that may have changed, and the threads that they were found for."""
+
+    response_of: dict[str, WorstResponse]
+    threads: tuple[ThreadWork, ...]
 
 
 def find_dedicated_response(
@@ -85,23 +92,21 @@ def find_responses(
     event_models: EventModels,
     known_responses: Mapping[str, WorstResponse],
     effort: AnalysisEffort,
-) -> dict[str, WorstResponse]:
+) -> ResourceResponses:
     """Return the responses of what a resource runs.
 
     `known_responses` are those found so far; they matter on several cores. What has a higher priority than everything
     stale is left out, and so is everything where nothing changed that counts.
     """
     budget, stale_ids, previous_threads = effort
-    all_threads = [
+    built_threads = [
         build_thread(system, unit, event_models, known_responses) for unit in (*resource.units, *resource.foreign_units)
     ]
-    all_threads = lower_crowded_threads(system, all_threads, event_models)
+    all_threads = tuple(lower_crowded_threads(system, built_threads, event_models))
     # On several cores each response rests on all others; if no thread differs from last time, neither does any
     # response.
-    if previous_threads is not None and resource.cores > 1:
-        if previous_threads == all_threads:
-            return {}
-        previous_threads[:] = all_threads
+    if resource.cores > 1 and previous_threads == all_threads:
+        return ResourceResponses({}, all_threads)
     threads, foreign_threads = all_threads[: len(resource.units)], all_threads[len(resource.units) :]
     one_core = resource.cores == 1 or resource.joined
     # On one core only what is as urgent or more can interfere: threads above the most urgent stale one keep their
@@ -134,7 +139,7 @@ def find_responses(
                 response_of[name] = WorstResponse(
                     None, "unknown", unite_causes((UnknownCause((name,)), response.cause))
                 )
-    return response_of
+    return ResourceResponses(response_of, all_threads)
 
 
 def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
@@ -176,7 +181,7 @@ def _solve_one_core(
             )
             yield thread, response._replace(tier="executor") if is_only else response
     previous_response: WorstResponse | None = None
-    # By falling priority: `_RankedThreads` builds each level's load and busy period on the one before.
+    # By falling priority: the busy period of each level is where the search of the next begins.
     for thread in sorted(
         (t for t in wanted_threads if t.lowest_priority is not None), key=lambda t: -(t.lowest_priority or 0)
     ):
@@ -185,10 +190,10 @@ def _solve_one_core(
 
 
 class _RankedThreads:
-    """Threads by falling priority, with the share of a core that each takes together with all above it.
+    """Threads by falling priority, and what the first of them demand together.
 
-    `cause_of_first` and `busy_period_of_first` must be asked in order of growing counts: they keep what they have added
-    up.
+    Any count may be asked for at any time. Growing counts are cheap, since each builds on the one before; a smaller one
+    begins anew.
     """
 
     def __init__(self, threads: Iterable[ThreadWork]) -> None:
@@ -201,9 +206,9 @@ class _RankedThreads:
                 initial=0,
             )
         )
-        self.load = GrowingLoad()
-        self._loaded_count = self._busy_period = 0
-        self._causes: list[UnknownCause] = []
+        self._load, self._loaded_count = GrowingLoad(), 0
+        self._busy_period, self._searched_count = 0, 0
+        self._cause: UnknownCause | None = None
         self._cause_count = 0
 
     def count_down_to(self, priority: int) -> int:
@@ -216,19 +221,30 @@ class _RankedThreads:
 
     def cause_of_first(self, count: int) -> UnknownCause | None:
         """Return what is missing of the first threads, None where nothing is."""
+        if count < self._cause_count:
+            self._cause, self._cause_count = None, 0
         new_causes = [thread.cause for thread in self.threads[self._cause_count : count] if thread.cause]
-        self._cause_count = max(count, self._cause_count)
         if new_causes:
-            self._causes = [unite_causes((*self._causes, *new_causes))]
-        return self._causes[0] if self._causes else None
+            self._cause = unite_causes((*filter(None, (self._cause,)), *new_causes))
+        self._cause_count = count
+        return self._cause
+
+    def demand_of_first(self, count: int) -> DemandFunction:
+        """Return the demand of the first threads; it is good until another count is asked for."""
+        if count < self._loaded_count:
+            self._load, self._loaded_count = GrowingLoad(), 0
+        for thread in self.threads[self._loaded_count : count]:
+            self._load.add_work(thread.works)
+        self._loaded_count = count
+        return self._load.demand_function()
 
     def busy_period_of_first(self, count: int, budget: SearchBudget) -> int:
-        """Return the busy period of the first threads. The last one is a lower bound, where the search begins."""
-        if self._loaded_count < count:
-            for thread in self.threads[self._loaded_count : count]:
-                self.load.add_work(thread.works)
-            self._loaded_count = count
-            self._busy_period = longest_busy_period(self.load.demand_function(), budget, self._busy_period)
+        """Return the busy period of the first threads; that of fewer is a lower bound, where the search begins."""
+        if count != self._searched_count:
+            lower_bound = self._busy_period if self._searched_count < count else 0
+            self._busy_period = longest_busy_period(self.demand_of_first(count), budget, lower_bound)
+            # Only now: a search that ended with `DivergedError` has found nothing for this count.
+            self._searched_count = count
         return self._busy_period
 
 
@@ -280,7 +296,7 @@ def _bound_by_priority(
         # Activation by activation, only for a single activity; for an executor the whole busy period is the bound,
         # since its callbacks may run in any order.
         if len(thread.works) == 1:
-            interference = subtract_demand(ranked.load.demand_function(), GrowingLoad(thread.works).demand_function())
+            interference = subtract_demand(ranked.demand_of_first(count), GrowingLoad(thread.works).demand_function())
             busy_period = worst_response(thread.works[0], interference, budget, busy_period)
         return WorstResponse(busy_period, tier)
     except DivergedError:
