@@ -29,13 +29,14 @@ from archgen.analyses import (
     type_mapping,
 )
 from archgen.diagnostics.diagnostic import Rule
-from archgen.timing.run_analysis import analyse_architecture
+from archgen.timing.run_analysis import AnalysisMemory
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.model.architecture import Architecture
+    from archgen.timing.analysis import Analysis
 
 # A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
 # that in which rules run; findings are sorted later.
@@ -69,13 +70,17 @@ RULES: tuple[Rule, ...] = tuple(
 """All rules that judge an architecture, in the order in which they run."""
 
 
-def check_architecture(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Run all rules and yield their raw diagnostics, neither sorted nor settled."""
+def analyse_timing(architecture: Architecture, memory: AnalysisMemory) -> Analysis | None:
+    """Return the timing analysis that the rules judge, None where the architecture has no `timing`."""
+    # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
+    return memory.judge_architecture(architecture) if _has_timing(architecture) else None
+
+
+def check_architecture(architecture: Architecture, analysis: Analysis | None) -> Iterator[Diagnostic]:
+    """Run all rules and yield their raw diagnostics, neither sorted nor settled. `analysis` is the timing analysis."""
     for rule_function, _ in _RULE_FUNCTIONS:
         yield from rule_function(architecture)
-    # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
-    if _has_timing(architecture):
-        analysis = analyse_architecture(architecture, judging=True)
+    if analysis is not None:
         for timing_rule_function, _ in _TIMING_RULE_FUNCTIONS:
             yield from timing_rule_function(architecture, analysis)
 

@@ -18,18 +18,18 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.model.selector_evaluation import Selection
-    from archgen.pipeline import CheckedProject
+    from archgen.pipeline import CheckedProject, VersionCache
 
 ERROR = Severity.ERROR
 
 
-def check_project(project: Path | None) -> CheckedProject:
+def check_project(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check a project. It is wrong usage if there is none."""
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
 
     try:
-        return pipeline.check_project(project)
+        return pipeline.check_project(project, version_cache)
     except ProjectNotFoundError as error:
         raise click.UsageError(str(error)) from None
 

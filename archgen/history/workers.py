@@ -19,7 +19,7 @@ from archgen.history.commit_content import CommitContents
 from archgen.history.history_points import count_point, point_from_data, point_to_data
 from archgen.history.project_commits import ProjectCommit
 from archgen.model.project_history import HistoryPoint
-from archgen.project.slice_parsing import ParsedSlices
+from archgen.pipeline import VersionCache
 
 WorkerProgress = Callable[[int, int], None]
 _COMMITS_PER_PROCESS = 8
@@ -73,15 +73,15 @@ def _count_here(
 
 
 def _yield_points(path: Path | None, commits: Sequence[ProjectCommit]) -> Iterator[HistoryPoint]:
-    tracked_project, parsed_slices, contents = project.find_tracked_project(path), ParsedSlices(), CommitContents()
+    tracked_project, version_cache, contents = project.find_tracked_project(path), VersionCache(), CommitContents()
     counted: dict[Hashable, HistoryPoint] = {}
     for commit in commits:
-        loaded_project = project.load_at_commit(tracked_project, commit.id, parsed_slices)
+        loaded_project = project.load_at_commit(tracked_project, commit.id, version_cache.parsed_slices)
         content = contents.content_key(loaded_project)
         content_point = counted.get(content)
         if content_point is None:
             content_point = counted[content] = count_point(
-                pipeline.check_loaded_project(loaded_project), commit.id, commit.day
+                pipeline.check_loaded_project(loaded_project, version_cache), commit.id, commit.day
             )
         yield replace(content_point, commit=commit.id, day=commit.day)
 

@@ -184,7 +184,7 @@ def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> N
 def test_what_says_the_same_is_judged_once(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     judged = []
 
-    def judge(loaded: LoadedProject) -> CheckedProject:
+    def judge(loaded: LoadedProject, _: object) -> CheckedProject:
         judged.append(loaded.files.commit)
         return pipeline.judge_project(loaded)
 

@@ -120,9 +120,9 @@ def find_responses(
             ),
             default=-1,
         )
-        wanted_threads = [
+        wanted_threads = tuple(
             thread for thread in threads if thread.lowest_priority is None or thread.lowest_priority <= highest_stale
-        ]
+        )
     else:
         wanted_threads = threads
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
