@@ -55,13 +55,7 @@ def read_allowed_backends(project: Path | None, revision: str | None) -> tuple[s
 
 def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Severity = Severity.WARNING) -> None:
     """Print findings from a severity on, and their count, to the error stream."""
-    order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
-    # A finding without a severity counts as severe enough: it must not vanish.
-    shown_findings = [
-        d
-        for d in checked_project.findings
-        if order.index(d.severity or lowest_severity) >= order.index(lowest_severity)
-    ]
+    shown_findings = [d for d in checked_project.findings if d.effective_severity >= lowest_severity]
     if shown_findings:
         print_findings(shown_findings, checked_project, sys.stderr)
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import find_closest
@@ -127,11 +128,10 @@ class ReferenceResolver:
     def _diagnose_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> Diagnostic:
         self.suspect_ids.update(name.id for name in match.elements)
         quoted_ids = [f"`{name.id}`" for name in match.elements]
-        unlisted_count = match.count - len(quoted_ids)
-        last_item = f"{unlisted_count} more" if unlisted_count else quoted_ids.pop()
+        rest = [f"{match.count - len(quoted_ids)} more"] if match.count > len(quoted_ids) else []
         return Diagnostic(
             "ambiguous-reference",
-            f"`{reference.text}` can mean {', '.join(quoted_ids)} or {last_item}",
+            f"`{reference.text}` can mean {join_words([*quoted_ids, *rest], 'or')}",
             reference.span,
             labels=tuple(Label(self._span_of(name), f"`{name.id}`") for name in match.elements),
             help=f"write more of the path, such as `{match.elements[0].id}`",
@@ -252,7 +252,7 @@ def diagnose_unknown_reference(
 def _list_possible_kinds(kinds: Sequence[str], length: int) -> str:
     """Return the kinds that a path of some length can mean, as words: "component or output"."""
     possible = [kind for kind in kinds if _PATH_LENGTHS[kind] >= length] or [kinds[-1]]
-    return " or ".join(filter(None, (", ".join(possible[:-1]), possible[-1])))
+    return join_words(possible, "or")
 
 
 def _path_end(path: str, length: int) -> str:

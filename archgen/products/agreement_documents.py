@@ -61,7 +61,7 @@ def make_project_agreement(
         revision=find_revision(checked_project.root, checked_project.input_files)
         if printed_revision is None
         else printed_revision,
-        earlier_revision=(_format_version_name(earlier_version), _make_timed_lookup(earlier_version.checked_project))
+        earlier_revision=(earlier_version.title, _make_timed_lookup(earlier_version.checked_project))
         if earlier_version
         else None,
         notices=tuple(_error_notices(checked_project, earlier_version)),
@@ -72,13 +72,6 @@ def make_project_agreement(
     ):
         raise PartnersError(_explain_no_interfaces(checked_project, first, second))
     return partner_agreement
-
-
-def _format_version_name(earlier_version: ProjectVersion) -> str:
-    """Name an earlier version as the user typed it, with its commit where that says more."""
-    # A hash that begins with what the user typed says nothing new.
-    name_suffices = not earlier_version.commit or earlier_version.commit.startswith(earlier_version.name)
-    return earlier_version.name if name_suffices else f"{earlier_version.name} ({earlier_version.commit[:7]})"
 
 
 def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
@@ -131,11 +124,7 @@ def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVers
     """Yield a notice for each version that has errors."""
     for version_suffix, noticed_project in (
         ("", checked_project),
-        *(
-            ((f" at {_format_version_name(earlier_version)}", earlier_version.checked_project),)
-            if earlier_version
-            else ()
-        ),
+        *(((f" at {earlier_version.title}", earlier_version.checked_project),) if earlier_version else ()),
     ):
         if noticed_project.has_errors:
             message = f"The architecture{version_suffix} has errors ({describe_severities(noticed_project.findings)}). What is sound is shown all the same."

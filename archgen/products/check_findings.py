@@ -125,10 +125,7 @@ def compare_findings(
 
 def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
     """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
-    severity_order = list(Severity)
-    return severity_order.index(new_finding.severity or Severity.ERROR) > severity_order.index(
-        old_finding.severity or Severity.ERROR
-    )
+    return new_finding.effective_severity > old_finding.effective_severity
 
 
 def _matching_keys(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.compare import ArchitectureVersion, Comparison, compare_versions
+from archgen.diagnostics.common_wording import shorten_hash
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode
 
@@ -26,6 +27,13 @@ class ProjectVersion:
     def commit(self) -> str:
         """Return the full hash of the commit that it was read from, empty for files on disk."""
         return self.checked_project.loaded_project.files.commit
+
+    @property
+    def title(self) -> str:
+        """The name as the user typed it, with the commit where that says more."""
+        # A hash that begins with what the user typed says nothing new.
+        name_suffices = not self.commit or self.commit.startswith(self.name)
+        return self.name if name_suffices else f"{self.name} ({shorten_hash(self.commit)})"
 
 
 def read_versions(

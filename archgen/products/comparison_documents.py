@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 
 from archgen.compare import Comparison
+from archgen.diagnostics.common_wording import shorten_hash
 from archgen.emit import file_tree
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.picture import Picture
@@ -14,21 +15,11 @@ from archgen.products.project_outputs import OutputOptions
 from archgen.views.changes.comparison_document import ComparisonDocument, outline_comparison
 from archgen.views.graphs import changes as pictures
 
-_SHORT_HASH_LENGTH = 7
-"""Digits of a commit's hash beside a name, as git prints them."""
-
-
-def format_version_name(version: ProjectVersion) -> str:
-    """Name a version as the user typed it, with its commit where that says more."""
-    # A hash that begins with what the user typed says nothing new.
-    name_suffices = not version.commit or version.commit.startswith(version.name)
-    return version.name if name_suffices else f"{version.name} ({version.commit[:_SHORT_HASH_LENGTH]})"
-
 
 def render_comparison_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     """Write a comparison as the comment on a pull request."""
     names = comparison_markdown.SideNames(
-        format_version_name(old_version), format_version_name(new_version), _terminal_command(old_version, new_version)
+        old_version.title, new_version.title, _terminal_command(old_version, new_version)
     )
     return comparison_markdown.write_comparison_markdown(
         comparison,
@@ -40,7 +31,7 @@ def render_comparison_markdown(comparison: Comparison, old_version: ProjectVersi
 def _terminal_command(old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     """Return the command that shows the same comparison in a terminal."""
     # A name with a blank is a description of ours ("where this branch left main"), no revision that git understands.
-    arguments = [old_version.commit[:10] if " " in old_version.name else old_version.name]
+    arguments = [shorten_hash(old_version.commit) if " " in old_version.name else old_version.name]
     arguments += [] if new_version.name == WORKING_TREE_NAME else [new_version.name]
     return " ".join(["archgen diff", *map(shlex.quote, arguments)])
 
@@ -54,8 +45,8 @@ def render_comparison_html(
     graphs = pictures.draw_changes(comparison)
     document = ComparisonDocument(
         comparison,
-        format_version_name(old_version),
-        format_version_name(new_version),
+        old_version.title,
+        new_version.title,
         (old_version.checked_project.structural_errors, new_version.checked_project.structural_errors),
         graphs,
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
@@ -268,7 +269,7 @@ def _describe_expected(schema_part: dict[str, Any]) -> str:
     ]
     if "number" in types and "boolean" not in types:
         phrases = ["a number", *(word for word in phrases if word != "text")]
-    return " or ".join((", ".join(phrases[:-1]), phrases[-1])) if len(phrases) > 1 else phrases[0]
+    return join_words(phrases, "or")
 
 
 def _list_types(schema_part: dict[str, Any]) -> list[str]:

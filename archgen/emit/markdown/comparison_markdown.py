@@ -6,12 +6,12 @@ is counted, with the command that shows it. Names, titles and messages remain te
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from archgen.compare import Change, Comparison
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
@@ -102,16 +102,13 @@ def _join_partners(partner_ids: Sequence[str]) -> str:
     shown_names = [_code_span(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
         [f"{len(partner_ids) - _SHOWN_PARTNERS} more"] if len(partner_ids) > _SHOWN_PARTNERS else []
     )
-    return " and ".join((", ".join(shown_names[:-1]), shown_names[-1])) if len(shown_names) > 1 else shown_names[0]
+    return join_words(shown_names)
 
 
 def _count_line(comparison: Comparison) -> str:
     """Count changes by kind, and new findings by severity."""
     phrases = [change_wording.count_by_kind(comparison.changes)] if comparison.changes else []
-    severities = Counter(str(finding.severity or Severity.ERROR) for finding in comparison.new_findings)
-    new_counts = ", ".join(
-        count_noun(severities[name], name) for name in ("error", "warning", "note") if severities[name]
-    )
+    new_counts = ", ".join(phrase_severity_counts(comparison.new_findings))
     phrases += [f"new: {new_counts}"] if new_counts else []
     phrases += [count_noun(len(comparison.cured_findings), "finding") + " cured"] if comparison.cured_findings else []
     phrases += (
@@ -208,11 +205,7 @@ def _add_chains(comment: LimitedComment, comparison: Comparison) -> None:
 
 def _add_findings(comment: LimitedComment, comparison: Comparison, told_findings: Collection[Diagnostic]) -> None:
     """Add the new findings, gravest first and notes folded, without the errors in `told`, which were shown already."""
-    severity_order = list(Severity)
-    new_findings = sorted(
-        (finding for finding in comparison.new_findings if finding not in told_findings),
-        key=lambda finding: -severity_order.index(finding.severity or Severity.ERROR),
-    )
+    new_findings = sort_gravest_first(finding for finding in comparison.new_findings if finding not in told_findings)
     grave_count = sum(finding.severity is not Severity.NOTE for finding in new_findings)
     if grave_count:
         comment.add_block("#### New findings")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 from archgen.link import mapping_values
 from archgen.link.declare.timing_declaration import declare_timing
@@ -16,7 +16,7 @@ from archgen.model.component import Component, ComponentRole, Connection, Group,
 from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-_ROLES = frozenset({"source", "filter", "sink", "reactive"})
+_ROLES = frozenset(get_args(ComponentRole))
 
 
 class DeclaredGroups(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.compare import Change, Comparison
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, sort_gravest_first
 from archgen.views import inline_text
 from archgen.views.changes import change_wording
 from archgen.views.shapes import (
@@ -200,17 +200,14 @@ def _cured_findings_section(comparison: Comparison) -> Section | None:
 def _findings_section(name: str, title: str, caption: str, findings: Sequence[Diagnostic]) -> Section | None:
     if not findings:
         return None
-    severity_order = list(Severity)
-    # Gravest first; the sort is stable, so that findings of one severity keep the order of the files.
-    sorted_findings = sorted(findings, key=lambda finding: -severity_order.index(finding.severity or Severity.ERROR))
     rows = tuple(
         (
-            inline_text.to_inlines(str(finding.severity or Severity.ERROR)),
+            inline_text.to_inlines(str(finding.effective_severity)),
             inline_text.to_inlines(Text(finding.rule, code=True)),
             change_wording.text_runs(finding.message),
             inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),
         )
-        for finding in sorted_findings
+        for finding in sort_gravest_first(findings)
     )
     columns = (Column("Severity", 0.6), Column("Rule", 1), Column("What", 3), Column("Where", 1.4))
     return Section(f"changes:{name}", title, (Table(f"table:{name}", caption, columns, rows),))
