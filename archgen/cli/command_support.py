@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.pipeline import CheckedProject, VersionCache
 
-ERROR = Severity.ERROR
-
 
 def check_project(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check a project. It is wrong usage if there is none."""

@@ -98,7 +98,6 @@ class _GroupDeclarer:
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
             layout=mapping_values.get_layout(body),
-            title_written=mapping_values.get_text(body, "title") is not None,
             at=entry.key_span,
             role_at=mapping_values.get_span(body, "role"),
         )

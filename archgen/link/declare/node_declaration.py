@@ -92,7 +92,6 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         host=host or (context.containers[container].host if container else None),
         status=_read_status(body),
         uses=tuple(_declare_uses(body, ports)),
-        uses_known=tuple(use for use in USE_KINDS if body.get(use) is not None),
         timing=context.timing_merger.merge_timing(
             node_id, declare_timing(entry, ports, resolver.diagnostics), implements
         ),

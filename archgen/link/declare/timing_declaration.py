@@ -97,8 +97,3 @@ def _parse_fraction(text: str) -> Fraction | None:
         return Fraction(text) if len(text) <= _MAX_NUMBER_LENGTH else None
     except (ValueError, ZeroDivisionError):
         return None
-
-
-def find_senseless_timing(timing: Timing, element_id: str) -> Iterator[Diagnostic]:
-    """Yield what makes no sense in a timing, wherever its figures come from."""
-    return (finding for _, finding in sanity_checks.find_senseless(timing, element_id))

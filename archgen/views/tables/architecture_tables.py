@@ -18,8 +18,6 @@ from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text
 
-TableRows = tuple[tuple[Inlines, ...], ...]
-
 
 def make_group_table(lookup: Lookup) -> Table | None:
     """List the shown groups with owners, size and purpose."""
