@@ -99,6 +99,14 @@ class Rule:
         return cls(function.__name__.replace("_", "-"), severity, inspect.cleandoc(function.__doc__ or ""))
 
 
+def diagnose_repetition(  # noqa: PLR0913 - what a diagnostic has
+    rule: str, message: str, span: Span, first_span: Span, *, help_line: str | None = None, element: str | None = None
+) -> Diagnostic:
+    """Report what is written a second time; a label shows the first place."""
+    labels = (Label(first_span, "first written here"),)
+    return Diagnostic(rule, message, span, labels=labels, help=help_line, element=element)
+
+
 def settle_diagnostics(
     diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], settings: Mapping[str, Severity]
 ) -> tuple[Diagnostic, ...]:

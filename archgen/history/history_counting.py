@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from archgen.history import point_cache, workers
+from archgen.history import workers
 from archgen.history.history_points import point_from_data, point_to_data
+from archgen.history.point_cache import PointCache
 from archgen.history.project_commits import HistoryInterval, ProjectCommit, list_commits
 from archgen.model.project_history import History, HistoryPoint
 from archgen.project import find_tracked_project
@@ -34,10 +35,10 @@ def count_history(
     if len(commit_line) < least_points:
         return History((), interval, whole=not tracked_project.objects.repository.is_shallow)
     # Cached by tree and not by commit: whatever commit holds it, the same tree has the same counts.
-    cache_file = point_cache.cache_file(cache, "/".join(tracked_project.locations[0]))
+    point_cache = PointCache(cache, "/".join(tracked_project.locations[0]))
     points_by_tree = {
         tree: point
-        for tree, plain_point in point_cache.load_points(cache_file).items()
+        for tree, plain_point in point_cache.load_points().items()
         if (point := _read_cached_point(plain_point))
     }
     missing = {commit.tree_id: commit for commit in commit_line if commit.tree_id not in points_by_tree}
@@ -45,7 +46,7 @@ def count_history(
         counted = workers.count_commits(path, tuple(missing.values()), progress)
         points_by_tree |= {commit.tree_id: point for commit, point in zip(missing.values(), counted, strict=True)}
         # Cached points of trees that are not on this line are kept: they may belong to other branches.
-        point_cache.store_points(cache_file, {tree: point_to_data(point) for tree, point in points_by_tree.items()})
+        point_cache.store_points({tree: point_to_data(point) for tree, point in points_by_tree.items()})
     points = tuple(_at_commit(commit, points_by_tree[commit.tree_id]) for commit in commit_line)
     return History(points, interval, whole=not tracked_project.objects.repository.is_shallow)
 

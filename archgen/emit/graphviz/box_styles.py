@@ -23,9 +23,9 @@ from collections.abc import Callable
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
+from archgen.emit.graphviz.placed_scene import DotAttributes
 from archgen.views.shapes import Box
 
-DotAttributes = dict[str, str]
 LinkResolver = Callable[[str], str | None]
 
 FONT_NAME = "DejaVu Sans"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
@@ -141,7 +141,7 @@ def name_point(point: HistoryPoint, history: History) -> str:
 
 def format_step_share(row: ProgressRow, step: str) -> str:
     """Format the share of a step in percent, rounded down so that 100 % means all; `-` without components."""
-    return f"{100 * getattr(row, step) // row.components} %" if row.components else "-"
+    return f"{floor_percent(getattr(row, step), row.components)} %" if row.components else "-"
 
 
 def format_findings(findings: FindingCounts) -> str:
