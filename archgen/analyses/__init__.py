@@ -23,6 +23,7 @@ from archgen.analyses import (
     ros_distribution,
     ros_messages,
     selector_checks,
+    slow_responses,
     timing_plausibility,
     topic_sources,
     trigger_cycles,
@@ -61,7 +62,13 @@ _RULE_FUNCTIONS = (
     *completeness.RULES,
 )
 
-_TIMING_RULE_FUNCTIONS = (*rate_conflicts.RULES, *trigger_cycles.RULES, *resource_load.RULES, *chain_latency.RULES)
+_TIMING_RULE_FUNCTIONS = (
+    *rate_conflicts.RULES,
+    *trigger_cycles.RULES,
+    *resource_load.RULES,
+    *slow_responses.RULES,
+    *chain_latency.RULES,
+)
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(

@@ -10,7 +10,8 @@ from archgen.link import mapping_values
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
-from archgen.link.reference_resolution import PortResolver, ReferenceResolver
+from archgen.link.port_resolution import PortResolver
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Component, ComponentRole, Connection, Group, PerformanceIndicator, RequirementUse
 from archgen.model.message_types import ConceptualType

@@ -12,7 +12,8 @@ from archgen.link import mapping_values
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
-from archgen.link.reference_resolution import PortResolver, ReferenceResolver
+from archgen.link.port_resolution import PortResolver
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Component
 from archgen.model.deployment import Container
 from archgen.model.node import Node, NodeKind, NodeStatus, PortUse, Qos, UseKind

@@ -8,7 +8,7 @@ from fractions import Fraction
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.reference_resolution import PortResolver
+from archgen.link.port_resolution import PortResolver
 from archgen.model.declared_timing import OutputTiming, Timing, Trigger
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_propagation import PropagationState, leaving_model
+from archgen.timing.load.event_models import PropagationState, leaving_model
 from archgen.timing.load.event_streams import EventStreams, delay_streams, streams_of_calls
 from archgen.timing.system.timing_system import Activity, Arc
 

@@ -14,7 +14,8 @@ from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, SearchBudget
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.response_times import AnalysisEffort, _RankedThreads, find_responses
+from archgen.timing.load.ranked_threads import RankedThreads
+from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
@@ -267,7 +268,7 @@ def test_ranked_threads_may_be_asked_in_any_order() -> None:
     causes = {3: UnknownCause(("c",)), 5: UnknownCause(("e",))}
     threads = [thread(str(rank), 9 - rank, 10, causes.get(rank)) for rank in range(6)]
     for counts in permutations(range(0, 7, 2)):
-        ranked = _RankedThreads(threads)
+        ranked = RankedThreads(threads)
         for count in counts:
             expected = unite_causes(cause for rank, cause in causes.items() if rank < count)
             assert (ranked.cause_of_first(count) or UnknownCause(())) == expected
@@ -276,7 +277,7 @@ def test_ranked_threads_may_be_asked_in_any_order() -> None:
 
 
 def test_a_search_that_did_not_end_is_not_taken_for_an_answer() -> None:
-    ranked = _RankedThreads([thread("a", 2, 60), thread("b", 1, 60)])
+    ranked = RankedThreads([thread("a", 2, 60), thread("b", 1, 60)])
     assert ranked.busy_period_of_first(1, SearchBudget()) == 60
     for _ in range(2):
         with pytest.raises(DivergedError):
