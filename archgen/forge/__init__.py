@@ -7,9 +7,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from archgen.forge import github_request, gitlab_request
 from archgen.forge.comment_post import CommentOutcome, put_comment
 from archgen.forge.forge_api import ForgeError
+from archgen.forge.pull_request import find_merge_request, find_pull_request
 
 __all__ = ["CommentOutcome", "ForgeError", "post_comment"]
 
@@ -21,8 +21,8 @@ def post_comment(text: str, key: str, environment: Mapping[str, str] = os.enviro
     `ForgeError` where there is no pull request or the forge refuses.
     """
     if environment.get("GITLAB_CI"):
-        return put_comment(gitlab_request.find_merge_request(environment), text, key)
+        return put_comment(find_merge_request(environment), text, key)
     if environment.get("GITHUB_ACTIONS"):
-        return put_comment(github_request.find_pull_request(environment), text, key)
+        return put_comment(find_pull_request(environment), text, key)
     msg = "this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set"
     raise ForgeError(msg)
