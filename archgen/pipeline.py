@@ -27,6 +27,8 @@ from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+from archgen.timing.analysis import Analysis
+from archgen.timing.run_analysis import AnalysisMemory
 
 ALL_RULES: tuple[Rule, ...] = (
     *interface_files.RULES,
@@ -52,6 +54,8 @@ class CheckedProject:
     """Settled and sorted, without those that a comment or a setting silences."""
     silenced_findings: tuple[Diagnostic, ...] = ()
     """The findings that a comment or a setting of the project silences."""
+    analysis: Analysis | None = None
+    """The timing analysis that its rules judged, None where the project has no `timing`."""
 
     @property
     def root(self) -> Path:
@@ -100,37 +104,52 @@ class CheckedProject:
         return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
 
 
-def check_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
+class VersionCache:
+    """What versions of one project share; checks fill it.
+
+    Pass the same one for all of them: files that are the same are parsed once, and timing that is as in the version
+    before is not analysed again.
+    """
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.parsed_slices: ParsedSlices = {}
+        self.analysis_memory = AnalysisMemory()
+
+
+def check_project(path: Path | None = None, version_cache: VersionCache | None = None) -> CheckedProject:
     """Read and check the project at a path (a folder, a file, or None for the one around the current folder).
 
-    `parsed_slices` is a cache that is filled: pass the same one for several versions of a project, and files that are
-    the same in them are parsed once. Raises `project.ProjectNotFoundError` if there is no project.
+    Raises `project.ProjectNotFoundError` if there is no project.
     """
+    version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
-        return judge_project(project.load_project(path, parsed_slices))
+        return judge_project(project.load_project(path, version_cache.parsed_slices), version_cache.analysis_memory)
 
 
-def check_at_revision(path: Path | None, revision: str, parsed_slices: ParsedSlices | None = None) -> CheckedProject:
+def check_at_revision(path: Path | None, revision: str, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check the project at a path as it is at a revision of its repository, read from git's objects.
 
     Raises `git.GitError`, `project.NotAtRevisionError` if the project does not exist at the revision, and
     `project.ProjectNotFoundError` if there is neither a project nor a repository.
     """
-    return check_tracked_project(project.find_tracked_project(path), revision, parsed_slices)
+    return check_tracked_project(project.find_tracked_project(path), revision, version_cache)
 
 
 def check_tracked_project(
-    tracked_project: TrackedProject, revision: str, parsed_slices: ParsedSlices | None = None
+    tracked_project: TrackedProject, revision: str, version_cache: VersionCache | None = None
 ) -> CheckedProject:
-    """Check a tracked project at a revision. For many revisions, find the project once, and share `parsed_slices`."""
+    """Check a tracked project at a revision. For many revisions, find the project once, and share a cache."""
+    version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
-        return judge_project(project.load_at_revision(tracked_project, revision, parsed_slices))
+        loaded_project = project.load_at_revision(tracked_project, revision, version_cache.parsed_slices)
+        return judge_project(loaded_project, version_cache.analysis_memory)
 
 
-def check_loaded_project(loaded_project: LoadedProject) -> CheckedProject:
+def check_loaded_project(loaded_project: LoadedProject, version_cache: VersionCache) -> CheckedProject:
     """Check a project that is loaded already."""
     with _pause_garbage_collection():
-        return judge_project(loaded_project)
+        return judge_project(loaded_project, version_cache.analysis_memory)
 
 
 @contextmanager
@@ -154,7 +173,7 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
         return check_project(file).findings
 
 
-def judge_project(loaded_project: LoadedProject) -> CheckedProject:
+def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory | None = None) -> CheckedProject:
     """Run all stages on a loaded project, up to its findings.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
@@ -171,6 +190,7 @@ def judge_project(loaded_project: LoadedProject) -> CheckedProject:
         is_partial=loaded_project.partial,
     )
     architecture = transform.transform_architecture(linked_architecture)
+    analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
     # explain, so that one mistake is reported once.
@@ -184,7 +204,7 @@ def judge_project(loaded_project: LoadedProject) -> CheckedProject:
         *link_findings,
         *chapter_findings,
         *error_aftermath.drop_aftermath(
-            analyses.check_architecture(architecture), structural_errors, loaded_project.sources
+            analyses.check_architecture(architecture, analysis), structural_errors, loaded_project.sources
         ),
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
     )
@@ -203,7 +223,7 @@ def judge_project(loaded_project: LoadedProject) -> CheckedProject:
         else ()
     )
     return CheckedProject(
-        loaded_project, merged_table, architecture, project_chapters, reported_findings, silenced_findings
+        loaded_project, merged_table, architecture, project_chapters, reported_findings, silenced_findings, analysis
     )
 
 

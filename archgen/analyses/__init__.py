@@ -23,19 +23,21 @@ from archgen.analyses import (
     ros_distribution,
     ros_messages,
     selector_checks,
+    slow_responses,
     timing_plausibility,
     topic_sources,
     trigger_cycles,
     type_mapping,
 )
 from archgen.diagnostics.diagnostic import Rule
-from archgen.timing.run_analysis import analyse_architecture
+from archgen.timing.run_analysis import AnalysisMemory
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.model.architecture import Architecture
+    from archgen.timing.analysis import Analysis
 
 # A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
 # that in which rules run; findings are sorted later.
@@ -60,7 +62,13 @@ _RULE_FUNCTIONS = (
     *completeness.RULES,
 )
 
-_TIMING_RULE_FUNCTIONS = (*rate_conflicts.RULES, *trigger_cycles.RULES, *resource_load.RULES, *chain_latency.RULES)
+_TIMING_RULE_FUNCTIONS = (
+    *rate_conflicts.RULES,
+    *trigger_cycles.RULES,
+    *resource_load.RULES,
+    *slow_responses.RULES,
+    *chain_latency.RULES,
+)
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 
 RULES: tuple[Rule, ...] = tuple(
@@ -69,13 +77,17 @@ RULES: tuple[Rule, ...] = tuple(
 """All rules that judge an architecture, in the order in which they run."""
 
 
-def check_architecture(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Run all rules and yield their raw diagnostics, neither sorted nor settled."""
+def analyse_timing(architecture: Architecture, memory: AnalysisMemory) -> Analysis | None:
+    """Return the timing analysis that the rules judge, None where the architecture has no `timing`."""
+    # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
+    return memory.judge_architecture(architecture) if _has_timing(architecture) else None
+
+
+def check_architecture(architecture: Architecture, analysis: Analysis | None) -> Iterator[Diagnostic]:
+    """Run all rules and yield their raw diagnostics, neither sorted nor settled. `analysis` is the timing analysis."""
     for rule_function, _ in _RULE_FUNCTIONS:
         yield from rule_function(architecture)
-    # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
-    if _has_timing(architecture):
-        analysis = analyse_architecture(architecture, judging=True)
+    if analysis is not None:
         for timing_rule_function, _ in _TIMING_RULE_FUNCTIONS:
             yield from timing_rule_function(architecture, analysis)
 

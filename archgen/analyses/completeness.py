@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 
 if TYPE_CHECKING:
@@ -31,12 +32,12 @@ def list_missing_details(architecture: Architecture, component: Component, *, is
         yield "outputs"
     untyped = [output.name for output in component.outputs.values() if output.type is None]
     if untyped:
-        yield f"the type of {_join_words([f'`{name}`' for name in untyped])}"
+        yield f"the type of {join_words([f'`{name}`' for name in untyped])}"
     if not component.performance:
         yield "performance"
     empty_indicators = [i.id for i in component.performance if i.accuracy is None and i.execution_time is None]
     if empty_indicators:
-        yield f"figures for {_join_words([f'`{name}`' for name in empty_indicators])}"
+        yield f"figures for {join_words([f'`{name}`' for name in empty_indicators])}"
     if not is_timed:
         yield "timing"
 
@@ -101,15 +102,10 @@ def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
         if missing_items:
             yield Diagnostic(
                 "missing-detail",
-                f"`{component.id}` still lacks {_join_words(missing_items)}",
+                f"`{component.id}` still lacks {join_words(missing_items)}",
                 component.at,
                 element=component.id,
             )
-
-
-def _join_words(words: list[str]) -> str:
-    """Join words as in "a, b and c"."""
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 RULES = ((missing_detail, Severity.NOTE),)

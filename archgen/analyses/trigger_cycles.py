@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 
@@ -59,7 +60,7 @@ def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]
         is_certain = not inferred_members
         yield Diagnostic(
             "endless-trigger",
-            f"{_join_quoted(ring)} fire {'one another' if len(ring) > 1 else 'itself'} without an end"
+            f"{_join_quoted(ring)} fire one another without an end"
             if len(ring) > 1
             else f"`{ring[0]}` fires itself without an end",
             first.places.get("trigger", first.at),
@@ -141,8 +142,7 @@ def _find_arriving_keys(analysis: Analysis) -> dict[str, set[str]]:
 
 def _join_quoted(names: tuple[str, ...] | list[str]) -> str:
     """Join names in backticks as in "`a`, `b` and `c`"."""
-    quoted_names = [f"`{name}`" for name in names]
-    return quoted_names[0] if len(quoted_names) == 1 else f"{', '.join(quoted_names[:-1])} and {quoted_names[-1]}"
+    return join_words([f"`{name}`" for name in names])
 
 
 RULES = (

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from archgen import resources
 
-_LIBRARY_NAMES = (
+WRITER_LIBRARIES = (
     "jinja2",
     "jsonschema-rs",
     "lxml",
@@ -23,6 +23,7 @@ _LIBRARY_NAMES = (
     "python-docx",
     "pyyaml",
 )
+"""The libraries that decide what is written. The command line uses click beside them."""
 _EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
 
 
@@ -64,7 +65,7 @@ def _walk_files(top: Path) -> Iterator[Path]:
 @cache
 def _describe_libraries() -> str:
     """Describe the libraries: their versions, and for Graphviz's shared objects their sizes and dates."""
-    versions = [f"{name} {_library_version(name)}" for name in _LIBRARY_NAMES]
+    versions = [f"{name} {_library_version(name)}" for name in WRITER_LIBRARIES]
     # zlib decides the bytes of all that Python compresses, docx files above all.
     return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_describe_graphviz())}"
 

@@ -15,7 +15,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
-    from archgen.pipeline import CheckedProject
+    from archgen.pipeline import CheckedProject, VersionCache
     from archgen.products.check_findings import ReportedFindings
 
 _MAX_CURED_LINES = 20
@@ -68,9 +68,12 @@ def command(  # noqa: PLR0913 - one for each option
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
         raise click.UsageError(msg)
-    checked_project = command_support.check_project(project)
-    earlier_project = None if changed_since is None else _check_at_revision(project, changed_since)
+    from archgen.pipeline import VersionCache
     from archgen.products import check_findings
+
+    version_cache = VersionCache()
+    checked_project = command_support.check_project(project, version_cache)
+    earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)
     lowest_severity = "warning" if strict else "error"
@@ -90,7 +93,7 @@ def command(  # noqa: PLR0913 - one for each option
     )
 
 
-def _check_at_revision(project: Path | None, revision: str) -> CheckedProject | None:
+def _check_at_revision(project: Path | None, revision: str, version_cache: VersionCache) -> CheckedProject | None:
     """Check the project at a revision. Return None, with a warning, where it cannot be read there: then everything
     counts.
     """
@@ -99,7 +102,7 @@ def _check_at_revision(project: Path | None, revision: str) -> CheckedProject | 
     from archgen.project import NotAtRevisionError
 
     try:
-        checked_project = check_findings.check_earlier(project, revision)
+        checked_project = check_findings.check_earlier(project, revision, version_cache)
     except NotAtRevisionError as error:
         command_support.print_warning(f"{error}: all findings are shown")
         return None

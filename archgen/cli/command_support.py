@@ -18,18 +18,16 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.model.selector_evaluation import Selection
-    from archgen.pipeline import CheckedProject
-
-ERROR = Severity.ERROR
+    from archgen.pipeline import CheckedProject, VersionCache
 
 
-def check_project(project: Path | None) -> CheckedProject:
+def check_project(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check a project. It is wrong usage if there is none."""
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
 
     try:
-        return pipeline.check_project(project)
+        return pipeline.check_project(project, version_cache)
     except ProjectNotFoundError as error:
         raise click.UsageError(str(error)) from None
 
@@ -55,13 +53,7 @@ def read_allowed_backends(project: Path | None, revision: str | None) -> tuple[s
 
 def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Severity = Severity.WARNING) -> None:
     """Print findings from a severity on, and their count, to the error stream."""
-    order = [Severity.NOTE, Severity.WARNING, Severity.ERROR]
-    # A finding without a severity counts as severe enough: it must not vanish.
-    shown_findings = [
-        d
-        for d in checked_project.findings
-        if order.index(d.severity or lowest_severity) >= order.index(lowest_severity)
-    ]
+    shown_findings = [d for d in checked_project.findings if d.effective_severity >= lowest_severity]
     if shown_findings:
         print_findings(shown_findings, checked_project, sys.stderr)
 

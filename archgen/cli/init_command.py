@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from archgen.cli import command_support
+from archgen.model.known_interfaces import KNOWN_DISTROS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.start.start_answers import StartAnswers
     from archgen.start.start_plan import StartPlan
-
-ROS_DISTROS = ("jazzy", "kilted", "humble", "rolling", "noetic")
 
 
 @click.command("init")
@@ -40,7 +39,7 @@ ROS_DISTROS = ("jazzy", "kilted", "humble", "rolling", "noetic")
     multiple=True,
     help="A first group and its owner; may be repeated.  [default: sensing, driving]",
 )
-@click.option("--distro", type=click.Choice(ROS_DISTROS), help="The ROS distribution.  [default: jazzy]")
+@click.option("--distro", type=click.Choice(KNOWN_DISTROS), help="The ROS distribution.  [default: jazzy]")
 @click.option(
     "--ci", type=click.Choice(["github", "gitlab", "none"]), help="Whose workflow to write.  [default: github]"
 )
@@ -87,7 +86,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         from archgen.cli import init_questions
 
         answers = init_questions.ask_questions(
-            answers, frozenset(key for key, value in flag_values.items() if value), ROS_DISTROS
+            answers, frozenset(key for key, value in flag_values.items() if value), KNOWN_DISTROS
         )
     imported = _import_tables(tables, answers.distro) if tables else None
     if imported:

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import Severity
 
 LISTABLE_KINDS = (
     "components",
@@ -41,7 +42,7 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     from archgen.views.tables import element_rows
 
     checked_project = command_support.check_project(project)
-    command_support.print_findings_above(checked_project, lowest_severity=command_support.ERROR)
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join(selector)
     selection = command_support.evaluate_selector(checked_project, selector_text or None)
     columns, rows = element_rows.list_element_rows(

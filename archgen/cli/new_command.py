@@ -5,20 +5,19 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, get_args
 
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.model.component import ComponentRole
+from archgen.model.node import NodeStatus
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
     from archgen.edit.element_place import ElementPlace
     from archgen.edit.new_element import NewElement
     from archgen.pipeline import CheckedProject
-
-COMPONENT_ROLES = ("source", "filter", "sink", "reactive")
-NODE_STATUSES = ("planned", "adapted", "existing")
 
 
 @click.group("new")
@@ -62,7 +61,7 @@ def add_group(name: str, title: str | None, owner: str | None, project: Path | N
 
 @command.command("component")
 @click.option("--group", "group_", metavar="GROUP", help="Its group.  [default: the only one]")
-@click.option("--role", type=click.Choice(COMPONENT_ROLES), help="What it does with data.")
+@click.option("--role", type=click.Choice(get_args(ComponentRole)), help="What it does with data.")
 @click.option("--functionality", metavar="TEXT", help="What it does, in a sentence or two.")
 @_add_shared_options
 def add_component(  # noqa: PLR0913, PLR0917 - one for each option
@@ -117,7 +116,7 @@ def add_component(  # noqa: PLR0913, PLR0917 - one for each option
 )
 @click.option("--package", metavar="NAME", help="Its ROS package.")
 @click.option("--host", metavar="HOST", help="The computer on which it runs.")
-@click.option("--status", type=click.Choice(NODE_STATUSES), default="planned", show_default=True)
+@click.option("--status", type=click.Choice(get_args(NodeStatus)), default="planned", show_default=True)
 @_add_shared_options
 def add_node(  # noqa: PLR0913, PLR0917 - one for each option
     name: str,

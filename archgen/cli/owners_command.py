@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
     from archgen.views.partner_ownership import Ownership, OwnershipShare
@@ -37,7 +38,7 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
         text = codeowners_file.text
     else:
         checked_project = command_support.check_project(project)
-        command_support.print_findings_above(checked_project, lowest_severity=command_support.ERROR)
+        command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
         text = _format_ownership(code_ownership.find_ownership(checked_project))
     if output is None:
         sys.stdout.write(text)

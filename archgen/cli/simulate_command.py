@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import Severity
 
 
 @click.command("simulate")
@@ -32,7 +33,7 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     from archgen.timing.run_analysis import analyse_architecture
 
     checked_project = command_support.check_project(project)
-    command_support.print_findings_above(checked_project, lowest_severity=command_support.ERROR)
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     architecture = checked_project.architecture
     _require_chains(asked, tuple(architecture.chains))
     analysis = analyse_architecture(architecture)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.common_wording import floor_percent
 
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
@@ -108,4 +109,4 @@ def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[P
 
 
 def _format_share(count: int, total: int) -> str:
-    return f"{count} ({100 * count // total}%)"
+    return f"{count} ({floor_percent(count, total)}%)"

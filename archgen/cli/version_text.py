@@ -6,8 +6,9 @@ import platform
 from importlib import metadata
 
 from archgen import __version__
+from archgen.cache.program_stamp import WRITER_LIBRARIES
 
-_LIBRARY_NAMES = ("click", "jinja2", "jsonschema-rs", "lxml", "markdown-it-py", "pygraphviz", "pyyaml")
+_LIBRARY_NAMES = ("click", *WRITER_LIBRARIES)
 
 
 def format_versions() -> str:

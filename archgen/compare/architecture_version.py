@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,3 +27,5 @@ class ArchitectureVersion:
     silenced_findings: tuple[Diagnostic, ...] = ()
     """Findings that a comment or a setting hides."""
     unnamed_keys: frozenset[str] = frozenset()
+    analysis: Analysis | None = field(default=None, compare=False, repr=False)
+    """The timing analysis that its rules judged, if there is one already."""

@@ -29,12 +29,11 @@ _LOSS_FINDERS = (
     find_weakened_publishers,
     find_unserved_requirements,
 )
-_SEVERITY_ORDER = (Severity.OFF, Severity.NOTE, Severity.WARNING, Severity.ERROR)
 
 
 def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> Severity:
     """Return the stricter policy of both versions, so that no branch weakens the policy it is judged by."""
-    return max((review.breaking or Severity.WARNING for review in (old_review, new_review)), key=_SEVERITY_ORDER.index)
+    return max(review.breaking or Severity.WARNING for review in (old_review, new_review))
 
 
 def mark_breaking_changes(

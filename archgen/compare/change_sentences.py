@@ -7,9 +7,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.connection_maps import RewiredInput
-from archgen.compare.key_phrases import describe_key_change, join_words, shorten_text
+from archgen.compare.key_phrases import describe_key_change, shorten_text
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.common_wording import join_words
 from archgen.transform import ros_names
 
 _SURE_CONFIDENCE = 0.85

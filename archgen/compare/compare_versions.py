@@ -44,7 +44,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
     judged_findings = judge_findings(before, after, matched_ids)
-    timing_pair = analyse_timing(before.architecture, after.architecture, changes)
+    timing_pair = analyse_timing(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
     breaking_severity = stricter_policy(before.architecture.review, after.architecture.review)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from archgen.compare.comparison import Change
+from archgen.diagnostics.common_wording import join_words
 
 _MAX_LENGTH = 80
 _PROSE_KEYS = frozenset({"functionality", "description", "comment", "text", "external"})
@@ -183,8 +184,3 @@ def shorten_text(text: str) -> str:
     # A backtick inside would end the code span that sentences put the text into, and let a name pose as our own words.
     line = " ".join(text.replace("`", "'").split())
     return line if len(line) <= _MAX_LENGTH else f"{line[: _MAX_LENGTH - 1]}…"
-
-
-def join_words(items: Sequence[str]) -> str:
-    """Join items as a sentence does: "a, b and c"."""
-    return " and ".join((", ".join(items[:-1]), items[-1])) if len(items) > 1 else "".join(items)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
-from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.run_analysis import analyse_architecture
 
@@ -28,18 +28,25 @@ class TimingPair:
     after: Analysis
 
 
-def analyse_timing(before: Architecture, after: Architecture, changes: Sequence[Change]) -> TimingPair | None:
+def analyse_timing(
+    old_version: ArchitectureVersion, new_version: ArchitectureVersion, changes: Sequence[Change]
+) -> TimingPair | None:
     """Analyse both versions if there are chains to compare, or an overloaded host or link; else return None."""
+    before, after = old_version.architecture, new_version.architecture
     if before.unread_keys or after.unread_keys:  # of what could not be read nobody knows how long it takes
         return None
     has_chains = before.chains or after.chains
     if not (has_chains or after.hosts or after.links) or not any(map(can_affect_timing, changes)):
         return None
-    new_analysis = analyse_architecture(after, judging=True)  # the analysis of the version judged last is still at hand
+    new_analysis = _analysis_of(new_version)
     loads: list[HostLoad | LinkLoad] = [*new_analysis.hosts.values(), *new_analysis.links.values()]
     if not has_chains and not any(map(is_overloaded, loads)):
         return None
-    return TimingPair(analyse_architecture(before, judging=True), new_analysis)
+    return TimingPair(_analysis_of(old_version), new_analysis)
+
+
+def _analysis_of(version: ArchitectureVersion) -> Analysis:
+    return version.analysis or analyse_architecture(version.architecture, judging=True)
 
 
 def can_affect_timing(change: Change) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 import inspect
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,12 +18,32 @@ if TYPE_CHECKING:
 class Severity(enum.StrEnum):
     """How serious a finding is. `off` occurs only in settings, never on a diagnostic."""
 
-    # From the least to the most serious: the order of definition is used to compare severities.
-
+    # From the least to the most serious: severities compare by this order, and not as the texts that they are.
     OFF = "off"
     NOTE = "note"
     WARNING = "warning"
     ERROR = "error"
+
+    @property
+    def rank(self) -> int:
+        """The place in the order of severities: the more serious, the greater."""
+        return _SEVERITY_RANKS[self]
+
+    # All four, since a text has all four: one that is left out would compare letters.
+    def __lt__(self, other: str) -> bool:
+        return self.rank < other.rank if isinstance(other, Severity) else NotImplemented
+
+    def __le__(self, other: str) -> bool:
+        return self.rank <= other.rank if isinstance(other, Severity) else NotImplemented
+
+    def __gt__(self, other: str) -> bool:
+        return self.rank > other.rank if isinstance(other, Severity) else NotImplemented
+
+    def __ge__(self, other: str) -> bool:
+        return self.rank >= other.rank if isinstance(other, Severity) else NotImplemented
+
+
+_SEVERITY_RANKS = {severity: rank for rank, severity in enumerate(Severity)}
 
 
 class Label(NamedTuple):
@@ -49,6 +70,11 @@ class Diagnostic:
     element: str | None = None
 
     @property
+    def effective_severity(self) -> Severity:
+        """The severity; one that is not settled counts as an error, so that it does not vanish."""
+        return self.severity or Severity.ERROR
+
+    @property
     def sort_key(self) -> tuple[str, int, int, str, str]:
         """The sort key: file, line, column, rule, message."""
         return (self.span.file, self.span.line, self.span.column, self.rule, self.message)
@@ -73,6 +99,14 @@ class Rule:
         return cls(function.__name__.replace("_", "-"), severity, inspect.cleandoc(function.__doc__ or ""))
 
 
+def diagnose_repetition(  # noqa: PLR0913 - what a diagnostic has
+    rule: str, message: str, span: Span, first_span: Span, *, help_line: str | None = None, element: str | None = None
+) -> Diagnostic:
+    """Report what is written a second time; a label shows the first place."""
+    labels = (Label(first_span, "first written here"),)
+    return Diagnostic(rule, message, span, labels=labels, help=help_line, element=element)
+
+
 def settle_diagnostics(
     diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], settings: Mapping[str, Severity]
 ) -> tuple[Diagnostic, ...]:
@@ -90,3 +124,23 @@ def settle_diagnostics(
         if severity is not Severity.OFF:
             settled_diagnostics.add(replace(diagnostic, severity=severity))
     return tuple(sorted(settled_diagnostics, key=lambda d: d.sort_key))
+
+
+def count_by_severity(diagnostics: Iterable[Diagnostic]) -> Mapping[Severity, int]:
+    """Count diagnostics by severity; all three are there, errors first."""
+    counts = Counter(diagnostic.effective_severity for diagnostic in diagnostics)
+    return {severity: counts[severity] for severity in (Severity.ERROR, Severity.WARNING, Severity.NOTE)}
+
+
+def phrase_severity_counts(diagnostics: Iterable[Diagnostic]) -> list[str]:
+    """Count diagnostics by severity in words, errors first: `1 error`, `2 warnings`; severities without any are left
+    out.
+    """
+    return [
+        f"{count} {severity}{'s' * (count != 1)}" for severity, count in count_by_severity(diagnostics).items() if count
+    ]
+
+
+def sort_gravest_first(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Return diagnostics with the gravest first; those of one severity keep their order."""
+    return sorted(diagnostics, key=lambda diagnostic: diagnostic.effective_severity, reverse=True)

@@ -42,10 +42,6 @@ class FileTree:
 
     files: Mapping[str, bytes]
 
-    def in_folder(self, folder: str) -> FileTree:
-        """Return the same files below a folder."""
-        return make_file_tree((f"{folder}/{path}", data) for path, data in self.files.items())
-
 
 @dataclass(frozen=True, slots=True)
 class WriteResult:

@@ -7,9 +7,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from archgen.forge import github_request, gitlab_request
 from archgen.forge.comment_post import CommentOutcome, CommentTarget, put_comment
 from archgen.forge.forge_api import ForgeError
+from archgen.forge.pull_request import find_merge_request, find_pull_request
 from archgen.forge.time_limit import run_within
 
 TOTAL_SECONDS = 120.0
@@ -29,8 +29,8 @@ def post_comment(text: str, key: str, environment: Mapping[str, str] = os.enviro
 
 def _find_target(environment: Mapping[str, str]) -> CommentTarget:
     if environment.get("GITLAB_CI"):
-        return gitlab_request.find_merge_request(environment)
+        return find_merge_request(environment)
     if environment.get("GITHUB_ACTIONS"):
-        return github_request.find_pull_request(environment)
+        return find_pull_request(environment)
     msg = "this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set"
     raise ForgeError(msg)

@@ -6,9 +6,9 @@ so it must be had before there is an architecture. It may only err towards "chan
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Hashable
 
+from archgen.cache.file_store import digest_text
 from archgen.project import LoadedProject
 from archgen.syntax.committed_files import CommittedFiles
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlDocument, YamlNode
@@ -38,7 +38,7 @@ class CommitContents:
                 if document.ignores
                 else repr(_plain_content(document.root))
             )
-            digest = hashlib.sha256((text or "").encode("utf-8", "surrogatepass")).hexdigest()
+            digest = digest_text(text or "")
             # The document is kept in the entry: its id() could be used again once it is collected.
             cached = self._digests[id(document)] = (document, digest)
         return cached[1]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
 from archgen.analyses.size_counts import count_mapped_connections, measure_progress
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, count_by_severity
 from archgen.model.architecture import Architecture
 from archgen.model.project_history import FindingCounts, HistoryPoint, ProgressRow
 from archgen.pipeline import CheckedProject
@@ -19,7 +18,7 @@ _COUNTED_FIELDS = ("components", "described", "typed", "mapped", "timed", "trace
 def count_point(checked_project: CheckedProject, commit: str, day: str) -> HistoryPoint:
     """Count a project."""
     architecture = checked_project.architecture
-    counts = _count_by_scope(checked_project)
+    findings_of = _findings_by_scope(checked_project)
     return HistoryPoint(
         commit=commit,
         day=day,
@@ -34,8 +33,8 @@ def count_point(checked_project: CheckedProject, commit: str, day: str) -> Histo
                 title=progress_row.title,
                 **{name: getattr(progress_row, name) for name in _COUNTED_FIELDS},
                 findings=_count_findings(
-                    counts.get(
-                        (progress_row.scope, "" if progress_row.scope == "project" else progress_row.id), Counter()
+                    findings_of.get(
+                        (progress_row.scope, "" if progress_row.scope == "project" else progress_row.id), ()
                     )
                 ),
             )
@@ -55,19 +54,20 @@ def point_from_data(data: Mapping[str, Any]) -> HistoryPoint:
     return HistoryPoint(**{**data, "rows": rows})
 
 
-def _count_findings(counts: Counter[Severity]) -> FindingCounts:
+def _count_findings(findings: Iterable[Diagnostic]) -> FindingCounts:
+    counts = count_by_severity(findings)
     return FindingCounts(counts[Severity.ERROR], counts[Severity.WARNING], counts[Severity.NOTE])
 
 
-def _count_by_scope(checked_project: CheckedProject) -> dict[tuple[str, str], Counter[Severity]]:
-    """Count findings by severity: each once for the whole, for its group, and for each partner who owns its element."""
+def _findings_by_scope(checked_project: CheckedProject) -> dict[tuple[str, str], list[Diagnostic]]:
+    """Return the findings by scope: each once for the whole, for its group, and for each partner who owns its element."""
     element_scopes = _find_scopes(checked_project.architecture)
-    counts: dict[tuple[str, str], Counter[Severity]] = {}
+    findings_of: dict[tuple[str, str], list[Diagnostic]] = {}
     for finding in checked_project.findings:
         scopes = {("project", ""), *element_scopes.get(_known_element(finding.element, element_scopes), ())}
         for scope in scopes:
-            counts.setdefault(scope, Counter())[finding.severity or Severity.ERROR] += 1
-    return counts
+            findings_of.setdefault(scope, []).append(finding)
+    return findings_of
 
 
 ElementScopes = Mapping[str, frozenset[tuple[str, str]]]

@@ -5,6 +5,7 @@ parsed.
 from __future__ import annotations
 
 import gc
+import itertools
 import json
 import os
 import subprocess
@@ -19,7 +20,7 @@ from archgen.history.commit_content import CommitContents
 from archgen.history.history_points import count_point, point_from_data, point_to_data
 from archgen.history.project_commits import ProjectCommit
 from archgen.model.project_history import HistoryPoint
-from archgen.project.slice_parsing import ParsedSlices
+from archgen.pipeline import VersionCache
 
 WorkerProgress = Callable[[int, int], None]
 _COMMITS_PER_PROCESS = 8
@@ -33,12 +34,15 @@ def count_commits(
 ) -> tuple[HistoryPoint, ...]:
     """Count a project at commits, in their order."""
     processes = min(os.cpu_count() or 1, 1 + len(commits) // _COMMITS_PER_PROCESS)
-    done_count = [0]
+    done_numbers = itertools.count(1)
+    progress_lock = threading.Lock()
 
     def report_point(_: HistoryPoint) -> None:
-        done_count[0] += 1
-        if progress:
-            progress(done_count[0], len(commits))
+        # Points arrive in several threads: the lock keeps the numbers in order, and whoever prints them undisturbed.
+        with progress_lock:
+            done_number = next(done_numbers)
+            if progress:
+                progress(done_number, len(commits))
 
     if processes < 2:  # noqa: PLR2004 - this one
         return tuple(_count_here(path, commits, report_point))
@@ -73,15 +77,15 @@ def _count_here(
 
 
 def _yield_points(path: Path | None, commits: Sequence[ProjectCommit]) -> Iterator[HistoryPoint]:
-    tracked_project, parsed_slices, contents = project.find_tracked_project(path), ParsedSlices(), CommitContents()
+    tracked_project, version_cache, contents = project.find_tracked_project(path), VersionCache(), CommitContents()
     counted: dict[Hashable, HistoryPoint] = {}
     for commit in commits:
-        loaded_project = project.load_at_commit(tracked_project, commit.id, parsed_slices)
+        loaded_project = project.load_at_commit(tracked_project, commit.id, version_cache.parsed_slices)
         content = contents.content_key(loaded_project)
         content_point = counted.get(content)
         if content_point is None:
             content_point = counted[content] = count_point(
-                pipeline.check_loaded_project(loaded_project), commit.id, commit.day
+                pipeline.check_loaded_project(loaded_project, version_cache), commit.id, commit.day
             )
         yield replace(content_point, commit=commit.id, day=commit.day)
 
@@ -92,8 +96,8 @@ def _count_elsewhere(
     batch_points: list[HistoryPoint],
     report_point: Callable[[HistoryPoint], None],
 ) -> None:
-    # The folder that holds the package `archgen`: two levels above this file's own.
     """Count commits in another process; `batch_points` holds whatever it delivered, even if it was killed."""
+    # The folder that holds the package `archgen`: two levels above this file's own.
     root = str(Path(__file__).resolve().parents[2])
     command = (sys.executable, "-P", "-c", _START.format(root=root))
     request = {
@@ -105,7 +109,12 @@ def _count_elsewhere(
             process.stdin.write(json.dumps(request).encode())
             process.stdin.close()
             for line in process.stdout:
-                item = point_from_data(json.loads(line))
+                try:
+                    item = point_from_data(json.loads(line))
+                except (ValueError, KeyError, TypeError, AttributeError):
+                    # A process that died in the middle of a line: whatever is missing is counted here afterwards.
+                    process.kill()
+                    break
                 batch_points.append(item)
                 report_point(item)
 

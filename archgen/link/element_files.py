@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from archgen.link import mapping_values
+from archgen.model.element_ids import ElementFiles
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
-
-ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
-"""Files by kind (`group`, `component`, `node`) and complete id, in order of appearance."""
 
 
 def find_element_files(root: MappingNode) -> ElementFiles:

@@ -5,8 +5,6 @@ Types are compared with `type(...) is`, not isinstance: these functions run for 
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -16,10 +14,10 @@ from archgen.model.component import DiagramLayout
 from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
+from archgen.schema.short_forms import fold_type_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 EMPTY_MAPPING = MappingNode({}, NO_SPAN)
-_BLANKS = re.compile(r"\s+")
 
 
 def get_mapping(mapping: MappingNode, key: str) -> MappingNode:
@@ -116,7 +114,7 @@ def get_title(mapping: MappingNode, element_id: str) -> str:
 @lru_cache(4096)
 def normalise_type_name(text_written: str) -> str:
     """Return a type's name in the form in which names are compared: NFC, blanks folded to one, messages in full."""
-    folded = _BLANKS.sub(" ", unicodedata.normalize("NFC", text_written)).strip()
+    folded = fold_type_name(text_written)
     return full_message_name(folded) or folded
 
 

@@ -8,11 +8,10 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.declare import section_declaration
-from archgen.link.declare.group_declaration import GroupDeclarer
+from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
 from archgen.link.element_outline import ElementOutline, build_outline
-from archgen.link.input_wiring import InputWiring
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Architecture
@@ -36,24 +35,26 @@ def link_project(  # noqa: PLR0913 - all by name
     `default_id` and `default_title` are used where the project states none. `lost_keys` are the keys of what could not
     be read: what they may declare is not reported as unknown. `is_partial` is whether a whole file or section was lost.
     """
-    # The order matters. Ids come first (the outline), then types, because which outputs carry messages decides what a
-    # reference to a whole component brings. Containers and the components of the nodes must be known before the nodes,
-    # which inherit hosts, owners and timing from them. Every step appends to the same list of diagnostics.
+    # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
+    # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
+    # containers and components. Every step appends to the same list of diagnostics.
     diagnostics: list[Diagnostic] = []
     element_outline = build_outline(root)
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys)
-    wiring = InputWiring(element_outline, resolver, types)
-    group_declarer = GroupDeclarer(element_outline, resolver, wiring)
-    group_declarer.declare_groups()
+    groups, components, connections, edges = declare_groups(element_outline, resolver, types)
     containers = section_declaration.declare_containers(root, resolver)
-    resolver.implements = implements = resolve_implements(root, resolver)
-    timing_merger = TimingMerger(group_declarer.components, find_shared_components(implements.values()), diagnostics)
+    implements = resolve_implements(root, resolver)
+    timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
-        root, NodeContext(element_outline, resolver, group_declarer.components, containers, timing_merger), implements
+        root, NodeContext(element_outline, resolver, components, containers, timing_merger), implements
     )
+    requirements = section_declaration.declare_requirements(root, resolver)
+    links = section_declaration.declare_links(root, resolver)
+    chains = section_declaration.declare_chains(root, resolver, implements)
+    suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
-    architecture = Architecture(
+    architecture = Architecture(  # of values only: nothing below resolves a reference
         project=section_declaration.declare_project(root, default_id, default_title),
         distro=mapping_values.get_text(ros_section, "distro"),
         distro_at=mapping_values.get_span(ros_section, "distro"),
@@ -61,28 +62,26 @@ def link_project(  # noqa: PLR0913 - all by name
         layout=mapping_values.get_layout(root),
         partners=section_declaration.declare_partners(root),
         use_cases=section_declaration.declare_use_cases(root),
-        requirements=section_declaration.declare_requirements(root, resolver),
-        groups=group_declarer.groups,
-        components=group_declarer.components,
-        inputs={
-            port.id: port for component in group_declarer.components.values() for port in component.inputs.values()
-        },
+        requirements=requirements,
+        groups=groups,
+        components=components,
+        inputs={port.id: port for component in components.values() for port in component.inputs.values()},
         outputs={output.id: output for output in element_outline.list_outputs()},
-        connections=tuple(wiring.connections),
-        edges=tuple(wiring.edges),
+        connections=connections,
+        edges=edges,
         types=types,
         nodes=nodes,
         hosts=section_declaration.declare_hosts(root),
         containers=containers,
-        links=section_declaration.declare_links(root, resolver),
-        chains=section_declaration.declare_chains(root, resolver),
+        links=links,
+        chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),
         review=section_declaration.declare_review(root),
         interfaces=interfaces,
         partial=is_partial,
         unread_keys=lost_keys,
-        suspected_ids=frozenset(resolver.suspect_ids),  # last: the arguments above still resolve references
+        suspected_ids=suspected_ids,
     )
     return architecture, tuple(diagnostics)
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import find_closest
@@ -14,6 +16,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
+_NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 _GUESS_BUDGET = 300_000
 """How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
 components, as many as anybody needs in a project of usual size. What comes later is reported without a guess. Without
@@ -23,10 +26,7 @@ the limit, thousands of unknown references would take time that grows with the s
 
 @dataclass(slots=True)
 class ReferenceResolver:
-    """Resolves references to everything that can be referred to, and collects what is wrong with them.
-
-    `implements` is filled in from outside once the nodes' components are resolved, which itself needs this object.
-    """
+    """Resolves references to everything that can be referred to, and collects what is wrong with them."""
 
     spans: Mapping[str, Mapping[str, Span]]
     """Where elements that dotted paths can name were declared, by kind and complete id."""
@@ -35,11 +35,10 @@ class ReferenceResolver:
     diagnostics: list[Diagnostic]
     lost_keys: frozenset[str] = frozenset()
     """The keys in files that could not be read: what they may declare is not reported as unknown."""
-    implements: Mapping[str, Collection[str]] = field(default_factory=dict)
-    """The components of each node, once they are known."""
     suspect_ids: set[str] = field(default_factory=set)
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     names: PathResolver = field(init=False)
+    _is_finished: bool = False
     _guesses_left: int = _GUESS_BUDGET
     _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
@@ -47,13 +46,20 @@ class ReferenceResolver:
         self.names = PathResolver(self.spans)
 
     def resolve_reference(
-        self, reference: ScalarNode, kinds: Sequence[str], element_id: str, component_id: str | None = None
+        self,
+        reference: ScalarNode,
+        kinds: Sequence[str],
+        element_id: str,
+        component_id: str | None = None,
+        implements: Mapping[str, Collection[str]] = _NO_NODES,
     ) -> ElementRef | None:
         """Return the element that a reference means; None, and a diagnostic, if that is not clear.
 
         `kinds` are the kinds that are allowed here; the diagnostic is about `element_id`. `component_id` is the
         component that writes the reference: elements of its group win; a single word never means itself or its output.
+        Where nodes are allowed, `implements` holds the components of each: a node never hides one of its own.
         """
+        self._refuse_if_finished()
         dotted_path = reference.text
         match = self.names.resolve_path(dotted_path, kinds, component_id=component_id)
         target = match.unique_element
@@ -65,11 +71,21 @@ class ReferenceResolver:
         elif target is None and not self.is_lost(dotted_path):
             self.diagnostics.append(self._diagnose_unknown(reference, kinds, element_id, component_id))
         elif target and match.hidden_elements:
-            self._warn_hidden(reference, target, match.hidden_elements, element_id)
+            # A node and the component that it implements often have the same name: either is meant, nothing is hidden.
+            own_components = implements.get(target.id, ())
+            hidden_elements = [element for element in match.hidden_elements if element.id not in own_components]
+            if hidden_elements:
+                self._warn_hidden(reference, target, hidden_elements, element_id)
         return target
+
+    def finish_resolving(self) -> frozenset[str]:
+        """Return the suspects of all references; from here on the resolver refuses to resolve any more."""
+        self._is_finished = True
+        return frozenset(self.suspect_ids)
 
     def resolve_plain_id(self, reference: ScalarNode | None, kind: str, element_id: str) -> str | None:
         """Return the id of a partner, host, container or use case; None, and a diagnostic, if there is no such one."""
+        self._refuse_if_finished()
         known_spans = self.plain_spans[kind]
         if reference is None or reference.text in known_spans:
             return reference.text if reference else None
@@ -80,6 +96,11 @@ class ReferenceResolver:
             diagnose_unknown_reference(reference, kind, guess, known_spans.get(guess or "", NO_SPAN), element_id)
         )
         return None
+
+    def _refuse_if_finished(self) -> None:
+        if self._is_finished:
+            msg = "a reference is resolved after the suspects were taken: they would lack what it may have meant"
+            raise RuntimeError(msg)
 
     def resolve_owners(self, body: MappingNode, element_id: str, inherited_owners: Iterable[str]) -> tuple[str, ...]:
         """Return the owners of an element, each once: those written, or the inherited ones if none are written."""
@@ -107,11 +128,10 @@ class ReferenceResolver:
     def _diagnose_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> Diagnostic:
         self.suspect_ids.update(name.id for name in match.elements)
         quoted_ids = [f"`{name.id}`" for name in match.elements]
-        unlisted_count = match.count - len(quoted_ids)
-        last_item = f"{unlisted_count} more" if unlisted_count else quoted_ids.pop()
+        rest = [f"{match.count - len(quoted_ids)} more"] if match.count > len(quoted_ids) else []
         return Diagnostic(
             "ambiguous-reference",
-            f"`{reference.text}` can mean {', '.join(quoted_ids)} or {last_item}",
+            f"`{reference.text}` can mean {join_words([*quoted_ids, *rest], 'or')}",
             reference.span,
             labels=tuple(Label(self._span_of(name), f"`{name.id}`") for name in match.elements),
             help=f"write more of the path, such as `{match.elements[0].id}`",
@@ -160,21 +180,18 @@ class ReferenceResolver:
         )
 
     def _warn_hidden(
-        self, reference: ScalarNode, visible: ElementRef, hidden: Iterable[ElementRef], element_id: str
+        self, reference: ScalarNode, visible: ElementRef, hidden: Sequence[ElementRef], element_id: str
     ) -> None:
-        # A node and the component that it implements often have the same name: either is meant, nothing is hidden.
-        others = [name for name in hidden if name.id not in self.implements.get(visible.id, ())]
-        if others:
-            self.diagnostics.append(
-                Diagnostic(
-                    "hidden-reference",
-                    f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {others[0].kind} `{others[0].id}`",
-                    reference.span,
-                    labels=tuple(Label(self._span_of(name), "hidden") for name in others),
-                    help=f"write `{others[0].id}` if that is meant",
-                    element=element_id,
-                )
+        self.diagnostics.append(
+            Diagnostic(
+                "hidden-reference",
+                f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
+                reference.span,
+                labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
+                help=f"write `{hidden[0].id}` if that is meant",
+                element=element_id,
             )
+        )
 
     def _guess_path(self, dotted_path: str, kinds: Sequence[str]) -> str | None:
         """Return the path that was most likely meant, or None.
@@ -190,7 +207,7 @@ class ReferenceResolver:
         # A set of ends: two complete paths with the same end are one candidate, since the guess has the length of the
         # reference that somebody wrote.
         near_paths = {
-            _path_end(path, length) for kind in fitting_kinds for path in self.names.ids_ending_in(kind, last)
+            take_path_end(path, length) for kind in fitting_kinds for path in self.names.ids_ending_in(kind, last)
         }
         guess = self.guess_name(dotted_path, near_paths) if length > 1 and near_paths else None
         if guess is None:
@@ -235,98 +252,9 @@ def diagnose_unknown_reference(
 def _list_possible_kinds(kinds: Sequence[str], length: int) -> str:
     """Return the kinds that a path of some length can mean, as words: "component or output"."""
     possible = [kind for kind in kinds if _PATH_LENGTHS[kind] >= length] or [kinds[-1]]
-    return " or ".join(filter(None, (", ".join(possible[:-1]), possible[-1])))
+    return join_words(possible, "or")
 
 
-def _path_end(path: str, length: int) -> str:
+def take_path_end(path: str, length: int) -> str:
+    """Return the last parts of a path."""
     return ".".join(path.split(".")[-length:])
-
-
-@dataclass(slots=True)
-class PortResolver:
-    """Resolves keys that name ports: of one component, or of all components that a node implements."""
-
-    resolver: ReferenceResolver
-    owner_id: str
-    """The element whose keys they are, for diagnostics."""
-    component_ids: tuple[str, ...]
-    port_names: Mapping[str, Mapping[str, Collection[str]]]
-    """The names of ports by kind (`input`, `output`) and component."""
-    is_free: bool = False
-    """Whether the node implements nothing, so that its keys are names of its own."""
-    _names: PathResolver | None = None
-
-    @property
-    def names(self) -> PathResolver:
-        """The look-up of ports by the ends of their ids, built on first use: most keys are found without it."""
-        if self._names is None:
-            self._names = PathResolver(
-                {kind: list(_complete_ids(self.component_ids, names)) for kind, names in self.port_names.items()}
-            )
-        return self._names
-
-    def resolve_port(self, key: str, span: Span, kind: str) -> str | None:
-        """Return the complete id of the port (`kind` is `input` or `output`) that a key means, or None."""
-        if not self.component_ids:  # what it implements is not known: that is reported already
-            return key if self.is_free else None
-        # The usual case, one component and the plain name of a port, needs no look-up of its own.
-        if len(self.component_ids) == 1 and key in self.port_names[kind].get(self.component_ids[0], ()):
-            return f"{self.component_ids[0]}.{key}"
-        match = self.names.resolve_path(key, (kind,))
-        if match.count == 1:
-            return match.elements[0].id
-        if match.count:
-            self.resolver.suspect_ids.update(name.id for name in match.elements)
-            self.resolver.diagnostics.append(self._diagnose_ambiguous(key, span, match))
-        elif not self.resolver.is_lost(key):
-            self.resolver.diagnostics.append(self._diagnose_unknown(key, span, kind))
-        return None
-
-    def _diagnose_ambiguous(self, key: str, span: Span, match: PathMatch) -> Diagnostic:
-        self.resolver.suspect_ids.update(name.id for name in match.elements)
-        quoted_ends = " or ".join(f"`{_path_end(name.id, 2)}`" for name in match.elements)
-        return Diagnostic(
-            "ambiguous-reference",
-            f"`{key}` can mean {quoted_ends}",
-            span,
-            labels=tuple(Label(self._span_of(name), f"`{name.id}`") for name in match.elements),
-            help="write `component.port` where several components of a node have a port of this name",
-            element=self.owner_id,
-        )
-
-    def _diagnose_unknown(self, key: str, span: Span, kind: str) -> Diagnostic:
-        other_kind = "input" if kind == "output" else "output"
-        other_ports = self.names.resolve_path(key, (other_kind,)).elements
-        message = f"no {kind} named `{key}` in {' or '.join(f'`{c}`' for c in self.component_ids[:3])}"
-        if other_ports:
-            label = Label(self._span_of(other_ports[0]), f"an {other_kind}")
-            return Diagnostic(
-                "unknown-reference",
-                message,
-                span,
-                labels=(label,),
-                help=f"`{key}` is an {other_kind}",
-                element=self.owner_id,
-            )
-        # An ambiguous end would be no help as a guess.
-        unique_paths = [
-            path for path in self.names.path_endings(kind) if len(self.names.ids_ending_in(kind, path)) == 1
-        ]
-        guess = self.resolver.guess_name(key, unique_paths)
-        guessed_port = self.names.resolve_path(guess, (kind,)).unique_element if guess else None
-        self.resolver.suspect_ids.update([guessed_port.id] if guessed_port else ())
-        labels = (Label(self._span_of(guessed_port), "declared here"),) if guessed_port else self._label_components()
-        help_line = f"did you mean `{guess}`?" if guess else None
-        return Diagnostic("unknown-reference", message, span, labels=labels, help=help_line, element=self.owner_id)
-
-    def _label_components(self) -> tuple[Label, ...]:
-        spans = self.resolver.spans["component"]
-        return tuple(Label(spans[component], "declared here") for component in self.component_ids[:3])
-
-    def _span_of(self, port: ElementRef) -> Span:
-        return self.resolver.spans[port.kind][port.id]
-
-
-def _complete_ids(component_ids: Iterable[str], names: Mapping[str, Iterable[str]]) -> Iterator[str]:
-    for component in component_ids:
-        yield from (f"{component}.{name}" for name in names.get(component, ()))

@@ -22,7 +22,7 @@ _UNKNOWN_HELP = "leave it out where it is not known"
 def drop_senseless(timing: Timing, element_id: str, diagnostics: list[Diagnostic]) -> Timing:
     """Report what makes no sense in a timing, and return the timing without it."""
     dropped_keys: dict[str, Any] = {}
-    for key, finding in find_senseless(timing, element_id):
+    for key, finding in _find_senseless(timing, element_id):
         diagnostics.append(finding)
         dropped_keys[key] = None
     return replace(timing, **dropped_keys) if dropped_keys else timing
@@ -72,7 +72,7 @@ def read_latency(
     return None, worst
 
 
-def find_senseless(timing: Timing, element_id: str) -> Iterator[tuple[str, Diagnostic]]:
+def _find_senseless(timing: Timing, element_id: str) -> Iterator[tuple[str, Diagnostic]]:
     """Yield what makes no sense in a timing: the key to leave out, and the diagnostic that says why."""
     spans = timing.places
     for key, quantity in (("period", timing.period), ("rate", timing.rate)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_repetition
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.schema import element_of_path
@@ -75,9 +75,10 @@ def _diagnose_conflict(entry: MappingEntry, first_entry: MappingEntry, path: Key
     owner = element_of_path(path[:-1])
     owner_phrase = f" of `{owner}`" if owner else ""
     message = f"`{path[-1]}`{owner_phrase} is written in two places"
-    label = Label(first_entry.value.span, "first written here")
     help_line = "a value is written once in the whole project, even where both are equal: keep one of them"
-    return Diagnostic("conflicting-values", message, entry.value.span, labels=(label,), help=help_line, element=owner)
+    return diagnose_repetition(
+        "conflicting-values", message, entry.value.span, first_entry.value.span, help_line=help_line, element=owner
+    )
 
 
 def _drop_undeclared(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
@@ -12,7 +12,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import Timing, Trigger
+from archgen.model.declared_timing import ActivityBehaviour, Timing, Trigger
 from archgen.model.node import Node
 from archgen.model.quantity import UNIT_FACTORS, parse_quantity
 
@@ -27,7 +27,7 @@ _QUANTITY_KEYS = {
     "response": _DURATION,
 }
 _COUNT_KEYS = ("every", "priority", "core")
-_BEHAVIOUR_WORDS = ("periodic", "event", "on_demand", "once")
+_BEHAVIOUR_WORDS = get_args(ActivityBehaviour)
 OVERRIDE_KEYS = (*_QUANTITY_KEYS, *_COUNT_KEYS, "behaviour", "trigger")
 """The keys of `timing` that can be overridden."""
 _MAX_COUNT_DIGITS = 9

@@ -120,7 +120,6 @@ class Component:
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
     layout: DiagramLayout = field(default_factory=DiagramLayout)
-    title_written: bool = False
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     role_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 

@@ -5,6 +5,10 @@ from __future__ import annotations
 import hashlib
 import re
 import unicodedata
+from collections.abc import Mapping
+
+ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
+"""The files in which elements are written, by kind (`group`, `component`, `node`) and complete id, in order of appearance."""
 
 MAX_ID_LENGTH = 64
 RESERVED_IDS = frozenset({"true", "false", "null", "any", "all", "none", "self"})

@@ -83,8 +83,6 @@ class Node:
     """The node's own host, else its container's."""
     status: NodeStatus | None = None
     uses: tuple[PortUse, ...] = ()
-    uses_known: tuple[UseKind, ...] = ()
-    """Which of `publishes`, `subscribes`, `serves`, `calls` are written (`{}` counts)."""
     timing: Mapping[str, Timing] = field(default_factory=dict)
     """By component id (one entry for each activity), or by "" for a node that implements no component."""
     parameters: Mapping[str, object] = field(default_factory=dict)

@@ -103,10 +103,6 @@ class PathResolver:
             own_elements.append(ElementRef("output", f"{component_id}.{path}"))
         return tuple(own_elements)
 
-    def is_complete_id(self, kind: str, path: str) -> bool:
-        """Whether a path is the complete id of an element of this kind."""
-        return path in self._complete[kind]
-
     def path_endings(self, kind: str) -> Iterable[str]:
         """Return every path that matches some element of a kind, each once."""
         return self._ends[kind]

@@ -13,7 +13,7 @@ from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision
 from archgen.pipeline import CheckedProject
 from archgen.products import project_outputs
-from archgen.products.compared_versions import ProjectVersion, format_version_name
+from archgen.products.compared_versions import ProjectVersion
 from archgen.products.project_outputs import OutputOptions
 from archgen.views import inline_text
 from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
@@ -61,7 +61,7 @@ def make_project_agreement(
         revision=find_revision(checked_project.root, checked_project.input_files)
         if printed_revision is None
         else printed_revision,
-        earlier_revision=(format_version_name(earlier_version), _make_timed_lookup(earlier_version.checked_project))
+        earlier_revision=(earlier_version.title, _make_timed_lookup(earlier_version.checked_project))
         if earlier_version
         else None,
         notices=tuple(_error_notices(checked_project, earlier_version)),
@@ -124,11 +124,7 @@ def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVers
     """Yield a notice for each version that has errors."""
     for version_suffix, noticed_project in (
         ("", checked_project),
-        *(
-            ((f" at {format_version_name(earlier_version)}", earlier_version.checked_project),)
-            if earlier_version
-            else ()
-        ),
+        *(((f" at {earlier_version.title}", earlier_version.checked_project),) if earlier_version else ()),
     ):
         if noticed_project.has_errors:
             message = f"The architecture{version_suffix} has errors ({describe_severities(noticed_project.findings)}). What is sound is shown all the same."

@@ -7,12 +7,11 @@ files changed, moved or removed since are noticed. A damaged stamp counts as non
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from archgen.cache import cache_files
+from archgen.cache.file_store import FileStore, digest_bytes, digest_text
 from archgen.cache.program_stamp import stamp_program
 from archgen.emit import file_tree
 
@@ -22,8 +21,7 @@ _MAX_STAMPS = 64
 
 def make_stamp_key(build_inputs: Iterable[object]) -> str:
     """Return the name of a build: a digest of this program and of values whose `repr` is complete."""
-    text = "\n".join([stamp_program(), *(repr(part) for part in build_inputs)])
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+    return digest_text("\n".join([stamp_program(), *(repr(part) for part in build_inputs)]))
 
 
 def find_fresh_parts(
@@ -34,11 +32,11 @@ def find_fresh_parts(
     `read_file` returns the files that the writers asked for (pictures of chapters), which decide the outputs as well.
     """
     try:
-        stamp = json.loads((folder / f"{stamp_key}.stamp").read_bytes()) if folder else {}
+        stamp = json.loads(_stamp_files(folder).load(stamp_key) or b"{}")
         asked_digests, part_digests = dict(stamp["asked"]), dict(stamp["made"])
         # The few inputs first: digests of the outputs read every file of the site.
         inputs_unchanged = all(
-            _digest_bytes(read_file(path)) == stored_digest for path, stored_digest in asked_digests.items()
+            digest_bytes(read_file(path)) == stored_digest for path, stored_digest in asked_digests.items()
         )
         if (
             inputs_unchanged
@@ -64,11 +62,14 @@ def store_stamp(
     """
     if folder is None:
         return
-    with contextlib.suppress(OSError):  # a full or read-only disk costs only the time that this would have saved
+    with contextlib.suppress(OSError):  # an output that cannot be read again has no stamp
         part_digests = {part: _digest_part(target / part, just_written=True) for part in part_names}
-        stamp = {"made": part_digests, "asked": {path: _digest_bytes(data) for path, data in asked_files.items()}}
-        cache_files.store_file(folder / f"{stamp_key}.stamp", json.dumps(stamp).encode())
-        cache_files.remove_oldest(folder, ".stamp", _MAX_STAMPS)
+        stamp = {"made": part_digests, "asked": {path: digest_bytes(data) for path, data in asked_files.items()}}
+        _stamp_files(folder).store(stamp_key, json.dumps(stamp).encode())
+
+
+def _stamp_files(folder: Path | None) -> FileStore:
+    return FileStore(folder, ".stamp", _MAX_STAMPS)
 
 
 def _digest_part(path: Path, *, just_written: bool = False) -> str | None:
@@ -79,8 +80,4 @@ def _digest_part(path: Path, *, just_written: bool = False) -> str | None:
     if path.is_dir() and not path.is_symlink():
         return file_tree.digest_manifest(path, just_written=just_written)
     # A link is never what archgen wrote.
-    return None if path.is_symlink() else _digest_bytes(path.read_bytes())
-
-
-def _digest_bytes(data: bytes | None) -> str | None:
-    return None if data is None else hashlib.sha256(data).hexdigest()
+    return None if path.is_symlink() else digest_bytes(path.read_bytes())

@@ -15,7 +15,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnost
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
 from archgen.emit import file_tree
 from archgen.findings.rule_table import index_rules
-from archgen.pipeline import ALL_RULES, CheckedProject
+from archgen.pipeline import ALL_RULES, CheckedProject, VersionCache
 from archgen.products import baseline_entries
 from archgen.project import baseline_reading as reading
 
@@ -125,10 +125,7 @@ def compare_findings(
 
 def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
     """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
-    severity_order = list(Severity)
-    return severity_order.index(new_finding.severity or Severity.ERROR) > severity_order.index(
-        old_finding.severity or Severity.ERROR
-    )
+    return new_finding.effective_severity > old_finding.effective_severity
 
 
 def _matching_keys(
@@ -141,16 +138,16 @@ def _matching_keys(
     return (finding_identity, finding.span.file, line.strip()), finding_identity
 
 
-def check_earlier(path: Path | None, revision: str) -> CheckedProject:
+def check_earlier(path: Path | None, revision: str, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check the project as it was at a revision; `main...` is the commit where HEAD left main.
 
     Raise what `pipeline.check_at` raises.
     """
     if not revision.endswith("..."):
-        return pipeline.check_at_revision(path, revision)
+        return pipeline.check_at_revision(path, revision, version_cache)
     tracked_project = project.find_tracked_project(path)
     fork = git.find_common_commit(tracked_project.objects.repository, revision.removesuffix("...") or "HEAD", "HEAD")
-    return pipeline.check_tracked_project(tracked_project, fork.commit_id)
+    return pipeline.check_tracked_project(tracked_project, fork.commit_id, version_cache)
 
 
 def update_baseline(checked_project: CheckedProject, baseline_file: Path) -> BaselineUpdate:

@@ -8,13 +8,12 @@ from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.compare import ArchitectureVersion, Comparison, compare_versions
-from archgen.pipeline import CheckedProject
-from archgen.project import ParsedSlices
+from archgen.diagnostics.common_wording import shorten_hash
+from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
 WORKING_TREE_NAME = "the working tree"
-_SHORT_HASH_LENGTH = 7
 """Digits of a commit's hash beside a name, as git prints them."""
 
 
@@ -30,12 +29,12 @@ class ProjectVersion:
         """Return the full hash of the commit that it was read from, empty for files on disk."""
         return self.checked_project.loaded_project.files.commit
 
-
-def format_version_name(version: ProjectVersion) -> str:
-    """Name a version as the user typed it, with its commit where that says more."""
-    # A hash that begins with what the user typed says nothing new.
-    name_suffices = not version.commit or version.commit.startswith(version.name)
-    return version.name if name_suffices else f"{version.name} ({version.commit[:_SHORT_HASH_LENGTH]})"
+    @property
+    def title(self) -> str:
+        """The name as the user typed it, with the commit where that says more."""
+        # A hash that begins with what the user typed says nothing new.
+        name_suffices = not self.commit or self.commit.startswith(self.name)
+        return self.name if name_suffices else f"{self.name} ({shorten_hash(self.commit)})"
 
 
 def read_versions(
@@ -46,34 +45,34 @@ def read_versions(
     Without `second` it is the working tree; without `first` it is the commit at which the branch left its main line.
     `A..B` and `A...B` mean what they mean in git. Raise `git.GitError` and `project.ProjectNotFoundError`.
     """
-    # Parsed slices are shared: most files are the same in both versions.
-    parsed_slices: ParsedSlices = {}
+    # Shared: most files are the same in both versions, and so is timing where nothing of it changed.
+    version_cache = VersionCache()
     if first is not None and second is None and ".." in first and not _is_path(first):
         # Three dots first, since they contain the two.
         left, dots, right = first.partition("..." if "..." in first else "..")
         if dots == "...":
-            before = _read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, parsed_slices)
-            return before, read_version(right or "HEAD", path, parsed_slices)
-        return read_version(left or "HEAD", path, parsed_slices), read_version(right or "HEAD", path, parsed_slices)
+            before = _read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache)
+            return before, read_version(right or "HEAD", path, version_cache)
+        return read_version(left or "HEAD", path, version_cache), read_version(right or "HEAD", path, version_cache)
     if first is not None:
-        return read_version(first, path, parsed_slices), read_version(second, path, parsed_slices)
+        return read_version(first, path, version_cache), read_version(second, path, version_cache)
     # The newer version first here: it names the main line that the older one is found by.
-    after = read_version(second, path, parsed_slices)
-    return read_fork_point(path, after.checked_project.architecture.review.main, parsed_slices), after
+    after = read_version(second, path, version_cache)
+    return read_fork_point(path, after.checked_project.architecture.review.main, version_cache), after
 
 
 def read_version(
-    version_text: str | None, path: Path | None = None, parsed_slices: ParsedSlices | None = None
+    version_text: str | None, path: Path | None = None, version_cache: VersionCache | None = None
 ) -> ProjectVersion:
     """Read one version: nothing or `.` is the working tree; what may be a revision or a path is taken as a revision.
 
     Raise `git.GitError` and `project.ProjectNotFoundError`.
     """
     if version_text in {None, "", "."}:
-        return ProjectVersion(WORKING_TREE_NAME, pipeline.check_project(path, parsed_slices))
+        return ProjectVersion(WORKING_TREE_NAME, pipeline.check_project(path, version_cache))
     if not _is_path(version_text):
         try:
-            return ProjectVersion(version_text, pipeline.check_at_revision(path, version_text, parsed_slices))
+            return ProjectVersion(version_text, pipeline.check_at_revision(path, version_text, version_cache))
         # The revision exists and lacks the project: falling back to a path of that name would hide this mistake.
         except project.NotAtRevisionError:
             raise
@@ -81,24 +80,24 @@ def read_version(
             # Neither revision nor path: the message about the revision is the more useful one.
             if not os.path.lexists(version_text):
                 raise
-    return ProjectVersion(version_text, pipeline.check_project(Path(version_text), parsed_slices))
+    return ProjectVersion(version_text, pipeline.check_project(Path(version_text), version_cache))
 
 
 def read_fork_point(
-    path: Path | None = None, main_line: str | None = None, parsed_slices: ParsedSlices | None = None
+    path: Path | None = None, main_line: str | None = None, version_cache: VersionCache | None = None
 ) -> ProjectVersion:
     """Read the project where the branch left its main line.
 
     `main_line` is the main line that the project names; None asks git.
     """
     return _read_at_base(
-        git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line), path, parsed_slices
+        git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line), path, version_cache
     )
 
 
-def _read_at_base(base: git.BaseCommit, path: Path | None, parsed_slices: ParsedSlices | None) -> ProjectVersion:
+def _read_at_base(base: git.BaseCommit, path: Path | None, version_cache: VersionCache | None) -> ProjectVersion:
     """Read the project at a commit of git."""
-    return ProjectVersion(base.description, pipeline.check_at_revision(path, base.commit_id, parsed_slices))
+    return ProjectVersion(base.description, pipeline.check_at_revision(path, base.commit_id, version_cache))
 
 
 def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
@@ -133,6 +132,7 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         chapter_order=checked_project.chapters.order,
         # Where a project does not write them, they come from the name of its folder: that is no change of the project.
         unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
+        analysis=checked_project.analysis,
     )
 
 

@@ -9,7 +9,8 @@ import shlex
 from typing import TYPE_CHECKING
 
 from archgen.compare import Comparison
-from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, format_version_name
+from archgen.diagnostics.common_wording import shorten_hash
+from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
 from archgen.views.changes.comparison_document import ComparisonDocument, describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
 
@@ -25,8 +26,8 @@ def describe_versions(
     """Describe a comparison of two versions in the words of all formats."""
     return describe_comparison(
         comparison,
-        format_version_name(old_version),
-        format_version_name(new_version),
+        old_version.title,
+        new_version.title,
         find_reading_errors(old_version, new_version),
         graphs,
     )
@@ -69,7 +70,7 @@ def render_comparison_markdown(comparison: Comparison, old_version: ProjectVersi
 def _terminal_command(old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     """Return the command that shows the same comparison in a terminal."""
     # A name with a blank is a description of ours ("where this branch left main"), no revision that git understands.
-    arguments = [old_version.commit[:10] if " " in old_version.name else old_version.name]
+    arguments = [shorten_hash(old_version.commit) if " " in old_version.name else old_version.name]
     arguments += [] if new_version.name == WORKING_TREE_NAME else [new_version.name]
     return " ".join(["archgen diff", *map(shlex.quote, arguments)])
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import git
+from archgen.diagnostics.common_wording import shorten_hash
 from archgen.emit import file_tree, picture_files
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision
@@ -33,7 +34,6 @@ from archgen.views.timing.timing_lookup import analyse_with_chains
 if TYPE_CHECKING:
     from archgen.emit.graphviz.worker_pool import DrawingWorker
 
-_SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
 DrawingProgress = Callable[[int, int], None]
 """Called with the number of pictures drawn so far, and of all pictures."""
@@ -232,7 +232,7 @@ def choose_revision(checked_project: CheckedProject, options: OutputOptions) -> 
     if options.revision is not None:
         return options.revision
     commit = checked_project.loaded_project.files.commit
-    return commit[:_SHORT_HASH_LENGTH] if commit else find_revision(checked_project.root, checked_project.input_files)
+    return shorten_hash(commit) if commit else find_revision(checked_project.root, checked_project.input_files)
 
 
 def _matches_any(name: str, patterns: Sequence[str]) -> bool:

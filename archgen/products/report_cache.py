@@ -7,7 +7,6 @@ by the report.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import os
@@ -15,7 +14,7 @@ import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from archgen.cache import cache_files
+from archgen.cache.file_store import FileStore, digest_bytes
 from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.picture import Picture
 from archgen.views.shapes import Outline
@@ -53,8 +52,9 @@ def get_or_write_report(  # noqa: PLR0913 - all that a report depends on, and ho
     """
     if folder is None:
         return write_report(chapter_files)
-    file = folder / f"{_report_key(outline, pictures, template)}.report"
-    cached_report = _load_report(file, chapter_files)
+    files = FileStore(folder, ".report", _MAX_REPORTS)
+    report_key = _report_key(outline, pictures, template)
+    cached_report = _read_report(files.load(report_key), chapter_files)
     if cached_report is not None:
         return cached_report
     # Filled while the report is written: path and digest of each chapter picture, None for a missing file. A picture
@@ -64,12 +64,11 @@ def get_or_write_report(  # noqa: PLR0913 - all that a report depends on, and ho
     def read_and_record(path: str) -> bytes | None:
         """Read a chapter's picture and record its digest."""
         data = chapter_files(path)
-        asked_digests[path] = _digest_bytes(data)
+        asked_digests[path] = digest_bytes(data)
         return data
 
     new_report = write_report(read_and_record)
-    with contextlib.suppress(OSError):  # a full or read-only disk costs only the time that this would have saved
-        _store_report(file, new_report, asked_digests)
+    files.store(report_key, _format_report(new_report, asked_digests))
     return new_report
 
 
@@ -95,29 +94,23 @@ def _add_to_digest(digest: hashlib._Hash, data: bytes | None) -> None:
     digest.update(data or b"")
 
 
-def _digest_bytes(data: bytes | None) -> str | None:
-    return None if data is None else hashlib.sha256(data).hexdigest()
-
-
-def _load_report(file: Path, chapter_files: ChapterFileReader) -> ReportWithWarnings | None:
+def _read_report(data: bytes | None, chapter_files: ChapterFileReader) -> ReportWithWarnings | None:
     """Read a cached report; None if it is damaged or a chapter would show another picture today."""
     try:
-        line, _, document = file.read_bytes().partition(b"\n")
+        line, _, document = (data or b"").partition(b"\n")
         header = json.loads(line)
         # A check against files that were cut off or damaged, so a CRC is enough.
         is_intact = zlib.crc32(document) == header["check"]
         is_current = is_intact and all(
-            _digest_bytes(chapter_files(path)) == stored_digest for path, stored_digest in header["asked"].items()
+            digest_bytes(chapter_files(path)) == stored_digest for path, stored_digest in header["asked"].items()
         )
         return (document, tuple(map(str, header["warnings"]))) if is_current else None
     # Whatever the file holds instead, it is a miss.
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError):
         return None
 
 
-def _store_report(file: Path, new_report: ReportWithWarnings, asked_digests: Mapping[str, str | None]) -> None:
-    """Store a report and remove the oldest beyond a few."""
+def _format_report(new_report: ReportWithWarnings, asked_digests: Mapping[str, str | None]) -> bytes:
     document, warnings = new_report
     header = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked_digests})
-    cache_files.store_file(file, header.encode() + b"\n" + document)
-    cache_files.remove_oldest(file.parent, ".report", _MAX_REPORTS)
+    return header.encode() + b"\n" + document

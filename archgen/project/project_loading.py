@@ -48,9 +48,6 @@ class LoadedProject:
     rule_spans: Mapping[str, Span] = field(default_factory=dict)
     distro: str | None = None
     interface_files: tuple[str, ...] = ()
-    chapter_entries: tuple[ScalarNode, ...] | None = None
-    layout: MappingNode | None = None
-    broken_files: tuple[str, ...] = ()
     lost_keys: frozenset[str] = frozenset()
     partial: bool = False
 
@@ -96,9 +93,6 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
     distro = next(
         (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
     )
-    chapters_node = next(
-        (value for value in _list_nodes_at(state, "report", "chapters") if isinstance(value, SequenceNode)), None
-    )
     return LoadedProject(
         files=state.files,
         first_file=first_file,
@@ -112,13 +106,8 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
         rule_spans={name: span for name, (_, span) in settings.items()},
         distro=distro,
         interface_files=tuple(dict.fromkeys(interface_files)),
-        chapter_entries=tuple(item for item in chapters_node.items if isinstance(item, ScalarNode))
-        if chapters_node
-        else None,
-        broken_files=tuple(state.broken_files),
         lost_keys=frozenset(state.lost_keys),
         partial=state.partial,
-        layout=next((value for value in _list_nodes_at(state, "layout") if isinstance(value, MappingNode)), None),
     )
 
 

@@ -8,22 +8,14 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.model import quantity
+from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 NO_DOCUMENT_SPAN = NO_SPAN
-# A sign, digits with a point or a comma, and whatever follows them as the unit.
-_QUANTITY_PATTERN = re.compile(r"\s*([-+]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*(\S*)\s*\Z", re.ASCII)
-_UNIT_SPELLINGS = {
-    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "usec": "us", "µs": "us",
-    "μs": "us", "nsec": "ns", "m": "min", "mins": "min", "minutes": "min", "hour": "h", "hours": "h", "fps": "Hz",
-    "bps": "bit/s", "kbps": "kbit/s", "Mbps": "Mbit/s", "mbps": "Mbit/s", "Gbps": "Gbit/s", "gbps": "Gbit/s",
-    "Mb/s": "Mbit/s", "Gb/s": "Gbit/s", "kb/s": "kbit/s", "b/s": "bit/s", "bytes": "B", "byte": "B",
-}  # fmt: skip
-_EXAMPLE_UNIT = {"duration": "ms", "frequency": "Hz", "size": "kB", "bandwidth": "Mbit/s"}
 _BOOLEAN_WORDS = {
     "yes": "true",
     "on": "true",
@@ -115,14 +107,14 @@ def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, An
 
 def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str, str | None]:
     expected = _describe_expected(schema_part)
-    dimension = _find_dimension(schema_part)
+    dimension = find_dimension(schema_part)
     if isinstance(node, ScalarNode):
         if dimension:
-            return "wrong-value", *_describe_wrong_quantity(name, node.text, dimension, schema_part)
+            return "wrong-value", *describe_wrong_quantity(name, node.text, dimension, schema_part)
         if node.value is None:
             return "wrong-type", f"{name} is empty, but must be {expected}", None
         help_line = _find_scalar_help(node.text, schema_part)
-        return "wrong-type", f"{name} is `{_shorten_text(node.text)}`, but must be {expected}", help_line
+        return "wrong-type", f"{name} is `{clip_text(node.text)}`, but must be {expected}", help_line
     actual = "a list" if isinstance(node, SequenceNode) else "a mapping"
     return "wrong-type", f"{name} is {actual}, but must be {expected}", _find_container_help(name, node, schema_part)
 
@@ -154,7 +146,7 @@ _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 
 def _quote_list_entry(text: str) -> str:
     """Return a text as an entry of a list in brackets: quoted where YAML would read it as something else."""
-    return _shorten_text(text) if _UNQUOTED_TEXT.match(text) else f'"{_shorten_text(text)}"'
+    return clip_text(text) if _UNQUOTED_TEXT.match(text) else f'"{clip_text(text)}"'
 
 
 def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any]) -> str | None:
@@ -175,12 +167,12 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
 
 def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str | None]:
     text = node.text if isinstance(node, ScalarNode) else ""
-    dimension = _find_dimension(schema_part)
+    dimension = find_dimension(schema_part)
     if kind == "pattern" and dimension:
-        return _describe_wrong_quantity(name, text, dimension, schema_part)
+        return describe_wrong_quantity(name, text, dimension, schema_part)
     if kind == "const":
         return (
-            f"this archgen reads version {schema_part[kind]} of the language, not `{_shorten_text(text)}`",
+            f"this archgen reads version {schema_part[kind]} of the language, not `{clip_text(text)}`",
             f"write `{schema_part[kind]}`",
         )
     if kind in {"maxLength", "minLength"}:
@@ -190,7 +182,7 @@ def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dic
         )
     if text != text.strip() and re.search(schema_part.get("pattern", ""), text.strip()):
         return f"{name} has a blank at its beginning or end", f"write `{text.strip()}`"
-    return f"{name} cannot be `{_shorten_text(text)}`", _find_value_help(kind, text, schema_part)
+    return f"{name} cannot be `{clip_text(text)}`", _find_value_help(kind, text, schema_part)
 
 
 def _find_value_help(kind: str, text: str, schema_part: dict[str, Any]) -> str | None:
@@ -200,62 +192,6 @@ def _find_value_help(kind: str, text: str, schema_part: dict[str, Any]) -> str |
     if kind in {"minimum", "maximum"}:
         return f"it is at {'least' if kind == 'minimum' else 'most'} {schema_part[kind]}"
     return schema_part.get("patternErrorMessage")
-
-
-def _find_dimension(schema_part: dict[str, Any]) -> str | None:
-    """Return the dimension of a quantity, or None for other values.
-
-    The schema has no field for it: the second word of its `patternErrorMessage` ("a duration is ...") decides.
-    """
-    message_words = str(schema_part.get("patternErrorMessage", "")).split(" ")
-    return _DIMENSION_WORDS.get(message_words[1]) if message_words[1:] else None
-
-
-_DIMENSION_WORDS = {"duration": "duration", "rate": "frequency", "size": "size", "bandwidth": "bandwidth"}
-
-
-def _describe_wrong_quantity(name: str, text: str, dimension: str, schema_part: dict[str, Any]) -> tuple[str, str]:
-    explanation = str(schema_part["patternErrorMessage"])
-    match = _QUANTITY_PATTERN.match(text)
-    if match is None:
-        return f"{name} cannot be `{_shorten_text(text)}`", explanation
-    sign, number, unit = match.groups()
-    if sign == "-":
-        return f"{name} cannot be negative", explanation
-    number = number.replace(",", ".")
-    if not unit:
-        return f"`{_shorten_text(text)}` has no unit", f"write `{number} {_EXAMPLE_UNIT[dimension]}`; {explanation}"
-    if unit in quantity.UNIT_FACTORS[dimension]:
-        if max(map(len, number.split("."))) > quantity.MAX_DIGITS:
-            return f"{name} has too many digits", f"at most {quantity.MAX_DIGITS} are read before and after the point"
-        return f"{name} cannot be `{_shorten_text(text)}`", f"write `{number} {unit}`"
-    return _describe_wrong_unit(name, number, unit, dimension, explanation)
-
-
-def _describe_wrong_unit(name: str, number: str, unit: str, dimension: str, explanation: str) -> tuple[str, str]:
-    better_unit, message = _suggest_unit(unit, dimension), f"{name} has no unit `{_shorten_text(unit)}`"
-    other_key = _OTHER_KEY.get((name.strip("`"), unit))
-    if other_key:
-        return message, f"write `{other_key}: {number} {unit}`"
-    if dimension in {"size", "bandwidth"} and better_unit and unit.lower() == better_unit.lower():
-        return message, f"write `{number} {better_unit}`; case counts: kB is 1000 bytes, KiB is 1024"
-    return message, f"write `{number} {better_unit}`; case counts" if better_unit else explanation
-
-
-_OTHER_KEY = {("rate", unit): "period" for unit in quantity.UNIT_FACTORS["duration"]} | {
-    ("period", unit): "rate" for unit in quantity.UNIT_FACTORS["frequency"]
-}
-"""The key that was meant where somebody writes `rate: 20 ms` or `period: 50 Hz`, by key and unit."""
-
-
-def _suggest_unit(unit: str, dimension: str) -> str | None:
-    units = quantity.UNIT_FACTORS[dimension]
-    # A known other spelling first, then the case: `MS` may be meant as ms, and `mbps` is nothing but a spelling.
-    spelled_unit = _UNIT_SPELLINGS.get(unit)
-    if spelled_unit in units:
-        return spelled_unit
-    folded_units = [known_unit for known_unit in units if known_unit.lower() == unit.lower()]
-    return folded_units[0] if folded_units else None
 
 
 def _describe_expected(schema_part: dict[str, Any]) -> str:
@@ -268,7 +204,7 @@ def _describe_expected(schema_part: dict[str, Any]) -> str:
     ]
     if "number" in types and "boolean" not in types:
         phrases = ["a number", *(word for word in phrases if word != "text")]
-    return " or ".join((", ".join(phrases[:-1]), phrases[-1])) if len(phrases) > 1 else phrases[0]
+    return join_words(phrases, "or")
 
 
 def _list_types(schema_part: dict[str, Any]) -> list[str]:
@@ -299,11 +235,3 @@ def _add_article(title: str) -> str:
 
 def _join_quoted(words: tuple[str, ...] | list[str]) -> str:
     return ", ".join(f"`{word}`" for word in words)
-
-
-_MAX_QUOTED_LENGTH = 60
-
-
-def _shorten_text(text: str) -> str:
-    line = " ".join(text.split())
-    return line if len(line) <= _MAX_QUOTED_LENGTH else f"{line[: _MAX_QUOTED_LENGTH - 3]}..."

@@ -10,14 +10,13 @@ import unicodedata
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from archgen.diagnostics.source_span import Span
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
 
@@ -153,7 +152,7 @@ def _fold_type_names(types: MappingNode) -> Iterator[Diagnostic]:
         name = fold_type_name(entry.key)
         first_entry = folded_types.setdefault(name, entry)
         if first_entry is not entry:
-            yield _diagnose_duplicate(
+            yield diagnose_repetition(
                 "duplicate-key", f"the type `{name}` is written twice", entry.key_span, first_entry.key_span
             )
         entry.key = name
@@ -198,8 +197,4 @@ def _move_to_overall(performance: MappingNode) -> Iterator[Diagnostic]:
         )
         if first_entry is not entry:
             message = f"`{entry.key}` of the indicator `overall` is written twice"
-            yield _diagnose_duplicate("conflicting-values", message, entry.value.span, first_entry.value.span)
-
-
-def _diagnose_duplicate(rule: str, message: str, span: Span, first_span: Span) -> Diagnostic:
-    return Diagnostic(rule, message, span, labels=(Label(first_span, "first written here"),))
+            yield diagnose_repetition("conflicting-values", message, entry.value.span, first_entry.value.span)

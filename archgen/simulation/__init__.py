@@ -5,7 +5,7 @@ times and data ages off the traces, and `simulate_system` puts the seeds togethe
 on the worst case, never the worst case itself.
 """
 
-from archgen.simulation.repeated_runs import simulate_system
+from archgen.simulation.event_loop import simulate_system
 from archgen.simulation.simulation_result import (
     ChainFigures,
     DurationDistribution,

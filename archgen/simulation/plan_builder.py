@@ -19,8 +19,7 @@ from archgen.simulation.simulation_plan import (
     SimulationPlan,
 )
 from archgen.simulation.thread_placement import ThreadPlacement
-from archgen.timing.system.selective_arcs import is_selective_arc
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_selective_arc
 
 _SECOND = 10**9
 PublishPauses = Mapping[tuple[str, str], Fraction]

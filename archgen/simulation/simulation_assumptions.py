@@ -11,8 +11,7 @@ from itertools import pairwise
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.system.selective_arcs import is_selective_arc
-from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.timing_system import Activity, TimingSystem, is_selective_arc
 
 NOT_SIMULATED = (
     "caches, migration, context switches and interrupts",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 from archgen import pipeline
@@ -18,8 +19,11 @@ from archgen.syntax import file_patterns
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.overlaid_files import OverlaidFiles
 
-_CODEOWNERS_PATHS = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
-"""Where GitHub and GitLab look for the file; the first that exists counts."""
+_CODEOWNERS_PATHS = {
+    "github": (".github/CODEOWNERS", "CODEOWNERS", "docs/CODEOWNERS"),
+    "gitlab": ("CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS"),
+}
+"""Where each forge looks for the file, in its order: the first that exists counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +60,10 @@ def plan_files(
     wanted_files |= {repository_folder / name: data for name, data in _forge_files(answers, prefix).items()}
     reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
     if any(partner.reviewers for partner in answers.partners):
+        # Without a forge any of them may be meant.
+        possible_paths = _CODEOWNERS_PATHS.get(answers.forge) or dict.fromkeys(chain(*_CODEOWNERS_PATHS.values()))
         codeowners_path = next(
-            (name for name in _CODEOWNERS_PATHS if os.path.lexists(repository_folder / name)), "CODEOWNERS"
+            (name for name in possible_paths if os.path.lexists(repository_folder / name)), "CODEOWNERS"
         )
         wanted_files[repository_folder / codeowners_path] = code_ownership.make_codeowners(
             checked_project, prefix

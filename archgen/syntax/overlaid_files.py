@@ -8,6 +8,9 @@ from pathlib import Path, PurePosixPath
 
 from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal, ProjectFiles
 
+_FolderNames = dict[str, tuple[set[str], set[str]]]
+"""The names of subfolders and of files, by folder."""
+
 
 @dataclass(frozen=True, slots=True)
 class OverlaidFiles:
@@ -26,20 +29,24 @@ class OverlaidFiles:
         return path in self.contents or (self.base_files is not None and self.base_files.has_path(path))
 
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
-        """Walk down from a folder: first the folders of the base files, then those that only the overlay has."""
-        walked_folders = set[str]()
+        """Walk down from a folder, as the base files do: callers may remove folders from the list to skip them."""
+        overlay_folders = self._list_overlay_folders(top)
+        is_walked = False
         for relative_folder, folders, file_names in (
             self.base_files.walk_folders(top) if self.base_files is not None else ()
         ):
-            walked_folders.add(relative_folder)
-            yield relative_folder, folders, sorted({*file_names, *self._list_names_in(top, relative_folder)})
-        # Folders of the overlay alone are yielded without subfolders: a caller cannot prune them, so hidden ones are
-        # left out here.
-        for relative_folder in sorted({path.rpartition("/")[0] for path in self._list_paths_below(top)}):
-            if relative_folder not in walked_folders and not any(
-                part.startswith(".") for part in relative_folder.split("/")
-            ):
-                yield relative_folder, [], sorted(self._list_names_in(top, relative_folder))
+            is_walked = True
+            own_folders, own_names = overlay_folders.get(relative_folder, (set(), set()))
+            base_folders = frozenset(folders)
+            all_folders = [*folders, *sorted(own_folders - base_folders)]
+            yield relative_folder, all_folders, sorted({*file_names, *own_names})
+            # In place: what the caller skipped, the walk of the base files must skip as well.
+            folders[:] = [name for name in all_folders if name in base_folders]
+            for name in all_folders:
+                if name not in base_folders:
+                    yield from _walk_overlay(overlay_folders, _join_path(relative_folder, name))
+        if not is_walked and overlay_folders:
+            yield from _walk_overlay(overlay_folders, "")
 
     def fetch_bytes(self, path: str) -> bytes | FileRefusal:
         """Return a file's bytes, from the overlay where it has the file; the size limit holds for both."""
@@ -50,13 +57,28 @@ class OverlaidFiles:
             self.base_files.fetch_bytes(path) if self.base_files is not None else FileRefusal("the file does not exist")
         )
 
-    def _list_paths_below(self, top: str) -> Iterator[str]:
+    def _list_overlay_folders(self, top: str) -> _FolderNames:
+        """Return the folders of the overlay below a folder, the empty ones between them included."""
+        folder_names: _FolderNames = {}
         for path in self.contents:
-            if not top or PurePosixPath(path).is_relative_to(top):
-                yield path[len(top) + 1 :] if top else path
+            if not top or (path != top and PurePosixPath(path).is_relative_to(top)):
+                folder, _, name = (path[len(top) + 1 :] if top else path).rpartition("/")
+                folder_names.setdefault(folder, (set(), set()))[1].add(name)
+                while folder:
+                    parent, _, folder_name = folder.rpartition("/")
+                    folder_names.setdefault(parent, (set(), set()))[0].add(folder_name)
+                    folder = parent
+        return folder_names
 
-    def _list_names_in(self, top: str, relative_folder: str) -> Iterator[str]:
-        for path in self._list_paths_below(top):
-            folder, _, name = path.rpartition("/")
-            if folder == relative_folder:
-                yield name
+
+def _walk_overlay(folder_names: _FolderNames, relative_folder: str) -> Iterator[tuple[str, list[str], list[str]]]:
+    """Walk down from a folder that only the overlay has."""
+    subfolders, names = folder_names[relative_folder]
+    folders = sorted(subfolders)
+    yield relative_folder, folders, sorted(names)
+    for name in folders:
+        yield from _walk_overlay(folder_names, _join_path(relative_folder, name))
+
+
+def _join_path(folder: str, name: str) -> str:
+    return f"{folder}/{name}" if folder else name

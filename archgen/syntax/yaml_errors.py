@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
 from archgen.diagnostics.source_span import Span
 
 LONE_SURROGATE = re.compile("[\ud800-\udfff]")
@@ -72,10 +72,8 @@ def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic
 
 def diagnose_duplicate_key(key: str, span: Span, first_span: Span) -> Diagnostic:
     """Report a key that one mapping has twice."""
-    labels = (Label(first_span, "first written here"),)
-    return Diagnostic(
-        "duplicate-key", f"the key `{key}` is written twice", span, labels=labels, help="keep one of them"
-    )
+    message = f"the key `{key}` is written twice"
+    return diagnose_repetition("duplicate-key", message, span, first_span, help_line="keep one of them")
 
 
 def diagnose_recursive_alias(anchor: str, span: Span, anchor_span: Span) -> Diagnostic:

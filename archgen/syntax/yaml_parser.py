@@ -16,7 +16,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.syntax import yaml_comments, yaml_errors
 from archgen.syntax.plain_scalars import NON_TEXT_STARTS, resolve_scalar
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument, copy_node
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -294,12 +294,3 @@ def _read_rare_scalar(walk: _TreeWalk, event: Any, span: Span, restore: dict[int
     if not HAS_LIBYAML and yaml_errors.LONE_SURROGATE.search(text):
         walk.report_error("an escape that names half a character", "write the whole character", span)
     return text.translate(restore) if restore else text
-
-
-def copy_node(node: YamlNode, span: Span) -> YamlNode:
-    """Copy a node for an alias. Later stages change trees in place, so two places must never share a node."""
-    if isinstance(node, ScalarNode):
-        return ScalarNode(node.value, node.text, span, node.is_plain)
-    if isinstance(node, SequenceNode):
-        return SequenceNode([copy_node(item, item.span) for item in node.items], span)
-    return MappingNode({e.key: MappingEntry(e.key, e.key_span, copy_node(e.value, e.value.span)) for e in node}, span)

@@ -89,3 +89,12 @@ def node_to_data(node: YamlNode) -> object:
     if isinstance(node, SequenceNode):
         return [node_to_data(item) for item in node.items]
     return node.value
+
+
+def copy_node(node: YamlNode, span: Span) -> YamlNode:
+    """Copy a node for an alias. Later stages change trees in place, so two places must never share a node."""
+    if isinstance(node, ScalarNode):
+        return ScalarNode(node.value, node.text, span, node.is_plain)
+    if isinstance(node, SequenceNode):
+        return SequenceNode([copy_node(item, item.span) for item in node.items], span)
+    return MappingNode({e.key: MappingEntry(e.key, e.key_span, copy_node(e.value, e.value.span)) for e in node}, span)

@@ -23,23 +23,29 @@ def analyse_architecture(architecture: Architecture, *, judging: bool = False) -
     With `judging`, what no rule looks at is left out: the topics, and the edges that cannot be at fault.
     """
     system, notes = build(architecture)
-    if not judging:
-        return analyse_system(system, notes)
-    # Rules are run again and again for versions of one project that mostly leave timing as it was. Only the last
-    # analysis is kept, and it is used again only where every figure and every place is the same.
-    global _last_judged  # noqa: PLW0603 - what was found last, for who judges many versions of one project
-    if _last_judged is None or not _is_same_system(_last_judged, system, notes):
-        _last_judged = analyse_system(system, notes, judging=True)
-    return _last_judged
+    return analyse_system(system, notes, judging=judging)
+
+
+class AnalysisMemory:
+    """Remembers the last analysis of one who judges many versions of a project, which mostly leave timing as it was."""
+
+    def __init__(self) -> None:
+        """Start without any analysis."""
+        self._last_analysis: Analysis | None = None
+
+    def judge_architecture(self, architecture: Architecture) -> Analysis:
+        """Analyse an architecture for judging; the last analysis, where every figure and every place is the same."""
+        system, notes = build(architecture)
+        # Only the last one is kept: versions come in their order, and one that returns to older figures is rare.
+        if self._last_analysis is None or not _is_same_system(self._last_analysis, system, notes):
+            self._last_analysis = analyse_system(system, notes, judging=True)
+        return self._last_analysis
 
 
 def analyse_for_chains(architecture: Architecture) -> Analysis:
     """Analyse what chains rest on and no more, for callers that ask the same of many versions of one project."""
     system, notes = build(architecture)
     return analyse_system(system, notes, judging=True)
-
-
-_last_judged: Analysis | None = None
 
 
 def _is_same_system(analysis: Analysis, system: TimingSystem, notes: tuple[Reason, ...]) -> bool:

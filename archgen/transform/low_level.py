@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import count
 
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.message_types import ConceptualType
-from archgen.model.node import Endpoint, FlowKind, Topic
+from archgen.model.node import Endpoint, FlowKind, Node, Topic
 from archgen.transform import ros_names
-from archgen.transform.planned_nodes import make_planned_nodes
 from archgen.transform.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.transform.reading_endpoints import derive_reading_endpoints, index_writers
 from archgen.transform.writing_endpoints import derive_writing_endpoints, find_node_parts
@@ -93,4 +94,38 @@ def _make_topic(
         readers=tuple(users.readers),
         size=max((size for size in sizes if size), key=lambda size: size.value, default=None),
         shared=is_shared,
+    )
+
+
+def make_planned_nodes(architecture: Architecture) -> Iterator[Node]:
+    """Yield the nodes to add, in the order of components."""
+    implemented_ids = {component for node in architecture.nodes.values() for component in node.implements}
+    used_names = set(architecture.nodes)
+    for component in architecture.components.values():
+        if component.id not in implemented_ids:
+            name = _find_free_name(component, used_names)
+            used_names.add(name)
+            yield _make_planned_node(component, name)
+
+
+def _find_free_name(component: Component, used_names: Container[str]) -> str:
+    """Return an unused name: the component's own, else `group_component`, else that with a number behind it."""
+    long_name = component.id.replace(".", "_")
+    for name in (component.name, long_name):
+        if name not in used_names:
+            return name
+    return next(name for number in count(2) if (name := f"{long_name}_{number}") not in used_names)
+
+
+def _make_planned_node(component: Component, name: str) -> Node:
+    return Node(
+        id=name,
+        title=component.title,
+        implements=(component.id,),
+        owner=component.owner,
+        co_owners=component.co_owners,
+        name=name,
+        status="planned",
+        timing={component.id: component.timing} if component.timing else {},
+        written=False,
     )

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from archgen.model.architecture import Architecture, Partner
+from archgen.model.element_ids import ElementFiles
 
-ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
-"""Files of each element, by kind (`group`, `component`, `node`) and full id."""
 OWNED_KINDS = ("group", "component", "node")
 """Kinds of element that have owners."""
 

@@ -83,6 +83,29 @@ def test_wrong_flags(words: tuple[str, ...], said: str, run: Run, tmp_path: Path
     assert not (tmp_path / "r").exists()
 
 
+@pytest.mark.parametrize(
+    ("forge", "existing", "expected"),
+    [
+        ("github", ".gitlab/CODEOWNERS", "CODEOWNERS"),
+        ("gitlab", ".github/CODEOWNERS", "CODEOWNERS"),
+        ("github", ".github/CODEOWNERS", ".github/CODEOWNERS"),
+        ("gitlab", ".gitlab/CODEOWNERS", ".gitlab/CODEOWNERS"),
+        ("none", ".gitlab/CODEOWNERS", ".gitlab/CODEOWNERS"),
+    ],
+)
+def test_a_codeowners_file_of_another_forge_is_none(
+    forge: str, existing: str, expected: str, run: Run, tmp_path: Path
+) -> None:
+    for folder in (".git", existing.partition("/")[0]):
+        (tmp_path / folder).mkdir()
+    (tmp_path / existing).write_text("theirs\n", encoding="utf-8")
+    ran = run("init", tmp_path / "r", "--yes", "--partner", "a=Lab A @lab/a", "--ci", forge)
+    assert ran.status == 0, ran.err
+    assert (f"kept {tmp_path / expected}" in ran.out) is (existing == expected)
+    assert (tmp_path / "CODEOWNERS").exists() is (expected == "CODEOWNERS")
+    assert (tmp_path / existing).read_text(encoding="utf-8") == "theirs\n"
+
+
 def test_codeowners_come_from_the_owners(run: Run, tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
     words = ("--partner", "a=Lab A @lab/a", "--partner", "b=Lab B", "--group", "one=a", "--group", "two=b")

@@ -116,6 +116,21 @@ def test_a_killed_process_costs_time_only(robot: Path, monkeypatch: pytest.Monke
     assert workers.count_commits(robot, line) == alone
 
 
+def test_a_process_that_dies_in_the_middle_of_a_line_costs_time_only(
+    robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = list_commits(find_tracked_project(robot), "revision")
+    alone = workers.count_commits(robot, line)
+    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    thread_errors: list[object] = []
+    monkeypatch.setattr("threading.excepthook", thread_errors.append)
+    for half in ('{{"commit":', "null", "[1]", '{{"rows": []}}'):
+        monkeypatch.setattr(workers, "_START", f"import sys; {{root!r}}; sys.stdout.write({half!r})")
+        assert workers.count_commits(robot, line) == alone
+    assert not thread_errors
+
+
 def test_a_revision_that_does_not_load_has_its_errors(tmp_path: Path) -> None:
     folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": START})
     repositories.commit(folder, {"archgen.yaml": "groups: [\n"})
@@ -184,7 +199,7 @@ def test_csv_shows_what_a_terminal_or_a_workflow_would_obey(tmp_path: Path) -> N
 def test_what_says_the_same_is_judged_once(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     judged = []
 
-    def judge(loaded: LoadedProject) -> CheckedProject:
+    def judge(loaded: LoadedProject, _: object) -> CheckedProject:
         judged.append(loaded.files.commit)
         return pipeline.judge_project(loaded)
 

@@ -34,9 +34,9 @@ groups:
     group = architecture.groups["environment_state"]
     component = architecture.components["environment_state.object_recognition"]
     assert (group.title, group.at.line, group.at.column) == ("Environment State", 4, 3)
-    assert (component.title, component.title_written, component.at.line) == ("Object Recognition", False, 6)
+    assert (component.title, component.at.line) == ("Object Recognition", 6)
     other = group.components["other"]
-    assert (other.title, other.title_written, other.functionality) == ("No", True, "12")
+    assert (other.title, other.functionality) == ("No", "12")
     assert architecture.project.version == "1.10"
 
 
@@ -140,7 +140,6 @@ nodes:
         "adapted",
     )
     assert node.parameters == {"rate": 5, "deep": {"x": [1, "no"]}}
-    assert node.uses_known == ("publishes", "subscribes")
     o, i, debug = node.uses
     assert (o.port, o.topics, [place.column for place in o.topic_places]) == ("g.c.o", ("a", "~/b"), [29, 32])
     assert o.qos is not None

@@ -9,6 +9,7 @@ import pytest
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import input_wiring
 from archgen.link.project_linking import link_project
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document
@@ -333,3 +334,22 @@ def test_a_group_where_components_are_asked_for(told: Told) -> None:
     assert told(f"{group}chains: {{x: {{through: [g]}}}}") == [
         f"2:24 unknown-reference: no node, component or output named `g`: {said}"
     ]
+
+
+def test_a_chain_through_a_node_named_as_its_component_hides_nothing(told: Told) -> None:
+    # The chain knows what the node implements, wherever its section stands.
+    assert (
+        told("""
+chains: {c: {through: [camera]}}
+groups: {g: {components: {camera: {outputs: {x: std_msgs/msg/Empty}}}}}
+nodes: {camera: {implements: g.camera}}
+""")
+        == []
+    )
+
+
+def test_after_the_suspects_are_taken_no_reference_is_resolved() -> None:
+    resolver = ReferenceResolver({"component": {}}, {"host": {}}, [])
+    assert resolver.finish_resolving() == frozenset()
+    with pytest.raises(RuntimeError, match="after the suspects were taken"):
+        resolver.resolve_plain_id(None, "host", "n")

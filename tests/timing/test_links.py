@@ -172,3 +172,30 @@ def test_a_link_and_what_it_delays_find_one_fixed_point(derived: Derived) -> Non
     assert found.links["lan"].queueing.value == 2 * MS
     assert found.paces["c"].jitter.value == (1 + 2 + 2) * MS
     assert bound_all_chains(found, architecture)["round"].bound.value == (20 + 2 + 2 + 1 + 2 + 1) * MS
+
+
+SERVICE = """
+groups:
+  g:
+    components:
+      server: {outputs: {answer: {type: Ask}}}
+      client: {inputs: {ask: {from: server.answer, type: Ask}}}
+types: {Ask: {message: std_srvs/srv/Trigger, size: 1 kB}}
+nodes:
+  server: {implements: server, host: head, timing: {behaviour: on_demand, wcet: 1 ms, bcet: 1 ms}}
+  client: {implements: client, host: base, timing: {rate: 10 Hz, wcet: 1 ms, bcet: 1 ms}}
+hosts: {head: {cores: 1}, base: {cores: 1}}
+links: {lan: {connects: [head, base], bandwidth: 1 MB/s, latency: {LATENCY}}}
+"""
+
+
+def test_a_service_over_a_link_without_a_best_latency_is_as_over_one_with_zero(derived: Derived) -> None:
+    unwritten, zero, less = (
+        analyse_architecture(derived(SERVICE.replace("LATENCY", latency))).links["lan"].queueing
+        for latency in ("worst: 30 ms", "best: 0 ms, worst: 30 ms", "best: 29 ms, worst: 30 ms")
+    )
+    assert unwritten.value is not None
+    assert unwritten == zero
+    assert less.value is not None
+    # The bound must not be better than that of a link of which more is known.
+    assert unwritten.value >= less.value

@@ -11,6 +11,7 @@ import jsonschema_rs
 import pytest
 
 from archgen import pipeline, resources
+from archgen.model.document_chapters import GENERATED_CHAPTERS
 from archgen.pipeline import CheckedProject
 from archgen.products.project_outputs import OutputOptions, make_scoped_lookup, select_elements
 from archgen.views import inline_text, resolved_record
@@ -202,3 +203,7 @@ def test_what_a_finding_names_is_code() -> None:
         (", or `it", False),
     ]
     assert inline_text.message_to_inlines("take `x` out", muted=True)[1] == Text("x", code=True, muted=True)
+
+
+def test_every_generated_chapter_has_what_makes_it() -> None:
+    assert tuple(report_outline._GENERATED_SECTIONS) == GENERATED_CHAPTERS  # noqa: SLF001 - the registry itself

@@ -9,9 +9,10 @@ from functools import cached_property
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import join_words, shorten_text
+from archgen.compare.key_phrases import shorten_text
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.compare.key_phrases import join_words
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.diagnostics.common_wording import join_words
 
 
 def find_unserved_requirements(context: ChangeContext) -> Iterator[PartnerLoss]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from archgen.diagnostics.diagnostic import count_by_severity
 from archgen.diagnostics.safe_text import format_json
-from archgen.emit.terminal.findings_text import count_by_severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

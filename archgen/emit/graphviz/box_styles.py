@@ -23,9 +23,9 @@ from collections.abc import Callable
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
+from archgen.emit.graphviz.placed_scene import DotAttributes
 from archgen.views.shapes import Box
 
-DotAttributes = dict[str, str]
 LinkResolver = Callable[[str], str | None]
 
 FONT_NAME = "DejaVu Sans"
@@ -37,6 +37,7 @@ _BOX_SHAPES = {
 }
 _ROUNDED_STYLES = {"component", "source", "sink", "physical", "container"}
 _DASHED_STYLES = {"external", "physical", "partner"}
+_TABLE_DASHES = ("dashed", "dotted")
 _CHANGE_PENS = {"added": "2.6", "removed": "1.4", "changed": "1", "renamed": "2"}
 _TITLE_WIDTHS = {
     "topic": 30,
@@ -173,10 +174,11 @@ def _detail_rows(box: Box, width: int) -> list[str]:
 def _port_table(box: Box) -> str:
     """Return the html-like label of a box with its ports as rows: inputs at the left, outputs at the right."""
     frame, fill = box_colours(box)
-    style = "ROUNDED,DASHED" if box.status == "planned" else "ROUNDED"
-    # The BORDER of a table is a whole number of points: the first digit of the pen's width, at least 1.
+    style = ",".join(["ROUNDED", *(dash.upper() for dash in _dash_styles(box) if dash in _TABLE_DASHES)])
+    # The BORDER of a table is a whole number of points.
+    border = max(1, round(float(_pen_width(box))))
     head = (
-        f'<TABLE STYLE="{style}" BORDER="{_pen_width(box)[0].replace("0", "1")}" COLOR="{frame}" BGCOLOR="{fill}" '
+        f'<TABLE STYLE="{style}" BORDER="{border}" COLOR="{frame}" BGCOLOR="{fill}" '
         'CELLBORDER="0" CELLSPACING="0" CELLPADDING="3">'
         f'<TR><TD COLSPAN="2" CELLPADDING="5">{_write_table_title(box)}</TD></TR><HR/>'
     )

@@ -16,11 +16,10 @@ from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_legend
-from archgen.emit.graphviz.placed_scene import Scene, ScenePart
+from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 
-DotAttributes = dict[str, str]
 _CHART_WIDTH = 440.0
 """As wide as a report's text, 160 mm, less the margin round a picture. In points, as all lengths here."""
 _MIN_SCALE_WIDTH = 150.0

@@ -8,11 +8,10 @@ from dataclasses import replace
 from archgen.emit.graphviz import arrow_styles, box_styles, palette
 from archgen.emit.graphviz.box_decorations import add_decorations
 from archgen.emit.graphviz.dot_text import escape_label, wrap_text
-from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart
+from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.views.shapes import Arrow, Box, Graph, PeriodStep
 
-DotAttributes = dict[str, str]
 _SAMPLE_SIZE = (24.0, 11.0)
 _ROW_HEIGHT = 15.0
 _MIN_WIDTH = 260.0

@@ -65,7 +65,8 @@ def _lay_out_direction(styled_graph: StyledGraph, direction: str) -> Scene:
     frames, titles = [], []
     for at, cluster in enumerate(graph.clusters):
         cluster_object = layout_objects.get(f"cluster_{at}")
-        if cluster_object is None:
+        # Of a cluster without boxes dot returns no frame (`bb`).
+        if cluster_object is None or "bb" not in cluster_object:
             continue
         left, bottom, right, top = (float(number) for number in cluster_object["bb"].split(","))
         width, height = sizes[at]

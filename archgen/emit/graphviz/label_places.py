@@ -69,7 +69,3 @@ def sample_line(line: SceneLine, steps: int = 8) -> Iterator[ScenePoint]:
             )
     if points:
         yield points[-1]
-
-
-def _is_inside(point: ScenePoint, rectangle: Rectangle) -> bool:
-    return rectangle[0] < point[0] < rectangle[2] and rectangle[1] < point[1] < rectangle[3]

@@ -10,8 +10,7 @@ from typing import Any
 from pygraphviz import AGraph
 from pygraphviz import graphviz as library
 
-DotAttributes = dict[str, str]
-"""DOT attributes as they are written: values quoted, or html-like in angle brackets."""
+from archgen.emit.graphviz.placed_scene import DotAttributes
 
 _GRAPHVIZ_CONTEXT = library.gvContextWithBuiltins()
 _PDF_DATE = re.compile(rb"(/CreationDate \(D:)[^)]*\)")

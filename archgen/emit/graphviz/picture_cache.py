@@ -7,17 +7,17 @@ Reading takes only the formats that are asked for. A damaged file counts as miss
 
 from __future__ import annotations
 
-import hashlib
 import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from archgen.cache import cache_files
+from archgen.cache.file_store import FileStore, digest_text
 from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Drawing
 
+_SUFFIX = ".picture"
 _RUNS_KEPT = 4
 """The pictures of this many runs are kept; the oldest beyond that are removed."""
 
@@ -26,14 +26,13 @@ def picture_key(drawing: Drawing, links: Mapping[str, str]) -> str:
     """Return the name of a cached picture: a digest of the graph, its addresses and this program."""
     # `repr` of the frozen dataclasses holds every field, and is the same in every process (shapes have tuples, no
     # sets).
-    fingerprint = f"{stamp_writers()}\n{drawing!r}\n{sorted(links.items())!r}"
-    return hashlib.blake2b(fingerprint.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
+    return digest_text(f"{stamp_writers()}\n{drawing!r}\n{sorted(links.items())!r}")
 
 
 def load_picture(folder: Path, key: str, formats: Sequence[str]) -> Picture | None:
     """Load a picture, or return None unless all the formats are cached and sound."""
     try:
-        with (folder / f"{key}.picture").open("rb") as file:
+        with (folder / f"{key}{_SUFFIX}").open("rb") as file:
             head = json.loads(file.readline())
             start = file.tell()
             parts = {form: _read_blob(file.read, file.seek, start, head["parts"][form]) for form in (*formats, "dot")}
@@ -77,10 +76,10 @@ def store_picture(folder: Path, key: str, picture: Picture, formats: Iterable[st
         "warning": picture.warning,
         "parts": parts,
     }
-    cache_files.store_file(folder / f"{key}.picture", json.dumps(head).encode() + b"\n" + b"".join(blobs))
+    FileStore(folder, _SUFFIX).store(key, json.dumps(head).encode() + b"\n" + b"".join(blobs))
 
 
 def prune_pictures(folder: Path, count: int) -> None:
     """Remove the oldest pictures, beyond a multiple of those in use."""
     # With the 100, a run of few pictures (`archgen diagram --only`) leaves those of a whole build where they are.
-    cache_files.remove_oldest(folder, ".picture", _RUNS_KEPT * count + 100)
+    FileStore(folder, _SUFFIX).prune(_RUNS_KEPT * count + 100)

@@ -16,6 +16,7 @@ from typing import Any, Literal
 from archgen.emit.graphviz.dot_text import quote_value
 
 DotAttributes = dict[str, str]
+"""DOT attributes as they are written: values quoted, or html-like in angle brackets."""
 ScenePoint = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
 """Left, bottom, right, top; in points."""

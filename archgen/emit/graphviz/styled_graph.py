@@ -14,10 +14,8 @@ from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.label_places import sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
-from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, Scene, ScenePart, read_scene
+from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, DotAttributes, Scene, ScenePart, read_scene
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
-
-DotAttributes = dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)

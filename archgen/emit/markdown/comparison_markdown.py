@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from archgen.compare import Change
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
@@ -66,7 +67,7 @@ def _join_partners(partner_ids: Sequence[str]) -> str:
     shown_names = [write_code(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
         [f"{len(partner_ids) - _SHOWN_PARTNERS} more"] if len(partner_ids) > _SHOWN_PARTNERS else []
     )
-    return " and ".join((", ".join(shown_names[:-1]), shown_names[-1])) if len(shown_names) > 1 else shown_names[0]
+    return join_words(shown_names)
 
 
 def _count_line(document: ComparisonDocument) -> str:

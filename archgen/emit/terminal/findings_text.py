@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.diagnostic import Severity, phrase_severity_counts
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.terminal.line_excerpt import ExcerptMark, quote_line
 
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 DEFAULT_WIDTH = 120
 """The columns of an excerpt where the terminal's width is not known."""
 _COLOUR_CODES = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
-_PLURAL_WORDS = {Severity.ERROR: "errors", Severity.WARNING: "warnings", Severity.NOTE: "notes"}
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
@@ -31,19 +29,9 @@ def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
     return stream.isatty() and environment.get("TERM") != "dumb"
 
 
-def count_by_severity(diagnostics: Iterable[Diagnostic]) -> Mapping[Severity, int]:
-    """Count settled diagnostics by severity; all three are there, errors first."""
-    counts = Counter(diagnostic.severity for diagnostic in diagnostics)
-    return {severity: counts[severity] for severity in (Severity.ERROR, Severity.WARNING, Severity.NOTE)}
-
-
 def format_summary(diagnostics: Iterable[Diagnostic]) -> str:
     """Return how many findings there are: `2 errors, 1 warning`."""
-    counts = count_by_severity(diagnostics)
-    words = [
-        f"{count} {severity if count == 1 else _PLURAL_WORDS[severity]}" for severity, count in counts.items() if count
-    ]
-    return ", ".join(words) if words else "no findings"
+    return ", ".join(phrase_severity_counts(diagnostics)) or "no findings"
 
 
 def render_findings_text(

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from archgen.diagnostics.common_wording import format_transition
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.timing_text import AlignedRow, align_columns, describe_gaps, format_figure
@@ -59,16 +60,11 @@ def format_timing_changes(
 def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> Iterator[AlignedRow]:
     for name, old_chain in old_chains.items():
         new_chain = new_chains[name]
-        verdicts = (
-            old_chain.verdict
-            if old_chain.verdict == new_chain.verdict
-            else f"{old_chain.verdict} -> {new_chain.verdict}"
-        )
         yield (
             name,
             _format_change(old_chain.bound, new_chain.bound),
             _format_difference(old_chain.bound, new_chain.bound),
-            verdicts if old_chain.deadline else "",
+            format_transition(old_chain.verdict, new_chain.verdict) if old_chain.deadline else "",
         )
 
 
@@ -76,15 +72,10 @@ def _changed_host_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterat
     for name, old_load in old_analysis.hosts.items():
         new_load = new_analysis.hosts[name]
         if old_load != new_load:
-            verdicts = (
-                old_load.verdict
-                if old_load.verdict == new_load.verdict
-                else f"{old_load.verdict} -> {new_load.verdict}"
-            )
             yield (
                 name,
                 f"load {_format_change(old_load.utilisation, new_load.utilisation, figure_wording.format_share)}",
-                verdicts,
+                format_transition(old_load.verdict, new_load.verdict),
             )
 
 
@@ -94,7 +85,7 @@ def _changed_element_rows(old_analysis: Analysis, new_analysis: Analysis) -> Ite
         old_response, new_response = old_analysis.responses[name].worst, new_analysis.responses[name].worst
         phrases = []
         if old_rates.behaviour != new_rates.behaviour:
-            phrases.append(f"{old_rates.behaviour or 'unknown'} -> {new_rates.behaviour or 'unknown'}")
+            phrases.append(format_transition(old_rates.behaviour or "unknown", new_rates.behaviour or "unknown"))
         if old_rates.rate != new_rates.rate:
             phrases.append(f"rate {_format_change(old_rates.rate, new_rates.rate, figure_wording.format_rate)}")
         if old_rates.gap != new_rates.gap:
@@ -108,8 +99,7 @@ def _changed_element_rows(old_analysis: Analysis, new_analysis: Analysis) -> Ite
 def _format_change(
     old_value: TimingValue, new_value: TimingValue, write: Callable[[Fraction], str] = figure_wording.format_duration
 ) -> str:
-    old_text, new_text = format_figure(old_value, write), format_figure(new_value, write)
-    return old_text if old_text == new_text else f"{old_text} -> {new_text}"
+    return format_transition(format_figure(old_value, write), format_figure(new_value, write))
 
 
 def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:

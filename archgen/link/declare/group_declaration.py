@@ -2,36 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, get_args
 
 from archgen.link import mapping_values
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
-from archgen.link.reference_resolution import PortResolver, ReferenceResolver
-from archgen.model.component import Component, ComponentRole, Group, PerformanceIndicator, RequirementUse
+from archgen.link.port_resolution import PortResolver
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.model.architecture import PortEdge
+from archgen.model.component import Component, ComponentRole, Connection, Group, PerformanceIndicator, RequirementUse
+from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-_ROLES = frozenset({"source", "filter", "sink", "reactive"})
+_ROLES = frozenset(get_args(ComponentRole))
 
 
-@dataclass(slots=True)
-class GroupDeclarer:
-    """Declares the groups with their components, one after the other; the results are in `groups` and `components`."""
+class DeclaredGroups(NamedTuple):
+    """The high level: groups and components by complete id, and what connects the components' ports."""
+
+    groups: dict[str, Group]
+    components: dict[str, Component]
+    connections: tuple[Connection, ...]
+    edges: tuple[PortEdge, ...]
+
+
+def declare_groups(
+    outline: ElementOutline, resolver: ReferenceResolver, types: Mapping[str, ConceptualType]
+) -> DeclaredGroups:
+    """Declare every group with its components, and wire their inputs."""
+    wiring = InputWiring(outline, resolver, types)
+    group_declarer = _GroupDeclarer(outline, resolver, wiring)
+    groups = {name: group_declarer.declare_group(name, entry) for name, entry in outline.groups.items()}
+    components = {component.id: component for group in groups.values() for component in group.components.values()}
+    return DeclaredGroups(groups, components, tuple(wiring.connections), tuple(wiring.edges))
+
+
+@dataclass(frozen=True, slots=True)
+class _GroupDeclarer:
+    """What the declaration of a group needs."""
 
     outline: ElementOutline
     resolver: ReferenceResolver
     wiring: InputWiring
-    groups: dict[str, Group] = field(default_factory=dict)
-    components: dict[str, Component] = field(default_factory=dict)
 
-    def declare_groups(self) -> None:
-        """Declare every group with its components, and wire their inputs."""
-        for name, entry in self.outline.groups.items():
-            self.groups[name] = self._declare_group(name, entry)
-
-    def _declare_group(self, group_id: str, entry: MappingEntry) -> Group:
+    def declare_group(self, group_id: str, entry: MappingEntry) -> Group:
         body = mapping_values.get_body(entry)
         # Owners are inherited: a component without owners has those of its group, a node those of its components.
         owners = self.resolver.resolve_owners(body, group_id, ())
@@ -39,7 +56,6 @@ class GroupDeclarer:
             part.key: self._declare_component(group_id, part, owners)
             for part in mapping_values.get_mapping(body, "components")
         }
-        self.components.update((component.id, component) for component in components.values())
         return Group(
             id=group_id,
             title=mapping_values.get_title(body, group_id),
@@ -83,7 +99,6 @@ class GroupDeclarer:
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
             layout=mapping_values.get_layout(body),
-            title_written=mapping_values.get_text(body, "title") is not None,
             at=entry.key_span,
             role_at=mapping_values.get_span(body, "role"),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import dataclass
@@ -11,10 +12,11 @@ from archgen.link import mapping_values
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
-from archgen.link.reference_resolution import PortResolver, ReferenceResolver
+from archgen.link.port_resolution import PortResolver
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Component
 from archgen.model.deployment import Container
-from archgen.model.node import Node, NodeStatus, PortUse, Qos, UseKind
+from archgen.model.node import Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
 from archgen.model.qos_profiles import qos_profile
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
 
@@ -26,7 +28,8 @@ _PORT_KINDS: Mapping[UseKind, str] = {
     "subscribes": "input",
     "calls": "input",
 }
-_NODE_KINDS = frozenset({"node", "lifecycle", "composable", "driver", "nodelet"})
+_NODE_KINDS = frozenset(get_args(NodeKind))
+_NODE_STATUSES = frozenset(get_args(NodeStatus))
 _QOS_DURATIONS = ("deadline", "lifespan", "lease_duration")
 
 
@@ -90,7 +93,6 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         host=host or (context.containers[container].host if container else None),
         status=_read_status(body),
         uses=tuple(_declare_uses(body, ports)),
-        uses_known=tuple(use for use in USE_KINDS if body.get(use) is not None),
         timing=context.timing_merger.merge_timing(
             node_id, declare_timing(entry, ports, resolver.diagnostics), implements
         ),
@@ -122,7 +124,7 @@ def _make_absolute(namespace: str | None) -> str:
 
 def _read_status(body: MappingNode) -> NodeStatus | None:
     status = mapping_values.get_text(body, "status")
-    return status if status in {"existing", "adapted", "planned"} else None  # type: ignore[return-value]
+    return status if status in _NODE_STATUSES else None  # type: ignore[return-value]
 
 
 def _read_parameters(body: MappingNode) -> Mapping[str, object]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
@@ -129,13 +129,18 @@ def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, L
     return links_by_id
 
 
-def declare_chains(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Chain]:
-    """Declare the chains; a waypoint that cannot be resolved is kept in `unresolved`: the chain then counts as open."""
+def declare_chains(
+    root: MappingNode, resolver: ReferenceResolver, implements: Mapping[str, Collection[str]]
+) -> dict[str, Chain]:
+    """Declare the chains; a waypoint that cannot be resolved is kept in `unresolved`: the chain then counts as open.
+
+    `implements` holds the components of each node.
+    """
     chains_by_id: dict[str, Chain] = {}
     for name, entry, body in mapping_values.iterate_elements(root, "chains"):
         sanity_checks.report_empty_list(body, "through", "element", name, resolver.diagnostics)
         waypoints = [
-            (resolver.resolve_reference(scalar, _WAYPOINT_KINDS, name), scalar)
+            (resolver.resolve_reference(scalar, _WAYPOINT_KINDS, name, implements=implements), scalar)
             for scalar in mapping_values.get_scalars(body, "through")
         ]
         chains_by_id[name] = Chain(

@@ -8,7 +8,7 @@ from fractions import Fraction
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.reference_resolution import PortResolver
+from archgen.link.port_resolution import PortResolver
 from archgen.model.declared_timing import OutputTiming, Timing, Trigger
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
@@ -97,8 +97,3 @@ def _parse_fraction(text: str) -> Fraction | None:
         return Fraction(text) if len(text) <= _MAX_NUMBER_LENGTH else None
     except (ValueError, ZeroDivisionError):
         return None
-
-
-def find_senseless_timing(timing: Timing, element_id: str) -> Iterator[Diagnostic]:
-    """Yield what makes no sense in a timing, wherever its figures come from."""
-    return (finding for _, finding in sanity_checks.find_senseless(timing, element_id))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
@@ -13,7 +14,7 @@ from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, EventPace
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, smallest_value
 
 MEASURED_KEYS = {
     "rate": "frequency",
@@ -32,6 +33,11 @@ _BROKEN_ABOVE = {
     "max_period": "gaps are larger than the bounds rest on",
     "wcet": "takes longer than the design says",
     "response": "the bound on the response time does not hold",
+}
+_OPPOSITE_SIDES: Mapping[str, Literal["exact", "at least", "at most"]] = {
+    "exact": "exact",
+    "at least": "at most",
+    "at most": "at least",
 }
 _BROKEN_BELOW = {
     "min_period": "they come closer than the bounds rest on",
@@ -71,17 +77,40 @@ def compare_measured(
     """Compare observations with the design; ids that the design does not have are findings."""
     comparisons: list[MeasuredComparison] = []
     findings: list[Diagnostic] = []
-    # Of several publishers of a topic the last one counts; an observation of a topic does not say which one it saw.
-    topics = {arc.topic: (arc.source, arc.output) for arc in analysis.system.arcs}
+    senders_by_topic = _find_senders(analysis)
     for observation in observations:
-        is_topic = observation.id in topics
+        is_topic = observation.id in senders_by_topic
         if not is_topic and observation.id not in analysis.system.activities:
-            findings.append(_report_unknown(observation, [*analysis.system.activities, *topics]))
+            findings.append(_report_unknown(observation, [*analysis.system.activities, *senders_by_topic]))
             continue
-        pace = analysis.outputs.get(topics[observation.id]) if is_topic else analysis.paces.get(observation.id)
+        pace = (
+            _merge_paces([analysis.outputs.get(sender) for sender in senders_by_topic[observation.id]])
+            if is_topic
+            else analysis.paces.get(observation.id)
+        )
         for key, quantity in observation.figures.items():
             comparisons.append(_compare_figure(analysis, observation.id, key, quantity.value, pace))
     return tuple(comparisons), tuple(findings)
+
+
+def _find_senders(analysis: Analysis) -> dict[str, list[tuple[str, str]]]:
+    """Return the outputs that send on each topic; of a service it is its clients."""
+    senders_by_topic: dict[str, dict[tuple[str, str], None]] = {}
+    for arc in analysis.system.arcs:
+        if arc.role != "answer":
+            senders_by_topic.setdefault(arc.topic, {})[arc.source, arc.output] = None
+    return {topic: list(senders) for topic, senders in senders_by_topic.items()}
+
+
+def _merge_paces(paces: Sequence[EventPace | None]) -> EventPace | None:
+    """Return the pace of what several outputs send together: an observation of a topic sees all of them."""
+    if len(paces) == 1 or None in paces:
+        return paces[0] if len(paces) == 1 else None
+    known_paces = [pace for pace in paces if pace is not None]
+    # The largest gap is at most that of each; how close samples of different outputs come, nobody knows.
+    return EventPace(
+        None, add_values(pace.rate for pace in known_paces), smallest_value(pace.gap for pace in known_paces)
+    )
 
 
 def _compare_figure(
@@ -104,14 +133,18 @@ def _compare_figure(
 
 
 def _compare_rate(name: str, key: str, measured: Fraction, pace: EventPace | None) -> MeasuredComparison:
-    """Compare a mean rate or period: outlier if it is off by more than the tolerance."""
+    """Compare a mean rate or period: outlier if it is off by more than the tolerance, beyond the side of a bound."""
     rate = designed = pace.rate if pace else UNKNOWN_VALUE
     if key == "period":
-        designed = TimingValue(10**9 / rate.value, rate.complete) if rate.value else UNKNOWN_VALUE
+        designed = (
+            replace(rate, value=10**9 / rate.value, side=_OPPOSITE_SIDES[rate.side]) if rate.value else UNKNOWN_VALUE
+        )
     if designed.value is None:
         return MeasuredComparison(name, key, designed, measured, "not designed")
-    is_off = abs(measured - designed.value) > RATE_TOLERANCE * designed.value
     is_slower = (measured < designed.value) is (key == "rate")
+    # What is sent at most so often (a conditional output) may come as rarely as it likes, and the reverse.
+    is_allowed = rate.side == ("at most" if is_slower else "at least")
+    is_off = not is_allowed and abs(measured - designed.value) > RATE_TOLERANCE * designed.value
     why = (
         f"{'slower' if is_slower else 'faster'} than designed by more than {int(100 * RATE_TOLERANCE)} %"
         if is_off

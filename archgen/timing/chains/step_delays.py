@@ -17,8 +17,7 @@ from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, is_known_bound, name_missing_element, sum_bounds
-from archgen.timing.system.selective_arcs import is_selective_arc
-from archgen.timing.system.timing_system import Activity, Arc
+from archgen.timing.system.timing_system import Activity, Arc, is_selective_arc
 
 _SELECTIVE_ASSUMPTIONS = {
     "data": "{0} publishes {1} for this very input",

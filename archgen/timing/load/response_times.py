@@ -6,10 +6,7 @@ strictly periodic (Burns and Wellings' process set C). No result rests on a figu
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
-from itertools import accumulate
 from math import lcm
 from typing import NamedTuple
 
@@ -27,6 +24,7 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.multicore_response import solve_several_cores
+from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -46,13 +44,20 @@ from archgen.timing.system.timing_system import TimingSystem
 class AnalysisEffort(NamedTuple):
     """How much may still be computed, and for whom.
 
-    `stale_ids` are those whose event models have changed, None at first. `previous_threads` holds the threads of
-    several cores as they were when responses were last found; `find_responses` writes to it.
+    `stale_ids` are those whose event models have changed, None at first. `previous_threads` are the threads of the
+    resource as they were when its responses were last found, None at first.
     """
 
     budget: SearchBudget
     stale_ids: frozenset[str] | None = None
-    previous_threads: list[ThreadWork] | None = None
+    previous_threads: tuple[ThreadWork, ...] | None = None
+
+
+class ResourceResponses(NamedTuple):
+    """The responses of activities that may have changed, and the threads that they were found for."""
+
+    response_of: dict[str, WorstResponse]
+    threads: tuple[ThreadWork, ...]
 
 
 def find_dedicated_response(
@@ -85,23 +90,21 @@ def find_responses(
     event_models: EventModels,
     known_responses: Mapping[str, WorstResponse],
     effort: AnalysisEffort,
-) -> dict[str, WorstResponse]:
+) -> ResourceResponses:
     """Return the responses of what a resource runs.
 
     `known_responses` are those found so far; they matter on several cores. What has a higher priority than everything
     stale is left out, and so is everything where nothing changed that counts.
     """
     budget, stale_ids, previous_threads = effort
-    all_threads = [
+    built_threads = [
         build_thread(system, unit, event_models, known_responses) for unit in (*resource.units, *resource.foreign_units)
     ]
-    all_threads = lower_crowded_threads(system, all_threads, event_models)
+    all_threads = tuple(lower_crowded_threads(system, built_threads, event_models))
     # On several cores each response rests on all others; if no thread differs from last time, neither does any
     # response.
-    if previous_threads is not None and resource.cores > 1:
-        if previous_threads == all_threads:
-            return {}
-        previous_threads[:] = all_threads
+    if resource.cores > 1 and previous_threads == all_threads:
+        return ResourceResponses({}, all_threads)
     threads, foreign_threads = all_threads[: len(resource.units)], all_threads[len(resource.units) :]
     one_core = resource.cores == 1 or resource.joined
     # On one core only what is as urgent or more can interfere: threads above the most urgent stale one keep their
@@ -115,9 +118,9 @@ def find_responses(
             ),
             default=-1,
         )
-        wanted_threads = [
+        wanted_threads = tuple(
             thread for thread in threads if thread.lowest_priority is None or thread.lowest_priority <= highest_stale
-        ]
+        )
     else:
         wanted_threads = threads
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
@@ -134,7 +137,7 @@ def find_responses(
                 response_of[name] = WorstResponse(
                     None, "unknown", unite_causes((UnknownCause((name,)), response.cause))
                 )
-    return response_of
+    return ResourceResponses(response_of, all_threads)
 
 
 def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
@@ -157,7 +160,7 @@ def _solve_one_core(
 ) -> Iterable[tuple[ThreadWork, WorstResponse]]:
     """Yield the responses of the wanted threads on one core."""
     all_threads = (*threads[0], *threads[1])
-    ranked = _RankedThreads(all_threads)
+    ranked = RankedThreads(all_threads)
     any_order_response = (
         _bound_any_order(all_threads, budget)
         if any(thread.lowest_priority is None for thread in wanted_threads)
@@ -176,65 +179,12 @@ def _solve_one_core(
             )
             yield thread, response._replace(tier="executor") if is_only else response
     previous_response: WorstResponse | None = None
-    # By falling priority: `_RankedThreads` builds each level's load and busy period on the one before.
+    # By falling priority: the busy period of each level is where the search of the next begins.
     for thread in sorted(
         (t for t in wanted_threads if t.lowest_priority is not None), key=lambda t: -(t.lowest_priority or 0)
     ):
         previous_response = _bound_by_priority(thread, ranked, budget, previous_response)
         yield thread, previous_response
-
-
-class _RankedThreads:
-    """Threads by falling priority, with the share of a core that each takes together with all above it.
-
-    `cause_of_first` and `busy_period_of_first` must be asked in order of growing counts: they keep what they have added
-    up.
-    """
-
-    def __init__(self, threads: Iterable[ThreadWork]) -> None:
-        self.threads = sorted((t for t in threads if t.highest_priority is not None), key=_rank_key)
-        pairs = [thread.share.as_integer_ratio() for thread in self.threads]
-        self._common_denominator = lcm(*[denominator for _, denominator in pairs])
-        self._cumulated_shares = tuple(
-            accumulate(
-                (numerator * (self._common_denominator // own_denominator) for numerator, own_denominator in pairs),
-                initial=0,
-            )
-        )
-        self.load = GrowingLoad()
-        self._loaded_count = self._busy_period = 0
-        self._causes: list[UnknownCause] = []
-        self._cause_count = 0
-
-    def count_down_to(self, priority: int) -> int:
-        """Return how many threads may have this priority or a higher one."""
-        return bisect_right(self.threads, -priority, key=_rank_key)
-
-    def share_of_first(self, count: int) -> Fraction:
-        """Return the share of a core that the first threads take."""
-        return Fraction(self._cumulated_shares[count], self._common_denominator)
-
-    def cause_of_first(self, count: int) -> UnknownCause | None:
-        """Return what is missing of the first threads, None where nothing is."""
-        new_causes = [thread.cause for thread in self.threads[self._cause_count : count] if thread.cause]
-        self._cause_count = max(count, self._cause_count)
-        if new_causes:
-            self._causes = [unite_causes((*self._causes, *new_causes))]
-        return self._causes[0] if self._causes else None
-
-    def busy_period_of_first(self, count: int, budget: SearchBudget) -> int:
-        """Return the busy period of the first threads. The last one is a lower bound, where the search begins."""
-        if self._loaded_count < count:
-            for thread in self.threads[self._loaded_count : count]:
-                self.load.add_work(thread.works)
-            self._loaded_count = count
-            self._busy_period = longest_busy_period(self.load.demand_function(), budget, self._busy_period)
-        return self._busy_period
-
-
-def _rank_key(thread: ThreadWork) -> int:
-    """Sort key: threads by falling greatest priority."""
-    return -(thread.highest_priority or 0)
 
 
 def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0) -> WorstResponse:
@@ -257,7 +207,7 @@ def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_c
 
 
 def _bound_by_priority(
-    thread: ThreadWork, ranked: _RankedThreads, budget: SearchBudget, previous_response: WorstResponse | None
+    thread: ThreadWork, ranked: RankedThreads, budget: SearchBudget, previous_response: WorstResponse | None
 ) -> WorstResponse:
     """Bound the response of a thread below all that may have its priority or a higher one.
 
@@ -280,7 +230,7 @@ def _bound_by_priority(
         # Activation by activation, only for a single activity; for an executor the whole busy period is the bound,
         # since its callbacks may run in any order.
         if len(thread.works) == 1:
-            interference = subtract_demand(ranked.load.demand_function(), GrowingLoad(thread.works).demand_function())
+            interference = subtract_demand(ranked.demand_of_first(count), GrowingLoad(thread.works).demand_function())
             busy_period = worst_response(thread.works[0], interference, budget, busy_period)
         return WorstResponse(busy_period, tier)
     except DivergedError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_propagation import PropagationState, leaving_model
+from archgen.timing.load.event_models import PropagationState, leaving_model
 from archgen.timing.load.event_streams import EventStreams, delay_streams, streams_of_calls
 from archgen.timing.system.timing_system import Activity, Arc
 
@@ -57,9 +57,10 @@ def _answer_model(state: PropagationState, answer: Arc) -> EventStreams | Unknow
         return request_model
     if response.value is None:
         return response.cause
-    if request.best is None or request.worst is None:
+    if request.worst is None:
         return UnknownCause((request.link or request.source,))
-    spread = max(response.value - (server.bcet or 0), 0) + request.worst - request.best
+    # A best latency that is not written is 0, as everywhere: the least there can be, so that the spread is a bound.
+    spread = max(response.value - (server.bcet or 0), 0) + request.worst - (request.best or 0)
     # A periodic server looks for calls when it runs: an answer waits up to one more of its gaps.
     if server.behaviour in {"event", "on_demand"}:
         return delay_streams(request_model, spread)

@@ -19,7 +19,7 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
     value_of_cause,
 )
-from archgen.timing.load.event_propagation import PropagationState
+from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.link_queueing import longest_queueing
 from archgen.timing.load.sent_models import sent_model

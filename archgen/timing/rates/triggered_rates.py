@@ -18,7 +18,7 @@ from archgen.timing.figures.value_arithmetic import (
     smallest_value,
     unknown_value,
 )
-from archgen.timing.load.event_propagation import find_renewed_inputs, input_model, is_always_present
+from archgen.timing.load.event_models import find_renewed_inputs, input_model, is_always_present
 from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
 from archgen.timing.system.timing_system import Activity, Arc
 

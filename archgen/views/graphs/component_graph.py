@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
-from archgen.model.message_types import flow_of
 from archgen.views.graphs import element_boxes
+from archgen.views.graphs.component_flows import flow_style
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
@@ -94,14 +93,14 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
         if takes_all and len(types) != 1
         else f"{'* ' * takes_all}{types[0] if types else ''}"
     )
-    style = output_style(architecture, outputs[0]) if outputs else "data"
+    style = flow_style(architecture, outputs[0].id) if outputs else "data"
     arrow = Arrow(
         f"{connection.target}>{port.id}",
         box.id,
         component.id,
         label,
         head_port=f"in {port.name}",
-        style=style,  # type: ignore[arg-type]
+        style=style,
         optional=port.optional,
         flows=tuple(
             f"{architecture.components[output.component].title} · {output.name} → {port.name}" for output in outputs
@@ -113,7 +112,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
 
 def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
     for output in component.outputs.values():
-        style = output_style(lookup.architecture, output)
+        style = flow_style(lookup.architecture, output.id)
         label = output.type or ""
         if output.external is not None:
             yield _draw_external(output, component, "right")
@@ -127,7 +126,7 @@ def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbo
                 box.id,
                 label,
                 tail_port=f"out {output.name}",
-                style=style,  # type: ignore[arg-type]
+                style=style,
                 optional=lookup.architecture.inputs[connection.input].optional,
                 flows=(f"{output.name} → {reader.title} · {connection.input.rsplit('.', 1)[1]}",),
                 ref=f"type:{output.type}" if output.type else None,
@@ -184,14 +183,6 @@ def _fold_neighbours(lookup: Lookup, drawn: list[DrawnNeighbour]) -> list[DrawnN
         ends = {"tail": name} if arrow.tail == box.id else {"head": name}
         folded.append((group_box, replace(arrow, **ends)))  # type: ignore[arg-type]
     return folded
-
-
-def output_style(architecture: Architecture, output: Output) -> str:
-    """Return the style of arrow for what an output carries."""
-    if output.physical:
-        return "physical"
-    flow = flow_of(architecture.message_of(output))
-    return "data" if flow == "topic" else flow
 
 
 def _component_of_port(port_id: str) -> str:

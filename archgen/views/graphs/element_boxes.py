@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, cast
 
 from archgen.model.component import Component
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Box, Cluster
 
-_SEVERITIES: tuple[Literal["error", "warning", "note"], ...] = ("error", "warning", "note")
+BadgeSeverity = Literal["error", "warning", "note"]
 
 
 def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...] = ()) -> Box:
@@ -54,10 +54,11 @@ def group_hue(lookup: Lookup, group: str) -> int:
     return lookup.group_hues[group] % 10
 
 
-def worst_severity(lookup: Lookup, element_id: str) -> Literal["error", "warning", "note"] | None:
+def worst_severity(lookup: Lookup, element_id: str) -> BadgeSeverity | None:
     """Return the severity of an element's worst finding."""
-    severities = {str(finding.severity) for finding in lookup.findings_of.get(element_id, ())}
-    return next((each for each in _SEVERITIES if each in severities), None)
+    severities = (finding.effective_severity for finding in lookup.findings_of.get(element_id, ()))
+    worst = max(severities, default=None)
+    return None if worst is None else cast("BadgeSeverity", worst.value)  # `off` is only a setting
 
 
 def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:

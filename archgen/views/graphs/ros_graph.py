@@ -33,7 +33,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
         for each in node_boxes.list_node_flows(lookup.architecture)
         if each.tail in home_frames and each.head in home_frames
     ]
-    frames = tuple(_home_frame(lookup, each) for each in dict.fromkeys(home_frames.values()))
+    frames = tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames.values()))
     arrows = _merge_node_flows(lookup, node_flows, home_frames)
     graph = Graph(
         graph_id,
@@ -60,7 +60,8 @@ def find_home_frame(lookup: Lookup, node: Node) -> str:
     return next((group for group in groups if group in lookup.architecture.groups), f"namespace {node.namespace}")
 
 
-def _home_frame(lookup: Lookup, home: str) -> Cluster:
+def draw_home_frame(lookup: Lookup, home: str) -> Cluster:
+    """Return the frame of a group or a namespace."""
     if home in lookup.architecture.groups:
         return element_boxes.group_frame(lookup, home)
     return Cluster(home, home.removeprefix("namespace "), tooltip=f"Nodes in {home} that implement no component")

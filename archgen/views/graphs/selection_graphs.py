@@ -154,14 +154,15 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
         replace(node_boxes.node_box(lookup, all_nodes[each]), emphasis="neighbour", badge=None)
         for each in neighbour_ids
     ]
-    arrows = {}
+    arrows: dict[str, Arrow] = {}
     for each in node_flows:
         style = "data" if each.topic.flow == "topic" else each.topic.flow
         box = f"topic {each.topic.name}"
-        # Several flows share a topic's box: its arrows are drawn once, with the sentence of the last flow.
+        # Several flows share a topic's box: its arrows are drawn once, with the sentences of all of them.
         for tail, head in ((each.tail, box), (box, each.head)):
-            arrow = Arrow(f"{tail}>{head}", tail, head, style=style, flows=(each.sentence,))
-            arrows[arrow.id] = arrow
+            arrow_id = f"{tail}>{head}"
+            sentences = (*arrows[arrow_id].flows, each.sentence) if arrow_id in arrows else (each.sentence,)
+            arrows[arrow_id] = Arrow(arrow_id, tail, head, style=style, flows=tuple(dict.fromkeys(sentences)))
     graph = Graph(
         graph_id,
         title,

@@ -13,10 +13,10 @@ from archgen.timing.system.timing_system import Activity, Arc
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.graphs.ros_graph import find_home_frame
+from archgen.views.graphs.ros_graph import draw_home_frame, find_home_frame
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
+from archgen.views.shapes import Arrow, Box, Graph
 from archgen.views.timing import rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -80,7 +80,7 @@ def _draw_all_activities(graph_data: _TimingGraphData) -> Graph:
             replace(_activity_box(timed, each), cluster=graph_data.home_frames[each.id]) for each in activities.values()
         ),
         _merge_flows(lookup, graph_data.flows, graph_data.home_frames),
-        tuple(_home_frame(lookup, each) for each in dict.fromkeys(graph_data.home_frames.values())),
+        tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(graph_data.home_frames.values())),
         direction=lookup.architecture.layout.direction or "left-right",
         notes=_bound_notes(timed, activities),
         alt=_describe_periods(timed, list(activities), "All activities"),
@@ -114,7 +114,7 @@ def _draw_selected_nodes(graph_data: _TimingGraphData, node_ids: Collection[str]
         ),
         # Only arrows that come from a frame of the selection have a hue; all others are drawn pale.
         tuple(replace(each, faded=each.colour is None) for each in _merge_flows(lookup, touching_flows, home_frames)),
-        tuple(_home_frame(lookup, each) for each in dict.fromkeys(home_frames[name] for name in own_activities)),
+        tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames[name] for name in own_activities)),
         direction=lookup.architecture.layout.direction or "left-right",
         notes=_bound_notes(timed, own_activities),
         alt=_describe_periods(timed, tuple(own_activities), "The selected part"),
@@ -130,7 +130,7 @@ def _frame_of_neighbours(lookup: Lookup, frame: str, activity_ids: Sequence[str]
         if len(activity_ids) <= _MAX_NAMED + 1
         else [*activity_ids[:_MAX_NAMED], f"and {len(activity_ids) - _MAX_NAMED} more"]
     )
-    cluster = _home_frame(lookup, frame)
+    cluster = draw_home_frame(lookup, frame)
     return Box(
         f"around {frame}",
         cluster.title,
@@ -177,12 +177,6 @@ def _find_home(lookup: Lookup, activity: Activity) -> str:
         ]
         component = lookup.architecture.components.get(names[0]) if names else None
     return component.group if component else find_home_frame(lookup, lookup.architecture.nodes[activity.node])
-
-
-def _home_frame(lookup: Lookup, home: str) -> Cluster:
-    if home in lookup.architecture.groups:
-        return element_boxes.group_frame(lookup, home)
-    return Cluster(home, home.removeprefix("namespace "))
 
 
 def _activity_box(timed: TimingLookup, activity: Activity) -> Box:
@@ -272,7 +266,7 @@ def _draw_neighbours(graph_data: _TimingGraphData, own_ids: Collection[str], *, 
 def _neighbour_box(graph_data: _TimingGraphData, activity_id: str, box_id: str, *, is_folded: bool) -> Box:
     side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
     if is_folded:
-        frame = _home_frame(graph_data.lookup, graph_data.home_frames[activity_id])
+        frame = draw_home_frame(graph_data.lookup, graph_data.home_frames[activity_id])
         return Box(box_id, frame.title, style="group", emphasis="neighbour", side=side, ref=frame.ref)
     box = _activity_box(graph_data.timed, graph_data.timed.analysis.system.activities[activity_id])
     # Without the fill: neighbours are grey in every picture; the period is in their text.

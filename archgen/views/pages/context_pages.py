@@ -32,7 +32,7 @@ from archgen.views.timing import element_timing
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
 """Drops the figures that were not drawn."""
-_HOME_CRUMB = ("Overview", "page:index")
+HOME_CRUMB = ("Overview", "page:index")
 _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
@@ -54,7 +54,7 @@ def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
 
 def _make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
     """Make a page below a folder; its name is the anchor without the kind before the colon."""
-    crumbs = (_HOME_CRUMB, crumb) if crumb else (_HOME_CRUMB,)
+    crumbs = (HOME_CRUMB, crumb) if crumb else (HOME_CRUMB,)
     path = f"{folder}/{make_page_slug(section.anchor.partition(':')[2])}.html"
     return Page(path, section.anchor, section.title, folder, section, crumbs, lead)
 

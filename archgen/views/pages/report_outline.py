@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -94,11 +94,9 @@ class _ChapterMaker:
 
     def make_chapter(self, name: str) -> Sequence[Section]:
         """Return the sections of a chapter: several for `groups`, none where there is nothing to say."""
-        if name in GENERATED_CHAPTERS:
-            # One method for each name in GENERATED, called `_NAME`: they are found by name, so renaming one breaks its
-            # chapter. NAME is one of archgen's own words here, never the user's text.
-            generated_sections: Sequence[Section] = getattr(self, f"_{name}")()
-            return generated_sections
+        make_sections = _GENERATED_SECTIONS.get(name)
+        if make_sections:
+            return make_sections(self)
         chapter = self.edition.project_chapters.get(name)
         return (self._project_chapter(chapter),) if chapter else ()
 
@@ -106,7 +104,8 @@ class _ChapterMaker:
         title, text = split_title(chapter)
         return Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder),), page_break=True)
 
-    def _overview(self) -> list[Section]:
+    def make_overview(self) -> list[Section]:
+        """Make the overview: what the project says of itself, and its pictures."""
         project = self.lookup.architecture.project
         blocks: list[Block] = [Markdown(project.description)] if project.description else []
         blocks += self._make_figures("overview", "components")
@@ -119,7 +118,8 @@ class _ChapterMaker:
             if graph:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
-    def _groups(self) -> list[Section]:
+    def make_groups(self) -> list[Section]:
+        """Make one section for each group, with its components and their nodes."""
         return [self._group_section(self.lookup.architecture.groups[group]) for group in self.lookup.shown_groups()]
 
     def _group_section(self, group: Group) -> Section:
@@ -159,7 +159,8 @@ class _ChapterMaker:
         """Drop figures that are not among this document's drawings."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
 
-    def _deployment(self) -> list[Section]:
+    def make_deployment(self) -> list[Section]:
+        """Make the chapter of hosts and links."""
         if self.edition.level == "functional":
             return []
         blocks = [
@@ -170,7 +171,8 @@ class _ChapterMaker:
         ]
         return [Section("page:hosts", "Deployment", tuple(blocks), page_break=True)] if blocks else []
 
-    def _timing(self) -> list[Section]:
+    def make_timing(self) -> list[Section]:
+        """Make the chapter of figures of timing."""
         timing_lookup = self.lookup.timing
         if timing_lookup is None or self.edition.level == "functional":
             return []
@@ -178,14 +180,16 @@ class _ChapterMaker:
         sections = timing_chapter.make_timing_sections(self.lookup, timing_lookup, self.edition.drawings)
         return [Section("page:timing", "Timing", blocks, sections, page_break=True)] if sections else []
 
-    def _chains(self) -> list[Section]:
+    def make_chains(self) -> list[Section]:
+        """Make the chapter of chains of effect."""
         blocks = timing_chapter.make_chain_overview(self.lookup)
         if not blocks or self.lookup.scope.components is not None:
             return []
         sections = tuple(timing_chapter.make_chain_sections(self.lookup, self.edition.drawings))
         return [Section("page:chains", "Chains of effect", blocks, sections, page_break=True)]
 
-    def _views(self) -> list[Section]:
+    def make_views(self) -> list[Section]:
+        """Make the chapter of the project's own views."""
         project_views = self.lookup.architecture.views.values()
         sections = [
             Section(
@@ -196,16 +200,19 @@ class _ChapterMaker:
         sections = [section for section in sections if section.blocks]
         return [Section("page:views", "Views", (), tuple(sections), page_break=True)] if sections else []
 
-    def _types(self) -> list[Section]:
+    def make_types(self) -> list[Section]:
+        """Make the appendix that maps conceptual types to messages."""
         return self._make_appendix("types", "Type mapping", architecture_tables.make_type_table(self.lookup))
 
-    def _connections(self) -> list[Section]:
+    def make_connections(self) -> list[Section]:
+        """Make the appendix of connections."""
         shown_connections = architecture_tables.shown_connections(self.lookup)
         return self._make_appendix(
             "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
         )
 
-    def _requirements(self) -> list[Section]:
+    def make_requirements(self) -> list[Section]:
+        """Make the appendix that traces requirements."""
         requirement_table = architecture_tables.make_requirement_table(
             self.lookup, architecture_tables.shown_requirements(self.lookup)
         )
@@ -216,7 +223,8 @@ class _ChapterMaker:
             architecture_tables.make_free_requirement_table(self.lookup),
         )
 
-    def _open_points(self) -> list[Section]:
+    def make_open_points(self) -> list[Section]:
+        """Make the appendix of findings."""
         summary = Paragraph(
             inline_text.to_inlines(
                 f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
@@ -226,7 +234,8 @@ class _ChapterMaker:
             "findings", "Open points", summary, architecture_tables.make_finding_table(self.lookup.findings)
         )
 
-    def _statistics(self) -> list[Section]:
+    def make_statistics(self) -> list[Section]:
+        """Make the appendix of size, progress and growth."""
         growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
         return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
 
@@ -235,6 +244,22 @@ class _ChapterMaker:
         return (
             [Section(f"page:{anchor}", title, present_blocks, appendix=True, page_break=True)] if present_blocks else []
         )
+
+
+_GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] = {
+    "overview": _ChapterMaker.make_overview,
+    "groups": _ChapterMaker.make_groups,
+    "deployment": _ChapterMaker.make_deployment,
+    "timing": _ChapterMaker.make_timing,
+    "chains": _ChapterMaker.make_chains,
+    "views": _ChapterMaker.make_views,
+    "types": _ChapterMaker.make_types,
+    "connections": _ChapterMaker.make_connections,
+    "requirements": _ChapterMaker.make_requirements,
+    "open_points": _ChapterMaker.make_open_points,
+    "statistics": _ChapterMaker.make_statistics,
+}
+"""What makes each of the generated chapters, by its name in `GENERATED_CHAPTERS`."""
 
 
 def _drop_missing(*blocks: Block | None) -> Iterator[Block]:

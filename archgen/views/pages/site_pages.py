@@ -13,11 +13,10 @@ from archgen.views.elements.functional_level import make_component_blocks, make_
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages, timing_chapter
+from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
-
-HOME_CRUMB = ("Overview", "page:index")
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:

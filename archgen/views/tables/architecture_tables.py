@@ -5,10 +5,10 @@ Each function returns None where there would be no rows, because a `Table` witho
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
 from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
 from archgen.model.message_types import ConceptualType
@@ -17,8 +17,6 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text
-
-TableRows = tuple[tuple[Inlines, ...], ...]
 
 
 def make_group_table(lookup: Lookup) -> Table | None:
@@ -338,13 +336,4 @@ def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: s
 
 def describe_severities(findings: Iterable[Diagnostic]) -> str:
     """Count findings in words: `1 error, 2 warnings and 3 notes`, or `nothing`."""
-    counts = Counter(finding.severity for finding in findings)
-    names = ((Severity.ERROR, "error"), (Severity.WARNING, "warning"), (Severity.NOTE, "note"))
-    phrases = [inline_text.count_noun(counts[severity], noun) for severity, noun in names if counts[severity]]
-    return (
-        " and ".join([", ".join(phrases[:-1]), phrases[-1]])
-        if len(phrases) > 1
-        else phrases[0]
-        if phrases
-        else "nothing"
-    )
+    return join_words(phrase_severity_counts(findings)) or "nothing"

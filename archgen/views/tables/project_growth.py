@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
@@ -135,12 +136,12 @@ def format_change(old_value: str, new_value: str) -> str:
 
 def name_point(point: HistoryPoint, history: History) -> str:
     """Name a point: its month, or its day and the first digits of its commit."""
-    return point.day[:7] if history.by == "month" else f"{point.day} {point.commit[:7]}"
+    return point.day[:7] if history.by == "month" else f"{point.day} {shorten_hash(point.commit)}"
 
 
 def format_step_share(row: ProgressRow, step: str) -> str:
     """Format the share of a step in percent, rounded down so that 100 % means all; `-` without components."""
-    return f"{100 * getattr(row, step) // row.components} %" if row.components else "-"
+    return f"{floor_percent(getattr(row, step), row.components)} %" if row.components else "-"
 
 
 def format_findings(findings: FindingCounts) -> str:

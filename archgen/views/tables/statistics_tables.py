@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts, measure_progress, measure_size
+from archgen.diagnostics.common_wording import floor_percent
 from archgen.model.architecture import Architecture
 from archgen.views import inline_text
 from archgen.views.shapes import Column, Inlines, Table, Text
@@ -82,7 +83,7 @@ def _progress_row(architecture: Architecture, row: ProgressCounts) -> tuple[Inli
     return (
         _subject_cell(architecture, row),
         inline_text.to_inlines(str(row.components)),
-        *(inline_text.to_inlines(Text(f"{count} ({_format_percent(count, row.components)})")) for count in counts),
+        *(inline_text.to_inlines(Text(f"{count} ({floor_percent(count, row.components)} %)")) for count in counts),
     )
 
 
@@ -92,8 +93,3 @@ def _subject_cell(architecture: Architecture, row: ProgressCounts) -> Inlines:
     if row.scope == "partner" and row.id:
         return inline_text.partner_link(architecture, row.id)
     return inline_text.to_inlines(Text(row.title, strong=row.scope == "project"))
-
-
-def _format_percent(count: int, total: int) -> str:
-    """Format a share in percent, rounded down so that 100 % means all."""
-    return f"{100 * count // total} %"

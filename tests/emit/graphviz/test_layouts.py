@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -9,7 +10,10 @@ import pytest
 
 from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing
+from archgen.emit.graphviz.box_styles import style_box
+from archgen.emit.graphviz.framed_layout import lay_out_framed
 from archgen.emit.graphviz.placed_scene import Scene, overlapping_parts, rectangles_meet
+from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
 from archgen.views.graphs import draw_group, make_all_graphs
 from archgen.views.lookup import make_lookup
@@ -201,3 +205,22 @@ def test_meetings_are_found() -> None:
         ScenePart("c", {}, 0, 0, 4, 4, "mark"),
     )
     assert list(overlapping_parts(Scene(parts=parts))) == [("a", "b")]
+
+
+def test_a_frame_without_boxes_is_left_out() -> None:
+    clusters = (Cluster("full", "Full"), Cluster("empty", "Empty"))
+    graph = Graph("g", "G", "framed", (Box("a", "A", cluster="full"),), (), clusters=clusters)
+    scene = lay_out_framed(style_graph(graph, lambda _: None))
+    assert [frame.name for frame in scene.frames] == ["c0"]
+
+
+def test_a_box_with_ports_shows_status_and_subject_in_its_frame() -> None:
+    def head(box: Box) -> str:
+        return style_box(box, lambda _: None)["label"].partition("COLOR")[0]
+
+    plain = Box("a", "A", ports_in=(("i", "i"),))
+    assert head(plain) == '<<TABLE STYLE="ROUNDED" BORDER="1" '
+    assert head(replace(plain, emphasis="subject")) == '<<TABLE STYLE="ROUNDED" BORDER="2" '
+    assert head(replace(plain, status="planned")) == '<<TABLE STYLE="ROUNDED,DASHED" BORDER="1" '
+    assert head(replace(plain, status="adapted")) == '<<TABLE STYLE="ROUNDED,DOTTED" BORDER="1" '
+    assert head(replace(plain, change="added")) == '<<TABLE STYLE="ROUNDED" BORDER="3" '

@@ -83,3 +83,44 @@ def test_what_cannot_be_read_is_said_at_its_place() -> None:
         "a.csv:2:1 wrong-value: `rate` takes a frequency with its unit, such as 29.7 Hz (None)",
         "a.csv:3:1 wrong-value: this line has 3 cells, the first one 2 (None)",
     ]
+
+
+def _verdicts(paces: dict[str, EventPace], text: str) -> list[tuple[str, str, str]]:
+    """Compare what is measured on /t, which each of these outputs publishes."""
+    made = analysis(
+        [periodic(name, 100) for name in (*paces, "reader")],
+        [replace(arc(name, "reader"), topic="/t") for name in paces],
+        dict.fromkeys((*paces, "reader"), 1),
+        dict.fromkeys((*paces, "reader"), 100),
+    )
+    made = replace(made, outputs={(name, f"{name}.out"): pace for name, pace in paces.items()})
+    observed, problems = read_observations("run.yaml", f"measured: {{/t: {text}}}\n")
+    assert not problems
+    compared, unknown = compare_measured(made, observed)
+    assert not unknown
+    return [(row.key, row.verdict, row.why) for row in compared]
+
+
+def test_a_topic_has_the_rates_of_all_its_publishers() -> None:
+    pace = EventPace("periodic", TimingValue(Fraction(10)), ms(100), distance=ms(95))
+    both = {"a": pace, "b": replace(pace, gap=ms(120))}
+    assert _verdicts(both, "{rate: 20 Hz, period: 50 ms}") == [
+        ("rate", "as designed", ""),
+        ("period", "as designed", ""),
+    ]
+    assert _verdicts(both, "{rate: 10 Hz}") == [("rate", "outlier", "slower than designed by more than 10 %")]
+    # Each sends within its own gap; how close the samples of two come, nobody designed.
+    assert _verdicts(both, "{max_period: 101 ms, min_period: 1 ms}") == [
+        ("max_period", "outlier", "gaps are larger than the bounds rest on"),
+        ("min_period", "not designed", ""),
+    ]
+
+
+def test_what_is_sent_at_most_so_often_may_come_as_rarely_as_it_likes() -> None:
+    conditional = {"a": EventPace("periodic", TimingValue(Fraction(10), side="at most"), ms(100))}
+    assert _verdicts(conditional, "{rate: 2 Hz}") == [("rate", "as designed", "")]
+    assert _verdicts(conditional, "{period: 500 ms}") == [("period", "as designed", "")]
+    assert _verdicts(conditional, "{rate: 12 Hz}") == [("rate", "outlier", "faster than designed by more than 10 %")]
+    assert _verdicts(conditional, "{period: 80 ms}") == [
+        ("period", "outlier", "faster than designed by more than 10 %")
+    ]

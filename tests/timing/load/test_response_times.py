@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import permutations
 
 import pytest
 
 from archgen.analyses.resource_load import overloaded_host
 from archgen.model.architecture import Architecture
+from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.load.busy_windows import ActivityWork, DivergedError, SearchBudget
+from archgen.timing.load.event_streams import EventStream
+from archgen.timing.load.link_queueing import settle_links
+from archgen.timing.load.ranked_threads import RankedThreads
+from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.run_analysis import analyse_architecture
+from archgen.timing.system.core_placement import find_resources
+from archgen.timing.system.system_builder import build_system
 from tests.timing.task_sets import MS, periodic, tasks, worst
 
 Derived = Callable[[str], Architecture]
@@ -246,3 +256,39 @@ def test_who_waits_for_a_thread_of_its_container_waits_for_the_least_of_those_th
     assert worst(analyse_architecture(derived(text))) == {"a": 6, "b": 6, "c": 6}
     wide = text.replace("threads: 2", "threads: 3")
     assert worst(analyse_architecture(derived(wide))) == {"a": 2, "b": 4, "c": 6}
+
+
+def thread(name: str, priority: int, cost: int, cause: UnknownCause | None = None) -> ThreadWork:
+    work = ActivityWork(cost, (EventStream(period=100),))
+    return ThreadWork((name,), (work,), cause, priority, priority, Fraction(cost, 100), None)
+
+
+def test_ranked_threads_may_be_asked_in_any_order() -> None:
+    """Six threads of 10 in 100: the first n are busy for 10 n. Asked in every order, they say what a new one says."""
+    causes = {3: UnknownCause(("c",)), 5: UnknownCause(("e",))}
+    threads = [thread(str(rank), 9 - rank, 10, causes.get(rank)) for rank in range(6)]
+    for counts in permutations(range(0, 7, 2)):
+        ranked = RankedThreads(threads)
+        for count in counts:
+            expected = unite_causes(cause for rank, cause in causes.items() if rank < count)
+            assert (ranked.cause_of_first(count) or UnknownCause(())) == expected
+            assert ranked.busy_period_of_first(count, SearchBudget()) == 10 * count
+            assert ranked.demand_of_first(count).within(1) == 10 * count
+
+
+def test_a_search_that_did_not_end_is_not_taken_for_an_answer() -> None:
+    ranked = RankedThreads([thread("a", 2, 60), thread("b", 1, 60)])
+    assert ranked.busy_period_of_first(1, SearchBudget()) == 60
+    for _ in range(2):
+        with pytest.raises(DivergedError):
+            ranked.busy_period_of_first(2, SearchBudget(1000))
+
+
+def test_what_is_asked_for_responses_is_not_written_to(derived: Derived) -> None:
+    rows = {"a": periodic("10", "1"), "b": periodic("20", "3")}
+    system, _, state = settle_links(build_system(derived(tasks(rows, host="cores: 2")))[0])
+    (resource,) = find_resources(system)
+    first = find_responses(system, resource, state.event_models, state.responses, AnalysisEffort(SearchBudget()))
+    assert first.response_of
+    again = AnalysisEffort(SearchBudget(), None, tuple(first.threads))
+    assert find_responses(system, resource, state.event_models, state.responses, again).response_of == {}

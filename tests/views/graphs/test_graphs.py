@@ -25,7 +25,7 @@ from archgen.views.graphs import (
     make_all_graphs,
 )
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
-from archgen.views.graphs.selection_graphs import draw_functional_part
+from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot, topics
@@ -364,3 +364,11 @@ def test_folding_keeps_frames_that_fit() -> None:
 def test_what_feeds_a_component_is_named_by_its_title() -> None:
     view = make_lookup(make("g: a b", "g.a.x > g.b.y"))
     assert [arrow.flows for arrow in draw_component(view, "g.b").arrows] == [("A · x → y",)]
+
+
+def test_an_arrow_at_a_shared_topic_names_all_its_flows() -> None:
+    lookup = make_lookup(low(("a", "publishes", "/t"), ("b", "subscribes", "/t"), ("c", "subscribes", "/t")))
+    graph = draw_implementation_part(lookup, "views/v", "V", frozenset({"a", "b", "c"}))
+    flows = {arrow.id: arrow.flows for arrow in graph.arrows}
+    assert len(flows["a>topic /t"]) == 2
+    assert len(flows["topic /t>b"]) == 1

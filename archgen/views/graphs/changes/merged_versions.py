@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import get_args
 
 from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
@@ -18,7 +17,6 @@ from archgen.views.graphs.component_flows import FlowStyle, flow_style
 from archgen.views.shapes import ElementChange
 
 _PORT_KINDS = frozenset({"input", "output"})
-_CHANGED_KINDS = frozenset(get_args(ElementChange))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,30 @@
+"""Wording that all rooms share."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.diagnostics.common_wording import floor_percent, format_transition, join_words, shorten_hash
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [((), ""), (("a",), "a"), (("a", "b"), "a and b"), (("a", "b", "c"), "a, b and c")],
+)
+def test_words_are_joined_as_in_a_sentence(words: tuple[str, ...], sentence: str) -> None:
+    assert join_words(words) == sentence
+    assert join_words(words, "or") == sentence.replace("and", "or")
+
+
+def test_a_short_hash_has_seven_digits() -> None:
+    assert shorten_hash("0123456789abcdef") == "0123456"
+    assert not shorten_hash("")
+
+
+def test_a_hundred_percent_means_all() -> None:
+    assert [floor_percent(count, 1000) for count in (0, 9, 10, 999, 1000)] == [0, 0, 1, 99, 100]
+
+
+def test_what_did_not_change_is_written_once() -> None:
+    assert format_transition("late", "late") == "late"
+    assert format_transition("late", "met") == "late -> met"
