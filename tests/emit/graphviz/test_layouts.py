@@ -133,6 +133,7 @@ def hostile(layout: str) -> Graph:
         () if layout == "flow" else clusters,
         notes=HOSTILE[:3],
         alt=HOSTILE[3],
+        kind="view",
     )
 
 
@@ -170,7 +171,7 @@ def test_a_box_with_ports_takes_arrows_at_its_ports() -> None:
         Arrow("2", "s", "r", head_port=None, tail_port="out a"),
         Arrow("3", "s", "l", tail_port="in a", style="service"),
     )
-    graph = Graph("ports", "Ports", "flow", boxes, arrows)
+    graph = Graph("ports", "Ports", "flow", boxes, arrows, kind="component")
     assert faults(graph) == []
     drafted, scene = graph_drawing.lay_out_graph(graph, {})
     by_arrow = {line.arrow: line for line in scene.lines}

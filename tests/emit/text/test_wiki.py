@@ -31,6 +31,7 @@ def wiki(title: str) -> dict[str, str]:
         ),
         (Arrow("e", "g.a", "t", label=title, style="service"),),
         (Cluster("g", title),),
+        kind="group",
     )
     cells = (
         (Text(title, ref="component:g.a"),),
