@@ -6,6 +6,7 @@ The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -80,6 +81,13 @@ def make_identifier(text: object) -> str:
     # Doubled underscores keep escapes apart from texts that look like them: `a.b` is `a_2e_b`, `a_2e_b` is `a__2e__b`.
     doubled = str(text).replace("_", "__")
     return "n_" + re.sub(r"[^A-Za-z0-9_]", lambda found: f"_{ord(found.group()):x}_", doubled)
+
+
+def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
+    """Make a filter that replaces each character of a text by its entry in the table; all others stay."""
+    replacements = str.maketrans(dict(table))
+    # One pass: what an entry puts in place is not replaced again, so `{"&": "&amp;"}` is safe in any order.
+    return lambda text: str(text).translate(replacements)
 
 
 TEMPLATE_FILTERS: dict[str, Any] = {
