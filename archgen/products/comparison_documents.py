@@ -8,9 +8,9 @@ from archgen.compare import Comparison
 from archgen.emit import file_tree
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.picture import Picture
-from archgen.products import project_outputs
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
-from archgen.products.project_outputs import OutputOptions
+from archgen.products.output_options import OutputOptions
+from archgen.products.picture_drawing import draw_or_warn
 from archgen.views.changes.comparison_document import ComparisonDocument, outline_comparison
 from archgen.views.graphs import changes as pictures
 
@@ -60,7 +60,7 @@ def render_comparison_html(
         graphs,
     )
     return standalone_page.write_standalone_page(
-        outline_comparison(document), project_outputs.draw_or_warn(graphs, ("svg",), options) if graphs else {}
+        outline_comparison(document), draw_or_warn(graphs, ("svg",), options) if graphs else {}
     )
 
 
@@ -74,7 +74,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
         msg = "nothing changed that a picture could show: no component, no connection and no node"
         raise file_tree.OutputError(msg, "`--format text` tells what changed")
     # The first graph is the functional one wherever there is one.
-    picture: Picture | None = project_outputs.draw_or_warn(graphs[:1], ("svg",), options).get(graphs[0].id)
+    picture: Picture | None = draw_or_warn(graphs[:1], ("svg",), options).get(graphs[0].id)
     if picture is None or picture.svg is None:
         msg = "the picture could not be drawn"
         raise file_tree.OutputError(msg)
