@@ -1,0 +1,171 @@
+"""Do components and services answer in the time that they have?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption, format_percentage
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.timing.figures.figure_wording import format_duration
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.component import Component, PerformanceIndicator
+    from archgen.timing.analysis import Analysis, ServiceLoad
+    from archgen.timing.system.timing_system import Activity
+
+
+def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
+    """A component's node takes longer than the execution time that its performance asks for.
+
+    Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
+    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found.
+
+    Bad:
+        groups:
+          sensing:
+            components:
+              detector:
+                performance: {detection: {execution_time: 100 ms}}
+                outputs: {objects: {type: vision_msgs/msg/Detection3DArray, external: The recording}}
+        nodes:
+          detector: {implements: detector, timing: {period: 500 ms, wcet: 180 ms}}
+
+    Good:
+        groups:
+          sensing:
+            components:
+              detector:
+                performance: {detection: {execution_time: 200 ms}}
+                outputs: {objects: {type: vision_msgs/msg/Detection3DArray, external: The recording}}
+        nodes:
+          detector: {implements: detector, timing: {period: 500 ms, wcet: 180 ms}}
+    """
+    for activity in analysis.system.activities.values():
+        component = architecture.components.get(activity.component or "")
+        worst_response = analysis.responses[activity.id].worst.value
+        if component is None or worst_response is None:
+            continue  # unknown, or unbounded by an overload, which `overloaded-host` reports
+        for indicator in component.performance:
+            required_time = indicator.execution_time
+            if required_time is not None and worst_response > (1 - margin) * required_time.value:
+                # Whether the activity alone is too slow, or what runs beside it makes it so: `wcet` is in ticks.
+                is_undisturbed = (
+                    activity.response is not None or worst_response == (activity.wcet or 0) * analysis.system.tick
+                )
+                yield _report_slow_component(
+                    component, indicator, activity, (worst_response, margin), is_undisturbed=is_undisturbed
+                )
+
+
+def _report_slow_component(
+    component: Component,
+    indicator: PerformanceIndicator,
+    activity: Activity,
+    response_and_margin: tuple[Fraction, Fraction],
+    *,
+    is_undisturbed: bool,
+) -> Diagnostic:
+    """Report a response (ns) that leaves less of the required execution time than the margin, a share of it."""
+    worst_response, margin = response_and_margin
+    span = activity.places.get("wcet" if activity.response is None else "response", activity.at)
+    cause = "" if is_undisturbed or activity.host is None else f" with all that works on `{activity.host}`"
+    return Diagnostic(
+        "slow-component",
+        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {format_duration(worst_response)}{cause}{_describe_margin(margin)}",
+        indicator.at,
+        labels=(Label(span, "takes longer" if is_undisturbed else "takes longer with what gets in its way"),)
+        if span != NO_SPAN
+        else (),
+        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
+        element=component.id,
+    )
+
+
+def slow_service(_: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
+    """A service takes longer, with all its callers waiting, than one of them has before it runs again.
+
+    Why: Each caller may find the calls of all others before its own: with K callers an answer takes up to K times the
+    server's execution time, and more where others work on the server's host. A periodic caller that waits for its answers
+    is late then, and skips a period. Actions, which nobody waits for, are not meant here.
+
+    Bad:
+        groups:
+          moving:
+            components:
+              planner: {outputs: {plan: nav_msgs/srv/GetPlan}}
+              control: {inputs: {plan: planner.plan}}
+              watch: {inputs: {plan: planner.plan}}
+        nodes:
+          planner: {implements: planner, timing: {wcet: 60 ms}}
+          control: {implements: control, timing: {period: 100 ms}}
+          watch: {implements: watch, timing: {period: 1 s}}
+
+    Good:
+        groups:
+          moving:
+            components:
+              planner: {outputs: {plan: nav_msgs/srv/GetPlan}}
+              control: {inputs: {plan: planner.plan}}
+              watch: {inputs: {plan: planner.plan}}
+        nodes:
+          planner: {implements: planner, timing: {wcet: 60 ms}}
+          control: {implements: control, timing: {period: 200 ms}}
+          watch: {implements: watch, timing: {period: 1 s}}
+    """
+    examined_pairs: set[tuple[str, str]] = set()
+    for arc in analysis.system.arcs:
+        if arc.role != "request" or arc.flow != "service" or (arc.source, arc.target) in examined_pairs:
+            continue
+        examined_pairs.add((arc.source, arc.target))
+        load, caller = analysis.services[arc.target], analysis.system.activities[arc.source]
+        waiting_time = load.waits[caller.id].value
+        # Only periodic callers can be late for their own next activation.
+        if waiting_time is None or caller.period is None:
+            continue
+        caller_period = caller.period * analysis.system.tick
+        if waiting_time > (1 - margin) * caller_period:
+            server = analysis.system.activities[arc.target]
+            yield _report_slow_service(load, caller, server, (waiting_time, caller_period, margin), arc.at)
+
+
+def _report_slow_service(
+    load: ServiceLoad, caller: Activity, server: Activity, figures: tuple[Fraction, Fraction, Fraction], span: Span
+) -> Diagnostic:
+    """Report a caller that waits too long; `figures` are its waiting time and period (ns), and the margin, a share."""
+    waiting_time, caller_period, margin = figures
+    callers_phrase = f", with {len(load.callers)} callers" if len(load.callers) > 1 else ""
+    return Diagnostic(
+        "slow-service",
+        f"`{caller.id}` runs every {format_duration(caller_period)}, but waits up to {format_duration(waiting_time)} for `{server.id}`{callers_phrase}{_describe_margin(margin)}",
+        span if span != NO_SPAN else caller.at,
+        labels=(Label(server.places.get("wcet", server.at), "takes this long for each"),)
+        if server.at != NO_SPAN
+        else (),
+        help="make the service quicker, call it less often (`calls`), or make it an action",
+        element=caller.id,
+    )
+
+
+def _describe_margin(margin: Fraction) -> str:
+    """Say how much of a time must stay free, where any must."""
+    return f"; {format_percentage(margin)} of it must stay free" if margin else ""
+
+
+RULES = (
+    (
+        slow_component,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the execution time that must stay free."),),
+    ),
+    (
+        slow_service,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the caller's period that must stay free."),),
+    ),
+)
