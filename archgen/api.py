@@ -21,8 +21,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject
-from archgen.products import agreement_documents, code_ownership, compared_versions, project_outputs
-from archgen.products.project_outputs import OutputOptions
+from archgen.products import agreement_documents, code_ownership, compared_versions, project_outputs, project_views
+from archgen.products.output_options import OutputOptions
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chain_bounds as timing_chains
 from archgen.timing.run_analysis import analyse_architecture
@@ -84,7 +84,7 @@ class Project:
 
     def select(self, words: str) -> Selection:
         """Evaluate a selector. Raises `SelectorError` if it is invalid."""
-        selection, problems = project_outputs.select_elements(self.checked, words)
+        selection, problems = project_views.select_elements(self.checked, words)
         errors = [problem.message for problem in problems if problem.severity == "error"]
         if errors:
             raise SelectorError("; ".join(errors))
@@ -92,9 +92,7 @@ class Project:
 
     def record(self, select: str | None = None) -> Record:
         """Return the resolved model, or the selected part of it, as plain data (`schemas/resolved.schema.json`)."""
-        return resolved_record.make_record(
-            project_outputs.make_scoped_lookup(self.checked, self._output_options(select))
-        )
+        return resolved_record.make_record(project_views.make_scoped_lookup(self.checked, self._output_options(select)))
 
     def write_report(
         self,

@@ -11,12 +11,14 @@ import gc
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import field
 from pathlib import Path
 
 from archgen import analyses, findings, link, project, schema, transform
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
+from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
-from archgen.findings import error_aftermath, finding_limit, ignore_comments, rule_table
+from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
 from archgen.frozen import dataclass
 from archgen.link import interface_sources, report_chapters, shipped_types, slice_merging
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
@@ -56,6 +58,8 @@ class CheckedProject:
     """The findings that a comment or a setting of the project silences."""
     analysis: Analysis | None = None
     """The timing analysis that its rules judged, None where the project has no `timing`."""
+    rule_options: Mapping[str, OptionValues] = field(default_factory=dict)
+    """The options of rules that the project sets, by rule."""
 
     @property
     def root(self) -> Path:
@@ -197,6 +201,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     structural_errors = [
         d for d in loaded_project.diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}
     ]
+    rule_options, option_findings = option_settings.read_rule_options(loaded_project.rule_options, _RULES_BY_NAME)
     raw_diagnostics = (
         *loaded_project.diagnostics,
         *merge_findings,
@@ -204,8 +209,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *link_findings,
         *chapter_findings,
         *error_aftermath.drop_aftermath(
-            analyses.check_architecture(architecture, analysis), structural_errors, loaded_project.sources
+            analyses.check_architecture(architecture, analysis, rule_options), structural_errors, loaded_project.sources
         ),
+        *option_findings,
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
@@ -223,7 +229,14 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         else ()
     )
     return CheckedProject(
-        loaded_project, merged_table, architecture, project_chapters, reported_findings, silenced_findings, analysis
+        loaded_project,
+        merged_table,
+        architecture,
+        project_chapters,
+        reported_findings,
+        silenced_findings,
+        analysis,
+        rule_options,
     )
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from archgen import pipeline
 from archgen.pipeline import CheckedProject
-from archgen.products import project_outputs
-from archgen.products.project_outputs import OutputOptions
+from archgen.products import project_views
+from archgen.products.output_options import OutputOptions
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Facts, Inlines, Outline, Paragraph, Section, Table
 from archgen.views.timing.timing_lookup import analyse_with_chains
@@ -77,7 +77,7 @@ def checked(folder: Path, text: str = DUO) -> CheckedProject:
 
 def view(of: CheckedProject) -> Lookup:
     """Make the look-ups, with timing."""
-    return replace(project_outputs.make_scoped_lookup(of, OutputOptions()), timing=analyse_with_chains(of.architecture))
+    return replace(project_views.make_scoped_lookup(of, OutputOptions()), timing=analyse_with_chains(of.architecture))
 
 
 def text(inlines: Inlines) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from archgen.analyses import (
+    answer_times,
     broken_chains,
     chain_latency,
     completeness,
@@ -23,25 +25,30 @@ from archgen.analyses import (
     ros_distribution,
     ros_messages,
     selector_checks,
-    slow_responses,
     timing_plausibility,
     topic_sources,
     trigger_cycles,
     type_mapping,
 )
 from archgen.diagnostics.diagnostic import Rule
+from archgen.diagnostics.rule_options import read_option_values
 from archgen.timing.run_analysis import AnalysisMemory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping
+    from fractions import Fraction
 
-    from archgen.diagnostics.diagnostic import Diagnostic
+    from archgen.diagnostics.diagnostic import Diagnostic, Severity
+    from archgen.diagnostics.rule_options import OptionValues, RuleOption
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis
 
+    RuleFunction = Callable[..., Iterator[Diagnostic]]
+    RuleEntry = tuple[RuleFunction, Severity] | tuple[RuleFunction, Severity, tuple[RuleOption, ...]]
+
 # A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
 # that in which rules run; findings are sorted later.
-_RULE_FUNCTIONS = (
+_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *connectivity.RULES,
     *port_types.RULES,
     *component_roles.RULES,
@@ -62,18 +69,16 @@ _RULE_FUNCTIONS = (
     *completeness.RULES,
 )
 
-_TIMING_RULE_FUNCTIONS = (
+_TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *rate_conflicts.RULES,
     *trigger_cycles.RULES,
     *resource_load.RULES,
-    *slow_responses.RULES,
+    *answer_times.RULES,
     *chain_latency.RULES,
 )
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 
-RULES: tuple[Rule, ...] = tuple(
-    Rule.from_function(judge, severity) for judge, severity in (*_RULE_FUNCTIONS, *_TIMING_RULE_FUNCTIONS)
-)
+RULES: tuple[Rule, ...] = tuple(Rule.from_function(*entry) for entry in (*_RULE_FUNCTIONS, *_TIMING_RULE_FUNCTIONS))
 """All rules that judge an architecture, in the order in which they run."""
 
 
@@ -83,13 +88,29 @@ def analyse_timing(architecture: Architecture, memory: AnalysisMemory) -> Analys
     return memory.judge_architecture(architecture) if _has_timing(architecture) else None
 
 
-def check_architecture(architecture: Architecture, analysis: Analysis | None) -> Iterator[Diagnostic]:
-    """Run all rules and yield their raw diagnostics, neither sorted nor settled. `analysis` is the timing analysis."""
-    for rule_function, _ in _RULE_FUNCTIONS:
-        yield from rule_function(architecture)
+def check_architecture(
+    architecture: Architecture,
+    analysis: Analysis | None,
+    rule_options: Mapping[str, OptionValues] = MappingProxyType({}),
+) -> Iterator[Diagnostic]:
+    """Run all rules and yield their raw diagnostics, neither sorted nor settled.
+
+    `analysis` is the timing analysis, `rule_options` are the options that the project sets, by rule.
+    """
+    for entry in _RULE_FUNCTIONS:
+        yield from entry[0](architecture, **_option_arguments(entry, rule_options))
     if analysis is not None:
-        for timing_rule_function, _ in _TIMING_RULE_FUNCTIONS:
-            yield from timing_rule_function(architecture, analysis)
+        for timing_entry in _TIMING_RULE_FUNCTIONS:
+            yield from timing_entry[0](architecture, analysis, **_option_arguments(timing_entry, rule_options))
+
+
+def _option_arguments(entry: RuleEntry, rule_options: Mapping[str, OptionValues]) -> dict[str, Fraction]:
+    """Return the keyword arguments of a rule's function: all its options, as set or by default."""
+    # Most rules have none.
+    if len(entry) < 3:  # noqa: PLR2004 - function, severity, options
+        return {}
+    function, _, options = entry
+    return read_option_values(options, rule_options.get(function.__name__.replace("_", "-"), {}))
 
 
 def _has_timing(architecture: Architecture) -> bool:

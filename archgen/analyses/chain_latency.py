@@ -5,19 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.timing.chains.chain_bounds import find_missed_chains
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from fractions import Fraction
 
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis, ChainTerm
     from archgen.timing.figures.timing_values import TimingValue
 
 
-def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """The latency of a chain may exceed its deadline.
 
     Why: The bound adds up, for each element of the chain, the longest that a sample waits to be read, the longest
@@ -58,12 +60,13 @@ def late_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagn
     """
     if not any(chain.deadline for chain in architecture.chains.values()):
         return
-    for late_result in find_missed_chains(analysis, architecture):
+    for late_result in find_missed_chains(analysis, architecture, margin):
         chain_id, chain = late_result.chain.id, late_result.chain
         largest_term = max(late_result.terms, key=_term_weight)
         yield Diagnostic(
             "late-chain",
-            f"the chain `{chain_id}` may take {_format_bound(late_result.bound)}, its deadline is {chain.deadline}",
+            f"the chain `{chain_id}` may take {_format_bound(late_result.bound)}, its deadline is {chain.deadline}"
+            + (f" with a margin of {format_percentage(margin)}" if margin else ""),
             chain.at,
             labels=(
                 Label(largest_term.at, f"the largest part: {largest_term.activity}, {_format_term(largest_term)}"),
@@ -99,4 +102,10 @@ def _format_term(term: ChainTerm) -> str:
     return ", ".join(phrases) or "no time"
 
 
-RULES = ((late_chain, Severity.WARNING),)
+RULES = (
+    (
+        late_chain,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the deadline that must stay free."),),
+    ),
+)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_number, format_rate
 from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from archgen.timing.system.timing_system import Activity
 
 
-def period_conflict(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
     """What an element states of its rate is not what its inputs, or the nodes that implement it, give.
 
     Why: An event-driven element runs when its inputs arrive. Where it states another rate, one of the two is wrong, and so is
@@ -51,7 +53,7 @@ def period_conflict(architecture: Architecture, analysis: Analysis) -> Iterator[
     """
     for name, derived in analysis.derived.items():
         stated_rate = analysis.paces[name].rate.value
-        if stated_rate is None or not _is_impossible_rate(stated_rate, derived.rate):
+        if stated_rate is None or not _is_impossible_rate(stated_rate, derived.rate, tolerance):
             continue
         activity = analysis.system.activities[name]
         reason = derived.reasons[-1] if derived.reasons else None
@@ -68,18 +70,23 @@ def period_conflict(architecture: Architecture, analysis: Analysis) -> Iterator[
     node_counts = Counter(component for node in architecture.nodes.values() for component in node.implements)
     for component in architecture.components.values():
         if component.timing and node_counts[component.id] > 1:
-            yield from _compare_component_rate(analysis, component)
+            yield from _compare_component_rate(analysis, component, tolerance)
 
 
-def _is_impossible_rate(stated_rate: Fraction, derived_rate: TimingValue) -> bool:
-    """Whether a stated rate contradicts the derived one (both in Hz): another exact value, or beyond a bound."""
+def _is_impossible_rate(stated_rate: Fraction, derived_rate: TimingValue, tolerance: Fraction) -> bool:
+    """Whether a stated rate contradicts the derived one (both in Hz): another exact value, or beyond a bound.
+
+    `tolerance` is the share of the derived rate by which the two may differ.
+    """
     if derived_rate.value is None:
         return False
+    is_above = stated_rate > (1 + tolerance) * derived_rate.value
+    is_below = stated_rate < (1 - tolerance) * derived_rate.value
     if derived_rate.side == "at most":
-        return stated_rate > derived_rate.value
+        return is_above
     if derived_rate.side == "at least":
-        return stated_rate < derived_rate.value
-    return stated_rate != derived_rate.value
+        return is_below
+    return is_above or is_below
 
 
 def _format_bounded_rate(value: TimingValue) -> str:
@@ -92,7 +99,7 @@ def _stated_rate_span(activity: Activity) -> Span:
     return activity.places.get("rate", activity.places.get("period", activity.at))
 
 
-def _compare_component_rate(analysis: Analysis, component: Component) -> Iterator[Diagnostic]:
+def _compare_component_rate(analysis: Analysis, component: Component, tolerance: Fraction) -> Iterator[Diagnostic]:
     """Report a component with several nodes whose stated rate none of its outputs has."""
     component_period = written_period(component.timing) if component.timing else None
     if component_period is None or component.timing is None:
@@ -103,7 +110,7 @@ def _compare_component_rate(analysis: Analysis, component: Component) -> Iterato
         key: rate_and_gap.rate for (_, key), rate_and_gap in analysis.outputs.items() if key in _output_ids(component)
     }
     if not published_rates or not all(
-        _is_impossible_rate(stated_rate, published_rate) for published_rate in published_rates.values()
+        _is_impossible_rate(stated_rate, published_rate, tolerance) for published_rate in published_rates.values()
     ):
         return
     port, port_rate = next(iter(published_rates.items()))
@@ -120,7 +127,7 @@ def _output_ids(component: Component) -> frozenset[str]:
     return frozenset(output.id for output in component.outputs.values())
 
 
-def lost_samples(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def lost_samples(_: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
     """An element waits for all of several inputs, and one of them comes more often than it can be used.
 
     Why: An element that fires when all of its inputs have something new runs as often as the slowest of them. What the
@@ -156,7 +163,7 @@ def lost_samples(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
         waits_for_all = (
             target.mode == "all" and edge.arc.input in target.triggers and target.every == 1 and not target.throttle
         )
-        if not waits_for_all or not edge.loss.value or target.period is not None:
+        if not waits_for_all or (edge.loss.value or 0) <= tolerance or target.period is not None:
             continue
         sent_rate = analysis.outputs[edge.arc.source, edge.arc.output].rate.value
         read_rate = analysis.paces[target.id].rate.value
@@ -164,7 +171,7 @@ def lost_samples(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
             continue  # `deadlocked-trigger` reports what never runs
         yield Diagnostic(
             "lost-samples",
-            f"`{target.id}` uses {format_number(100 * (1 - edge.loss.value))} % of what `{edge.arc.source}` sends: "
+            f"`{target.id}` uses {format_number(100 * (1 - (edge.loss.value or 0)))} % of what `{edge.arc.source}` sends: "
             f"it comes at {format_rate(sent_rate)}, all inputs together at {format_rate(read_rate)}",
             edge.arc.at if edge.arc.at != NO_SPAN else target.at,
             help="let one input fire it and sample the other (`trigger: [input]`), or give the sources one rate",
@@ -172,7 +179,7 @@ def lost_samples(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
         )
 
 
-def short_queue(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def short_queue(_: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """An element keeps a queue that overflows before it is read.
 
     Why: Whoever asks for a queue of several messages means to read all of them. Until a periodic reader has been through once
@@ -206,26 +213,46 @@ def short_queue(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
             timing: {rate: 20 Hz, wcet: 2 ms}
     """
     for edge in analysis.edges:
-        depth, needed_depth = edge.arc.depth, edge.queue.value
-        if not edge.arc.depth_written or depth is None or depth < 2 or needed_depth is None or needed_depth <= depth:  # noqa: PLR2004
+        depth, coming_count = edge.arc.depth, edge.queue.value
+        if not edge.arc.depth_written or depth is None or depth < 2 or coming_count is None:  # noqa: PLR2004
+            continue
+        needed_depth = math.ceil((1 + margin) * coming_count)
+        if needed_depth <= depth:
             continue
         target = analysis.system.activities[edge.arc.target]
         if target.behaviour == "periodic" or fires_each_time(analysis.system, edge.arc):
-            yield _report_overflow(edge, target, depth, needed_depth)
+            yield _report_overflow(edge, target, (depth, coming_count, needed_depth))
 
 
-def _report_overflow(edge: EdgeFit, target: Activity, depth: int, needed_depth: Fraction) -> Diagnostic:
+def _report_overflow(edge: EdgeFit, target: Activity, depths: tuple[int, Fraction, int]) -> Diagnostic:
+    """Report a queue; `depths` are what it holds, what can come, and what it must hold with the rule's margin."""
+    depth, coming_count, needed_depth = depths
+    # Without a margin more can come than it holds; with one, all of it may fit.
+    margin_phrase = " with the margin" if needed_depth > coming_count else ""
+    contrast = "but" if coming_count > depth else "and"
     return Diagnostic(
         "short-queue",
-        f"`{target.id}` keeps {depth} messages of `{edge.arc.topic}`, but {needed_depth} can come before it has read them",
+        f"`{target.id}` keeps {depth} messages of `{edge.arc.topic}`, {contrast} {coming_count} can come before it has read them",
         edge.arc.queue_at if edge.arc.queue_at != NO_SPAN else edge.arc.at,
-        help=f"`depth: {needed_depth}` keeps all of them, `depth: 1` says that only the newest counts",
+        help=f"`depth: {needed_depth}` keeps all of them{margin_phrase}, `depth: 1` says that only the newest counts",
         element=target.id,
     )
 
 
 RULES = (
-    (period_conflict, Severity.WARNING),
-    (lost_samples, Severity.WARNING),
-    (short_queue, Severity.WARNING),
+    (
+        period_conflict,
+        Severity.WARNING,
+        (RuleOption("tolerance", 0, 0, 50, "The share by which what is stated may differ from what follows."),),
+    ),
+    (
+        lost_samples,
+        Severity.WARNING,
+        (RuleOption("tolerance", 0, 0, 99, "The share of what is sent that may be thrown away."),),
+    ),
+    (
+        short_queue,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 1000, "The share of what can come that must fit in besides."),),
+    ),
 )

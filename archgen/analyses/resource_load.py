@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_number
 from archgen.timing.figures.value_arithmetic import add_values
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from archgen.timing.analysis import Analysis, HostLoad
 
 
-def overloaded_host(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
     """What runs on a host needs more time than its cores have.
 
     Why: From a utilisation of 1 on, work is left over in each round, and responses grow without a bound. Cores to which
@@ -51,10 +52,11 @@ def overloaded_host(architecture: Architecture, analysis: Analysis) -> Iterator[
     for host, load in analysis.hosts.items():
         for place_name, cores, utilisation in load.core_loads:
             # A utilisation of exactly 1 can be schedulable (strictly periodic, fixed priorities), so the host's verdict
-            # decides; the utilisation says which of its cores it is about.
-            if utilisation.value is not None and utilisation.value >= cores and load.verdict == "overload":
+            # decides; the utilisation says which of its cores it is about. Below 1 there is nothing to schedule about.
+            is_beyond = utilisation.value is not None and utilisation.value >= limit * cores
+            if utilisation.value is not None and is_beyond and (limit < 1 or load.verdict == "overload"):
                 yield _report_overload(architecture, analysis, host, load, (place_name, cores, utilisation.value))
-    yield from _find_overloaded_containers(architecture, analysis)
+    yield from _find_overloaded_containers(architecture, analysis, limit)
     # An activity may overload a core by itself on a host whose cores are enough in total, or without any host.
     overloaded_hosts = {host for host, load in analysis.hosts.items() if load.verdict == "overload"}
     for name, rate_and_gap in analysis.paces.items():
@@ -76,7 +78,9 @@ def overloaded_host(architecture: Architecture, analysis: Analysis) -> Iterator[
             )
 
 
-def _find_overloaded_containers(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def _find_overloaded_containers(
+    architecture: Architecture, analysis: Analysis, limit: Fraction
+) -> Iterator[Diagnostic]:
     """Yield a finding for each overloaded container that has no host and fewer threads than members."""
     # With a host, the host's utilisation counts the members already.
     for name, members in find_unplaced_containers(analysis.system).items():
@@ -84,11 +88,11 @@ def _find_overloaded_containers(architecture: Architecture, analysis: Analysis) 
         utilisation = add_values(
             activity_share(analysis.system, member.id, analysis.paces[member.id]) for member in members
         ).value
-        if utilisation is not None and utilisation >= threads:
+        if utilisation is not None and utilisation >= limit * threads:
             threads_phrase = "its thread" if threads == 1 else f"its {threads} threads"
             yield Diagnostic(
                 "overloaded-host",
-                f"`{name}` is overloaded: what runs there takes {format_number(100 * utilisation / threads)} % of {threads_phrase}",
+                f"`{name}` is {_describe_excess(utilisation / threads)}: what runs there takes {format_number(100 * utilisation / threads)} % of {threads_phrase}",
                 architecture.containers[name].at,
                 help="give it more threads, move something out, or let it run less often",
                 element=name,
@@ -106,7 +110,7 @@ def _report_overload(
     heaviest = analysis.system.activities[activity_loads[0][1]]
     return Diagnostic(
         "overloaded-host",
-        f"`{name}` is overloaded: what runs there takes {format_number(100 * utilisation / cores)} % of {_format_cores(cores)}",
+        f"`{name}` is {_describe_excess(utilisation / cores)}: what runs there takes {format_number(100 * utilisation / cores)} % of {_format_cores(cores)}",
         architecture.hosts[host_id].at,
         labels=(Label(heaviest.places.get("wcet", heaviest.at), f"`{heaviest.id}` takes most"),)
         if heaviest.at != NO_SPAN
@@ -116,12 +120,17 @@ def _report_overload(
     )
 
 
+def _describe_excess(utilisation: Fraction) -> str:
+    """Describe a load (1 is all there is) at or above the rule's limit."""
+    return "overloaded" if utilisation >= 1 else "loaded beyond its limit"
+
+
 def _format_cores(count: int) -> str:
     """Format a number of cores with its possessive: "its 4 cores"."""
     return "its core" if count == 1 else f"its {count} cores"
 
 
-def saturated_link(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
     """What is sent over a link is more than its bandwidth carries.
 
     Why: Each reader on another host has a copy of its own sent. Where the sum is the bandwidth or more, messages queue up
@@ -154,12 +163,13 @@ def saturated_link(architecture: Architecture, analysis: Analysis) -> Iterator[D
         links: {cable: {connects: [head, base], bandwidth: 1 Gbit/s}}
     """
     for name, load in analysis.links.items():
-        if load.share.value is None or load.share.value < 1:
+        if load.share.value is None or load.share.value < limit:
             continue
         topic = max(load.topic_traffic, key=lambda part: part[1].value or 0)[0]
         yield Diagnostic(
             "saturated-link",
-            f"`{name}` is to carry {format_number(100 * load.share.value)} % of its bandwidth, most of it `{topic}`",
+            f"`{name}` is to carry {format_number(100 * load.share.value)} % of its bandwidth, most of it `{topic}`"
+            + ("" if limit == 1 else f"; its limit is {format_percentage(limit)}"),
             architecture.links[name].at,
             help="send less often or less at once (compressed, for instance), or run writer and reader on one host",
             element=name,
@@ -167,6 +177,14 @@ def saturated_link(architecture: Architecture, analysis: Analysis) -> Iterator[D
 
 
 RULES = (
-    (overloaded_host, Severity.WARNING),
-    (saturated_link, Severity.WARNING),
+    (
+        overloaded_host,
+        Severity.WARNING,
+        (RuleOption("limit", 100, 1, 100, "The share of its cores, or threads, from which on a host counts."),),
+    ),
+    (
+        saturated_link,
+        Severity.WARNING,
+        (RuleOption("limit", 100, 1, 100, "The share of its bandwidth from which on a link counts."),),
+    ),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption, format_percentage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _NS_PER_SECOND = 10**9
 
 
-def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
+def long_execution(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:
     """An execution takes longer, at worst, than the period in which it is to be done.
 
     Why: The next activation comes before the last one is done. On one core that cannot go on for long, whatever else
@@ -47,10 +48,10 @@ def long_execution(architecture: Architecture) -> Iterator[Diagnostic]:
           viewer: {implements: viewer, host: pc}
         hosts: {pc: {cores: 4}}
     """
-    yield from _find_above_period(architecture, "wcet", "the worst case execution time", "long-execution")
+    yield from _find_above_period(architecture, ("wcet", "the worst case execution time"), "long-execution", limit)
 
 
-def large_jitter(architecture: Architecture) -> Iterator[Diagnostic]:
+def large_jitter(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:
     """An activation may come later than the period after which the next one is due.
 
     Why: With a jitter above the period several activations may fall together, and queues must hold them. That happens
@@ -76,11 +77,18 @@ def large_jitter(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera, timing: {period: 40 ms, jitter: 6 ms, wcet: 2 ms}}
           viewer: {implements: viewer}
     """
-    yield from _find_above_period(architecture, "jitter", "the jitter", "large-jitter")
+    yield from _find_above_period(architecture, ("jitter", "the jitter"), "large-jitter", limit)
 
 
-def _find_above_period(architecture: Architecture, key: str, description: str, rule_name: str) -> Iterator[Diagnostic]:
-    """Yield a finding for each figure (by its key in `Timing`) that is above the period, if both are written."""
+def _find_above_period(
+    architecture: Architecture, described_key: tuple[str, str], rule_name: str, limit: Fraction
+) -> Iterator[Diagnostic]:
+    """Yield a finding for each figure that is above this share of the period, if both are written.
+
+    `described_key` is the figure's key in `Timing`, and its name in a sentence.
+    """
+    key, description = described_key
+    limit_phrase = "" if limit == 1 else f"{format_percentage(limit)} of "
     # A node that implements several components may have one `timing` for all of them: the same span comes up again.
     reported_spans: set[Span] = set()
     for node in architecture.nodes.values():
@@ -88,9 +96,9 @@ def _find_above_period(architecture: Architecture, key: str, description: str, r
             # `key` is an attribute of `Timing` and the key in the YAML (and in `places`) alike.
             quantity: Quantity | None = getattr(timing, key)
             period = _period_of(timing)
-            if quantity and period and quantity.value > period and timing.places[key] not in reported_spans:
+            if quantity and period and quantity.value > limit * period and timing.places[key] not in reported_spans:
                 reported_spans.add(timing.places[key])
-                message = f"{description} of `{node.id}` (`{key}`, {quantity}) is above its period"
+                message = f"{description} of `{node.id}` (`{key}`, {quantity}) is above {limit_phrase}its period"
                 cure = "this is legal: correct it only where a figure or a unit is wrong"
                 period_key = "period" if timing.period else "rate"
                 label = Label(timing.places[period_key], f"its {period_key}")
@@ -104,4 +112,15 @@ def _period_of(timing: Timing) -> Fraction | None:
     return _NS_PER_SECOND / timing.rate.value if timing.rate else None
 
 
-RULES = ((long_execution, Severity.NOTE), (large_jitter, Severity.NOTE))
+RULES = (
+    (
+        long_execution,
+        Severity.NOTE,
+        (RuleOption("limit", 100, 1, 100, "The share of its period that an execution may take."),),
+    ),
+    (
+        large_jitter,
+        Severity.NOTE,
+        (RuleOption("limit", 100, 1, 1000, "The share of the period by which an activation may come late."),),
+    ),
+)

@@ -21,6 +21,14 @@ if TYPE_CHECKING:
     metavar="NAME",
     multiple=True,
     help="Make this backend's output too (`wiki`, or one in the project's backends/); may be given several times.",
+    shell_complete=shared_options.complete_documents,
+)
+@click.option(
+    "--only",
+    metavar="NAMES",
+    multiple=True,
+    help="Make only these: `report`, `site`, `diagrams`, `packed` or backends, separated by commas.",
+    shell_complete=shared_options.complete_products,
 )
 @click.option(
     "--template",
@@ -32,16 +40,13 @@ if TYPE_CHECKING:
 @shared_options.revision_option
 @shared_options.history_option
 @shared_options.keep_going_option
-@click.option(
-    "--trust",
-    metavar="REV",
-    help="Run the project's own backends only if `review.backends` of its files at this git revision names them.",
-)
+@shared_options.trust_option
 def command(  # noqa: PLR0913 - one for each option
     *,
     project: Path | None,
     output: Path | None,
     backend: tuple[str, ...],
+    only: tuple[str, ...],
     template: Path | None,
     select: str | None,
     level: DetailLevel | None,
@@ -51,12 +56,17 @@ def command(  # noqa: PLR0913 - one for each option
     trust: str | None,
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
-    from archgen.products import project_outputs
-    from archgen.products.full_build import build_outputs
+    from archgen.products.full_build import build_outputs, choose_products
+    from archgen.products.output_options import OutputOptions
+    from archgen.products.product_inputs import ProductInputs
 
+    only_names = tuple(name.strip() for names in only for name in names.split(",") if name.strip())
+    if only and not only_names:
+        msg = "--only takes the names of outputs, separated by commas"
+        raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     allowed_backends = command_support.read_allowed_backends(project, trust)
-    output_options = project_outputs.OutputOptions(
+    output_options = OutputOptions(
         command_support.evaluate_selector(checked_project, select),
         select or "",
         level,
@@ -68,8 +78,9 @@ def command(  # noqa: PLR0913 - one for each option
     )
     target = output or checked_project.output_folder
     with command_support.explain_write_errors():
-        for path in build_outputs(checked_project, output_options, target, template, backend):
-            command_support.print_written(path)
+        products = choose_products(checked_project, only_names, backend, allowed_backends)
+        inputs = ProductInputs(checked_project, output_options, template)
+        build_outputs(inputs, products, target, command_support.print_written)
     counts = command_support.count_findings(checked_project.findings)
     click.echo(f"archgen check tells more: {counts}" if counts else "no findings")
     command_support.exit_by_findings(checked_project)

@@ -93,11 +93,11 @@ def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedPr
 def evaluate_selector(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
     """Evaluate a selector from the command line. What names nothing is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.products import project_outputs
+    from archgen.products import project_views
 
     if selector_text is None:
         return None
-    selection, problems = project_outputs.select_elements(checked_project, selector_text)
+    selection, problems = project_views.select_elements(checked_project, selector_text)
     for problem in problems:
         click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
         if problem.help:

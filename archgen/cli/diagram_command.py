@@ -50,6 +50,7 @@ def command(  # noqa: PLR0913 - one for each option
     With --select the overview shows just what is selected, neighbours grey, and only its pictures are drawn.
     """
     from archgen.products import project_outputs
+    from archgen.products.output_options import OutputOptions
 
     format_names = tuple(dict.fromkeys(form.strip() for form in forms.split(",") if form.strip()))
     unknown_formats = [form for form in format_names if form not in DIAGRAM_FORMATS]
@@ -57,7 +58,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = f"--format takes {', '.join(DIAGRAM_FORMATS)}, separated by commas, not '{forms}'"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    output_options = project_outputs.OutputOptions(
+    output_options = OutputOptions(
         command_support.evaluate_selector(checked_project, select),
         select or "",
         level,

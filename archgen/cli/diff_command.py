@@ -15,7 +15,7 @@ from archgen.cli import command_support, shared_options
 if TYPE_CHECKING:
     from archgen.compare import Comparison
     from archgen.products.compared_versions import ProjectVersion
-    from archgen.products.project_outputs import OutputOptions
+    from archgen.products.output_options import OutputOptions
 
 ComparisonWriter = Callable[["Comparison", "ProjectVersion", "ProjectVersion"], str | bytes]
 
@@ -42,12 +42,12 @@ def _select_changes(
     from archgen.compare.select_changes import select_changes
     from archgen.diagnostics.safe_text import make_visible
     from archgen.model.selector_evaluation import Selection
-    from archgen.products import project_outputs
+    from archgen.products import project_views
 
     if selector is None:
         return comparison
     (old_selection, old_problems), (new_selection, new_problems) = (
-        project_outputs.select_elements(side.checked_project, selector) for side in (old_version, new_version)
+        project_views.select_elements(side.checked_project, selector) for side in (old_version, new_version)
     )
     # A word that names nothing in one version may name something in the other: only what is wrong in both is wrong.
     common_problems = [
@@ -96,9 +96,9 @@ def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_versio
 
 
 def _make_output_options() -> OutputOptions:
-    from archgen.products import project_outputs
+    from archgen.products.output_options import OutputOptions
 
-    return project_outputs.OutputOptions(warn=command_support.print_warning)
+    return OutputOptions(warn=command_support.print_warning)
 
 
 COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {

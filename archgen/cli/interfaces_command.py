@@ -54,7 +54,8 @@ def command(  # noqa: PLR0913 - one for each option
     and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.products import agreement_documents, project_outputs
+    from archgen.products import agreement_documents
+    from archgen.products.output_options import OutputOptions
 
     form = _choose_format(form, output)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
@@ -63,9 +64,7 @@ def command(  # noqa: PLR0913 - one for each option
         agreement = agreement_documents.make_project_agreement(checked_project, *pair, earlier_version, revision)
     except agreement_documents.PartnersError as error:
         raise click.UsageError(make_visible(str(error))) from None
-    output_options = project_outputs.OutputOptions(
-        progress=command_support.make_progress_printer(), warn=command_support.print_warning
-    )
+    output_options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
     with command_support.explain_write_errors():
         if form == "markdown" and output is None:
             sys.stdout.write(agreement_documents.render_agreement_markdown(agreement))

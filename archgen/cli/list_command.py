@@ -1,14 +1,19 @@
-"""`archgen list`: list what a selector names, or all elements of a kind."""
+"""`archgen list`: list what a selector names, all elements of a kind, or the backends."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
 
 LISTABLE_KINDS = (
     "components",
@@ -21,6 +26,7 @@ LISTABLE_KINDS = (
     "requirements",
     "chains",
     "hosts",
+    "backends",
 )
 
 
@@ -35,20 +41,21 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     """List what SELECTOR names; without one, everything.
 
     Put a selector that begins with `-` behind `--`. `archgen list --of connections --format csv` is the table of all
-    connections, safe to open in a spreadsheet.
+    connections, safe to open in a spreadsheet. `--of backends` lists what can be made: by archgen, and by the project's own
+    backends.
     """
     from archgen.emit.terminal import list_formats
-    from archgen.products import project_outputs
-    from archgen.views.tables import element_rows
 
     checked_project = command_support.check_project(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join(selector)
-    selection = command_support.evaluate_selector(checked_project, selector_text or None)
-    columns, rows = element_rows.list_element_rows(
-        project_outputs.make_scoped_lookup(checked_project, project_outputs.OutputOptions(selection, selector_text)),
-        sort,
-    )
+    if sort == "backends":
+        if selector_text:
+            msg = "a selector names elements: `--of backends` takes none"
+            raise click.UsageError(msg)
+        columns, rows = _list_backends(checked_project)
+    else:
+        columns, rows = _list_elements(checked_project, selector_text, sort)
     write = {
         "text": list_formats.format_columns,
         "csv": list_formats.format_csv,
@@ -56,3 +63,37 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     }[form]
     sys.stdout.write(write(columns, rows))
     command_support.exit_by_findings(checked_project)
+
+
+def _list_elements(
+    checked_project: CheckedProject, selector_text: str, kind: str
+) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """Return the columns and rows of elements."""
+    from archgen.products import project_views
+    from archgen.products.output_options import OutputOptions
+    from archgen.views.tables import element_rows
+
+    selection = command_support.evaluate_selector(checked_project, selector_text or None)
+    lookup = project_views.make_scoped_lookup(checked_project, OutputOptions(selection, selector_text))
+    return element_rows.list_element_rows(lookup, kind)
+
+
+def _list_backends(checked_project: CheckedProject) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """Return the columns and rows of backends; what is wrong with a manifest is a warning."""
+    from archgen.emit.backend_manifests import find_backends
+
+    backends, problems = find_backends(checked_project.root)
+    for problem in problems:
+        command_support.print_warning(f"{problem.span}: {problem.message}")
+    rows = [
+        (
+            backend.id,
+            backend.title,
+            backend.makes,
+            backend.emitter,
+            ", ".join(backend.views),
+            "own" if backend.from_project else "shipped",
+        )
+        for backend in backends.values()
+    ]
+    return ("id", "title", "makes", "emitter", "view", "origin"), rows

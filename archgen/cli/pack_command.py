@@ -25,6 +25,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
     With --resolved it is a record for other programs instead (`resolved.yaml`); --select then names a part of it.
     """
     from archgen.products import project_outputs
+    from archgen.products.output_options import OutputOptions
 
     if select and not resolved:
         msg = "--select goes with --resolved: a packed project is whole"
@@ -35,7 +36,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
         if resolved:
             project_outputs.write_resolved(
                 checked_project,
-                project_outputs.OutputOptions(command_support.evaluate_selector(checked_project, select), select or ""),
+                OutputOptions(command_support.evaluate_selector(checked_project, select), select or ""),
                 target,
             )
         else:

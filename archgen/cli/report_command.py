@@ -41,11 +41,12 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Write the architecture of PROJECT as a Word document that can be handed in."""
     from archgen.products import project_outputs
+    from archgen.products.output_options import OutputOptions
 
     del form  # one for now; the option is there so that scripts say what they want
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     selection = command_support.evaluate_selector(checked_project, select)
-    output_options = project_outputs.OutputOptions(
+    output_options = OutputOptions(
         selection,
         select or "",
         level,

@@ -127,8 +127,9 @@ def _write_document(path: Path, document: str | bytes) -> None:
 def _write_comparison(project: Path | None, start: str, target: Path) -> int:
     """Write what changed. Return the exit status that the project's policy asks for."""
     from archgen import git
-    from archgen.products import comparison_documents, project_outputs
+    from archgen.products import comparison_documents
     from archgen.products.compared_versions import compare_named_versions, read_versions
+    from archgen.products.output_options import OutputOptions
     from archgen.project import NotAtRevisionError
 
     try:
@@ -148,7 +149,7 @@ def _write_comparison(project: Path | None, start: str, target: Path) -> int:
     _write_document(
         target / "diff.html",
         comparison_documents.render_comparison_html(
-            comparison, old_version, new_version, project_outputs.OutputOptions(warn=command_support.print_warning)
+            comparison, old_version, new_version, OutputOptions(warn=command_support.print_warning)
         ),
     )
     summary = os.environ.get("GITHUB_STEP_SUMMARY")
@@ -162,13 +163,17 @@ def _build_outputs(
     checked_project: CheckedProject, target: Path, backends: tuple[str, ...], allowed_backends: tuple[str, ...] | None
 ) -> int:
     """Build the outputs of what is sound. Return 0: outputs do not decide the status."""
-    from archgen.products import full_build, project_outputs
+    from archgen.products import full_build
+    from archgen.products.output_options import OutputOptions
+    from archgen.products.product_inputs import ProductInputs
 
-    output_options = project_outputs.OutputOptions(
+    output_options = OutputOptions(
         progress=command_support.make_progress_printer(),
         warn=command_support.print_warning,
         allowed_backends=allowed_backends,
     )
-    for path in full_build.build_outputs(checked_project, output_options, target, None, backends):
-        command_support.print_written(path)
+    products = full_build.choose_products(checked_project, (), backends, allowed_backends)
+    full_build.build_outputs(
+        ProductInputs(checked_project, output_options), products, target, command_support.print_written
+    )
     return 0

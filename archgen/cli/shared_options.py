@@ -42,6 +42,49 @@ history_option = click.option(
     help="Show how the project grew month by month, from git.  [default: history]",
 )
 
+trust_option = click.option(
+    "--trust",
+    metavar="REV",
+    help="Run the project's own backends only if `review.backends` of its files at this git revision names them.",
+)
+
+
+def _list_backend_ids(makes: str) -> list[str]:
+    """Return the text backends that make this: those that ship, and those of the project around the current folder."""
+    from archgen.emit.backend_manifests import find_backends
+    from archgen.project.project_search import ProjectNotFoundError, find_project
+
+    try:
+        root, _ = find_project(None)
+    except ProjectNotFoundError:
+        root = Path.cwd()
+    backends, _ = find_backends(root)
+    return [name for name, backend in backends.items() if backend.emitter == "text" and backend.makes == makes]
+
+
+def complete_documents(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a backend that makes documents."""
+    return [name for name in _list_backend_ids("documents") if name.startswith(incomplete)]
+
+
+def complete_workspaces(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a backend that makes a workspace."""
+    return [name for name in _list_backend_ids("workspace") if name.startswith(incomplete)]
+
+
+def complete_files(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a backend that makes a single file."""
+    return [name for name in _list_backend_ids("file") if name.startswith(incomplete)]
+
+
+def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the last of several names of outputs."""
+    from archgen.products.product_table import PRODUCTS
+
+    head, comma, last_name = incomplete.rpartition(",")
+    names = (*PRODUCTS, *_list_backend_ids("documents"))
+    return [f"{head}{comma}{name}" for name in names if name.startswith(last_name)]
+
 
 def output_option(target: str, default: str) -> Callable[[CommandFunction], CommandFunction]:
     """Make the option `-o` of a verb that writes."""

@@ -33,9 +33,10 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
     from archgen.products import project_outputs
+    from archgen.products.output_options import OutputOptions
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    output_options = project_outputs.OutputOptions(
+    output_options = OutputOptions(
         command_support.evaluate_selector(checked_project, select),
         select or "",
         level,

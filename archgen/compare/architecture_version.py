@@ -12,7 +12,8 @@ from archgen.timing.analysis import Analysis
 
 @dataclass(frozen=True, slots=True)
 class ArchitectureVersion:
-    """One version. `rule_settings` are the project's settings of rules, `chapters` its texts by path, in the report's
+    """One version. `rule_settings` are the project's settings of rules: severities by rule, and options by `RULE.OPTION`;
+    `chapters` its texts by path, in the report's
     `chapter_order`.
 
     `unnamed_keys` are `id` and `title` if the project does not write them: then they come from the name of a folder or

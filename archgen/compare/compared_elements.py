@@ -91,7 +91,7 @@ def _project_elements(version: ArchitectureVersion, matched_ids: MatchedIds) -> 
         "layout": architecture.layout.direction,
         "chapters": version.chapter_order,
         **_review_values(architecture.review),
-        **{f"rules.{rule}": severity for rule, severity in version.rule_settings.items()},
+        **{f"rules.{name}": value for name, value in version.rule_settings.items()},
     }
     yield ComparedElement(
         "project", matched_ids.common_id("project", project.id), project.id, drop_unset_values(values)

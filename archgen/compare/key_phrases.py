@@ -99,7 +99,8 @@ def _port_phrase(change: Change) -> str:
 
 def _key_name(key: str) -> str:
     if key.startswith("rules."):
-        return f"severity of the rule `{key.removeprefix('rules.')}`"
+        rule, _, option = key.removeprefix("rules.").partition(".")
+        return f"`{option}` of the rule `{rule}`" if option else f"severity of the rule `{rule}`"
     if key.startswith("parameters."):
         return f"parameter `{shorten_text(key.removeprefix('parameters.'))}`"
     return _KEY_NAMES.get(key) or _spell_out(key.removeprefix("timing.").replace(".", " "))

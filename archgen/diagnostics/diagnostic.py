@@ -14,6 +14,8 @@ from archgen.frozen import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from archgen.diagnostics.rule_options import RuleOption
+
 
 class Severity(enum.StrEnum):
     """How serious a finding is. `off` occurs only in settings, never on a diagnostic."""
@@ -92,11 +94,15 @@ class Rule:
     severity: Severity
     doc: str
     fixed: bool = False
+    options: tuple[RuleOption, ...] = ()
 
     @classmethod
-    def from_function(cls, function: Callable[..., object], severity: Severity) -> Rule:
+    def from_function(
+        cls, function: Callable[..., object], severity: Severity, options: tuple[RuleOption, ...] = ()
+    ) -> Rule:
         """Make a rule from the function that implements it: its name and page are the function's name and docstring."""
-        return cls(function.__name__.replace("_", "-"), severity, inspect.cleandoc(function.__doc__ or ""))
+        page = inspect.cleandoc(function.__doc__ or "")
+        return cls(function.__name__.replace("_", "-"), severity, page, options=options)
 
 
 def diagnose_repetition(  # noqa: PLR0913 - what a diagnostic has

@@ -44,6 +44,8 @@ def format_rule_page(rule: Rule, *, colour: bool = False) -> str:
     bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
     prose = (textwrap.fill(paragraph, 100) for paragraph in (rule_page.summary, *_fold_paragraphs(rule_page.why)))
     blocks = [f"{bold[0]}{rule.name}{bold[1]} ({_describe_severity(rule)})", *prose]
+    if rule.options:
+        blocks += [f"{bold[0]}Options:{bold[1]}", "\n".join(f"    {line}" for line in _describe_options(rule))]
     for title, example in (("Reported:", rule_page.bad), ("Not reported:", rule_page.good)):
         if example:
             blocks += [f"{bold[0]}{title}{bold[1]}", "\n".join(f"    {line}".rstrip() for line in example.splitlines())]
@@ -59,12 +61,17 @@ def rule_page_to_markdown(rule: Rule) -> str:
         f"*{_describe_severity(rule)[0].upper()}{_describe_severity(rule)[1:]}.*",
     ]
     blocks += ["## Why", *_fold_paragraphs(rule_page.why)] if rule_page.why else []
+    blocks += ["## Options", "\n".join(f"- {line}" for line in _describe_options(rule))] if rule.options else []
     for title, example in (("Reported", rule_page.bad), ("Not reported", rule_page.good)):
         blocks += [f"## {title}", f"```yaml\n{example}\n```"] if example else []
     if not rule.fixed:
         setting = f"rules: {{{rule.name}: note}}  # off, note, warning or error"
         comment = f"# archgen: ignore[{rule.name}] because ..."
         blocks += ["## To change it", f"For the whole project, in `archgen.yaml`:\n\n```yaml\n{setting}\n```"]
+        if rule.options:
+            option = rule.options[0]
+            example = f"rules: {{{rule.name}: {{severity: note, {option.name}: {option.example} %}}}}"
+            blocks.append(f"With an option:\n\n```yaml\n{example}\n```")
         blocks += [f"In one place, at the end of the line that it points at:\n\n```yaml\n{comment}\n```"]
     return "\n\n".join(blocks) + "\n"
 
@@ -77,6 +84,14 @@ def format_rule_index(rules: Mapping[str, Rule]) -> str:
     ]
     head = ["# Rules", "", "What archgen reports. `archgen explain NAME` shows a rule's page in the terminal.", ""]
     return "\n".join([*head, "| rule | severity | what it finds |", "|---|---|---|", *lines]) + "\n"
+
+
+def _describe_options(rule: Rule) -> Iterable[str]:
+    """Yield a line for each option."""
+    return (
+        f"`{option.name}`: {option.summary} {option.range_phrase.capitalize()}; without it {option.default} %."
+        for option in rule.options
+    )
 
 
 def _describe_severity(rule: Rule) -> str:

@@ -72,6 +72,17 @@ def _explain_refusal(path: Path, error_text: str) -> str:
     return f"the repository around {path} cannot be read: {first_line}"
 
 
+def list_cut_commits(repository: GitRepository) -> tuple[str, ...]:
+    """Return the hashes of the commits at which a shallow clone is cut off, sorted; none in a whole one."""
+    if not repository.is_shallow:
+        return ()
+    path = run_git(repository.top, "rev-parse", "--git-path", "shallow").text.removesuffix("\n")
+    try:
+        return tuple(sorted((repository.top / path).read_text("ascii", "replace").split()))
+    except OSError:  # completed by another process since the flag was read
+        return ()
+
+
 def resolve_revision(repository: GitRepository, revision: str) -> str:
     """Return the full hash of the commit that a revision names (branch, tag, hash, `HEAD~3`, ...).
 

@@ -86,19 +86,22 @@ class ReportChapters:
             return None
         return read_binary_file(self.files, normal_path)
 
-    def read_pictures(self) -> dict[str, bytes]:
-        """Read all pictures that the chapters show; return their bytes by path."""
-        data_by_path = {}
+    def list_picture_paths(self) -> tuple[str, ...]:
+        """Return the paths of all pictures that the chapters show; some may be absent."""
+        paths: dict[str, None] = {}
         for chapter in self.texts.values():
             for name in find_shown_pictures(chapter.text):
                 normal_path = posixpath.normpath(posixpath.join(chapter.folder, name))
-                stem = normal_path.removesuffix(".svg")
-                # Programs that cannot show SVG use a PNG of the same name instead.
-                for path in (normal_path, f"{stem}.png") if stem != normal_path else (normal_path,):
-                    data = self.read_picture(path)
-                    if data is not None:
-                        data_by_path[path] = data
-        return data_by_path
+                paths[normal_path] = None
+                if normal_path.endswith(".svg"):
+                    # Programs that cannot show SVG use a PNG of the same name instead.
+                    paths[f"{normal_path.removesuffix('.svg')}.png"] = None
+        return tuple(paths)
+
+    def read_pictures(self) -> dict[str, bytes]:
+        """Read all pictures that the chapters show; return their bytes by path."""
+        pictures = {path: self.read_picture(path) for path in self.list_picture_paths()}
+        return {path: data for path, data in pictures.items() if data is not None}
 
 
 def find_shown_pictures(markdown: str) -> Iterator[str]:

@@ -12,9 +12,10 @@ from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision
 from archgen.pipeline import CheckedProject
-from archgen.products import project_outputs
+from archgen.products import project_views
 from archgen.products.compared_versions import ProjectVersion
-from archgen.products.project_outputs import OutputOptions
+from archgen.products.output_options import OutputOptions
+from archgen.products.picture_drawing import draw_or_warn
 from archgen.views import inline_text
 from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
 from archgen.views.lookup import Lookup
@@ -77,7 +78,7 @@ def make_project_agreement(
 def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
     """Build the look-ups of the whole project, with timing."""
     return replace(
-        project_outputs.make_scoped_lookup(checked_project, OutputOptions()),
+        project_views.make_scoped_lookup(checked_project, OutputOptions()),
         timing=analyse_with_chains(checked_project.architecture),
     )
 
@@ -109,7 +110,7 @@ def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: 
     for name in (first, second):
         if not any(name in item for item in owners):
             return f"nothing flows between `{first}` and `{second}`: `{name}` owns no component and no node"
-    lookup, sentences = project_outputs.make_scoped_lookup(checked_project, OutputOptions()), []
+    lookup, sentences = project_views.make_scoped_lookup(checked_project, OutputOptions()), []
     for name in (first, second):
         neighbours = [
             partner_id
@@ -178,7 +179,7 @@ def render_agreement_docx(partner_agreement: PartnerAgreement, options: OutputOp
 
 
 def _draw_graph(graph: Graph, formats: tuple[str, ...], options: OutputOptions) -> Mapping[str, Picture]:
-    return project_outputs.draw_or_warn((graph,), formats, options)
+    return draw_or_warn((graph,), formats, options)
 
 
 def write_agreement(

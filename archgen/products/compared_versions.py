@@ -9,6 +9,7 @@ from pathlib import Path
 from archgen import git, pipeline, project
 from archgen.compare import ArchitectureVersion, Comparison, compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics.rule_options import format_percentage
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode
 
@@ -127,7 +128,14 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         architecture=checked_project.architecture,
         findings=checked_project.findings,
         silenced_findings=checked_project.silenced_findings,
-        rule_settings={rule: str(severity) for rule, severity in checked_project.loaded_project.rule_settings.items()},
+        rule_settings={
+            **{rule: str(severity) for rule, severity in checked_project.loaded_project.rule_settings.items()},
+            **{
+                f"{rule}.{name}": format_percentage(share)
+                for rule, options in checked_project.rule_options.items()
+                for name, share in options.items()
+            },
+        },
         chapters={path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
         chapter_order=checked_project.chapters.order,
         # Where a project does not write them, they come from the name of its folder: that is no change of the project.

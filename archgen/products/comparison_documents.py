@@ -16,7 +16,7 @@ from archgen.views.changes.reading_errors import ReadingErrors
 
 if TYPE_CHECKING:
     from archgen.emit.picture import Picture
-    from archgen.products.project_outputs import OutputOptions
+    from archgen.products.output_options import OutputOptions
     from archgen.views.shapes import Graph
 
 
@@ -80,15 +80,13 @@ def render_comparison_html(
 ) -> bytes:
     """Write a comparison as one self-contained HTML page."""
     from archgen.emit.site import standalone_page
-    from archgen.products import project_outputs
+    from archgen.products.picture_drawing import draw_or_warn
     from archgen.views.changes.comparison_outline import write_comparison_outline
     from archgen.views.graphs import changes as pictures
 
     graphs = pictures.draw_changes(comparison)
     outline = write_comparison_outline(describe_versions(comparison, old_version, new_version, graphs))
-    return standalone_page.write_standalone_page(
-        outline, project_outputs.draw_or_warn(graphs, ("svg",), options) if graphs else {}
-    )
+    return standalone_page.write_standalone_page(outline, draw_or_warn(graphs, ("svg",), options) if graphs else {})
 
 
 def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> bytes:
@@ -98,7 +96,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     """
     from archgen.emit import file_tree
     from archgen.emit.site import page_pictures as files
-    from archgen.products import project_outputs
+    from archgen.products.picture_drawing import draw_or_warn
     from archgen.views.graphs import changes as pictures
 
     graphs = pictures.draw_changes(comparison)
@@ -106,7 +104,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
         msg = "nothing changed that a picture could show: no component, no connection and no node"
         raise file_tree.OutputError(msg, "`--format text` tells what changed")
     # The first graph is the functional one wherever there is one.
-    picture: Picture | None = project_outputs.draw_or_warn(graphs[:1], ("svg",), options).get(graphs[0].id)
+    picture: Picture | None = draw_or_warn(graphs[:1], ("svg",), options).get(graphs[0].id)
     if picture is None or picture.svg is None:
         msg = "the picture could not be drawn"
         raise file_tree.OutputError(msg)

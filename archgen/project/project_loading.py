@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
 from archgen.project.project_search import PROJECT_FILE, find_project
@@ -18,9 +19,9 @@ from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlDocument
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from archgen.syntax.yaml_tree import YamlNode
+    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class LoadedProject:
     """A project whose files have been read. `documents` are in normal form, in the order in which they are merged.
 
     `first_file` was read first. `id` and `title` are the defaults for a project that states neither. `rule_settings`
-    are the severities in `rules:` by name (names not checked), `rule_spans` where they are written. `interface_files`
+    are the severities in `rules:` by name, `rule_options` the options (neither is judged yet), `rule_spans` where the rules are named. `interface_files`
     are relative to the project's folder. `chapter_entries` are those of `report.chapters`, None if it is not written.
 
     Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
@@ -45,6 +46,7 @@ class LoadedProject:
     diagnostics: tuple[Diagnostic, ...]
     ignores: Mapping[str, tuple[IgnoreComment, ...]] = field(default_factory=dict)
     rule_settings: Mapping[str, Severity] = field(default_factory=dict)
+    rule_options: Mapping[str, Mapping[str, WrittenOption]] = field(default_factory=dict)
     rule_spans: Mapping[str, Span] = field(default_factory=dict)
     distro: str | None = None
     interface_files: tuple[str, ...] = ()
@@ -87,7 +89,7 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
         for pattern in listing.items
         for file in expand_source_pattern(state, pattern)
     ]
-    settings = dict(_read_rule_settings(state))
+    rule_entries = list(_list_rule_entries(state))
     # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
     # In a conflict the first value wins, as it does in merging.
     distro = next(
@@ -102,8 +104,11 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
         sources=state.sources,
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
-        rule_settings={name: severity for name, (severity, _) in settings.items()},
-        rule_spans={name: span for name, (_, span) in settings.items()},
+        rule_settings={
+            entry.key: Severity(severity.text) for entry in rule_entries if (severity := _severity_of(entry.value))
+        },
+        rule_options=_read_rule_options(rule_entries),
+        rule_spans={entry.key: entry.key_span for entry in rule_entries},
         distro=distro,
         interface_files=tuple(dict.fromkeys(interface_files)),
         lost_keys=frozenset(state.lost_keys),
@@ -111,11 +116,28 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
     )
 
 
-def _read_rule_settings(state: ReadingState) -> Iterator[tuple[str, tuple[Severity, Span]]]:
+def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
+    """Yield the entries of all `rules:` sections."""
     for mapping in _list_nodes_at(state, "rules"):
-        for entry in mapping if isinstance(mapping, MappingNode) else ():
-            if isinstance(entry.value, ScalarNode):
-                yield entry.key, (Severity(entry.value.text), entry.key_span)
+        yield from mapping if isinstance(mapping, MappingNode) else ()
+
+
+def _severity_of(setting: YamlNode) -> ScalarNode | None:
+    """Return where a rule's severity is written: as its setting, or below `severity`; None where it is not."""
+    node = setting.get("severity") if isinstance(setting, MappingNode) else setting
+    return node if isinstance(node, ScalarNode) and node.value is not None else None
+
+
+def _read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[str, WrittenOption]]:
+    """Return the options by rule and name. Two files may set different options of one rule."""
+    rule_options: dict[str, dict[str, WrittenOption]] = {}
+    for rule_entry in rule_entries:
+        for entry in rule_entry.value if isinstance(rule_entry.value, MappingNode) else ():
+            if entry.key != "severity":
+                text = entry.value.text if isinstance(entry.value, ScalarNode) else ""
+                written_option = WrittenOption(text, entry.key_span, entry.value.span)
+                rule_options.setdefault(rule_entry.key, {})[entry.key] = written_option
+    return rule_options
 
 
 def _list_nodes_at(state: ReadingState, *path: str) -> Iterator[YamlNode]:

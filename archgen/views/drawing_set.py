@@ -8,6 +8,7 @@ from archgen.model.selector_evaluation import Selection
 from archgen.views import graphs
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
+from archgen.views.shapes import Graph
 from archgen.views.timing import chain_charts
 
 
@@ -27,13 +28,13 @@ def make_drawings(
         else {
             drawing_id: drawing
             for drawing_id, drawing in drawings_by_id.items()
-            if not _is_implementation_drawing(drawing_id)
+            if not _is_implementation_drawing(drawing)
         }
     )
 
 
-def _is_implementation_drawing(drawing_id: str) -> bool:
+def _is_implementation_drawing(drawing: Drawing) -> bool:
     """Whether a drawing shows nodes, hosts or timing, which the functional level leaves out."""
-    return drawing_id in {"ros", "hosts", "timing", "load"} or drawing_id.startswith(
-        ("implementation/", "timing/", "load/")
-    )
+    if isinstance(drawing, Graph):
+        return drawing.kind in {"ros", "hosts", "implementation", "timing", "group-timing"}
+    return drawing.id == "load" or drawing.id.startswith("load/")

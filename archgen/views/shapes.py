@@ -168,9 +168,29 @@ class Cluster:
     tooltip: str = ""
 
 
+GraphKind = Literal[
+    "overview",
+    "components",
+    "group",
+    "component",
+    "implementation",
+    "ros",
+    "hosts",
+    "timing",
+    "group-timing",
+    "view",
+    "agreement",
+    "component-changes",
+    "node-changes",
+]
+"""What a graph shows. docs/backends.md describes each."""
+
+
 @dataclass(frozen=True, slots=True)
 class Graph:
     """A picture; `id` is its file name without extension, where a slash makes a folder (`groups/environment_state`).
+
+    `kind` says what it shows, so that templates need not take the id apart.
 
     `layout` names the recipe: `flow` (one run of dot), `group` (one cluster with neighbours at both sides), `two-step`
     (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one run of dot
@@ -194,6 +214,8 @@ class Graph:
     alt: str = ""
     """What the picture shows, for readers who cannot see it."""
     asked: int = 0
+    # By keyword and without a default: a new picture must say what it shows.
+    kind: GraphKind = dataclasses.field(kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from archgen.products import project_outputs
+from archgen.products import full_build, product_writing
 from tests.running import contents
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from archgen.products.product_inputs import Product, ProductInputs
+    from archgen.products.product_writing import StartedProducts
     from tests.cli.conftest import Run
 
 PROJECT = """\
@@ -44,8 +46,15 @@ class Builds:
     """Builds one project again and again, and counts how often it was made."""
 
     def __init__(self, run: Run, project: Path, target: Path) -> None:
-        self.project, self.target, self.count = project, target, 0
+        self.project, self.target = project, target
+        self.made: list[tuple[str, ...]] = []
+        """The products that each build made."""
         self._run = run
+
+    @property
+    def count(self) -> int:
+        """How often anything was made."""
+        return sum(1 for products in self.made if products)
 
     def __call__(self, *words: str) -> int:
         """Build; give how often it was made so far."""
@@ -65,13 +74,13 @@ def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
     (project / "plan.png").write_bytes(_png(200))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     builds = Builds(run, project, tmp_path / "out")
-    make = project_outputs.make_views
+    start = product_writing.start_products
 
-    def counted(*asked: object) -> object:
-        builds.count += 1
-        return make(*asked)  # type: ignore[arg-type]
+    def recorded(inputs: ProductInputs, products: Sequence[Product]) -> StartedProducts:
+        builds.made.append(tuple(product.name for product in products))
+        return start(inputs, products)
 
-    monkeypatch.setattr(project_outputs, "make_views", counted)
+    monkeypatch.setattr(full_build, "start_products", recorded)
     return builds
 
 
@@ -169,3 +178,82 @@ def test_what_was_warned_of_is_warned_of_again(run: Run, build: Builds, monkeypa
         ran = run("build", build.project, "-o", build.target)
         assert (ran.status, ran.err) == (0, "warning: no Graphviz here\n")
     assert build.count == 2
+
+
+ALL = ("report", "site", "diagrams", "packed")
+
+
+@pytest.mark.parametrize(
+    ("change", "remade"),
+    [
+        ("the report is gone", ("report",)),
+        ("a page is gone", ("site",)),
+        ("the packed file is a link", ("packed",)),
+        ("a chapter", ALL),
+        ("a picture", ("report", "site", "packed")),
+        ("a picture beside it", ("report", "packed")),
+    ],
+)
+def test_only_what_a_change_concerns_is_made_again(build: Builds, change: str, remade: tuple[str, ...]) -> None:
+    build()
+    CHANGES[change](build)
+    build()
+    assert build.made == [ALL, remade]
+
+
+def test_another_template_concerns_the_report_alone(build: Builds, tmp_path: Path) -> None:
+    build()
+    template = tmp_path / "house.docx"
+    template.write_bytes((build.target / "report.docx").read_bytes())
+    build("--template", str(template))
+    assert build.made == [ALL, ("report",)]
+
+
+def test_only_some_are_made_and_the_others_are_not_taken_for_fresh(run: Run, build: Builds) -> None:
+    def only(*words: str) -> list[str]:
+        ran = run("build", build.project, "-o", build.target, *words)
+        assert (ran.status, ran.err) == (0, "")
+        return [line.removeprefix(f"wrote {build.target}/") for line in ran.out.splitlines() if "wrote" in line]
+
+    assert only("--only", "packed,report") == ["report.docx", "packed.yaml"]
+    assert sorted(contents(build.target)) == ["packed.yaml", "report.docx"]
+    (build.project / "intro.md").write_text("Hello\n", "utf-8")
+    assert only("--only", "site", "--only", "diagrams") == ["site/index.html", "diagrams"]
+    build()
+    # The report and the packed file are those of the old chapter.
+    assert build.made == [("report", "packed"), ("site", "diagrams"), ("report", "packed")]
+    assert only("--only", " site ,") == ["site/index.html"]
+    assert build.made[-1] == ()
+    assert only("--only", "wiki") == ["wiki"]
+    assert only("--only", "report", "--backend", "wiki") == ["report.docx", "wiki"]
+    assert only("--only", "wiki", "--backend", "wiki") == ["wiki"]
+    assert build.made[-3:] == [("wiki",)] * 3
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (("--only", "reprot"), "there is no output `reprot`; did you mean `report`?"),
+        (("--only", "site,wikki"), "there is no output `wikki`; did you mean `wiki`?"),
+        (("--only", "zzz"), "there is no output `zzz`; there are report, site, diagrams, packed, wiki"),
+        (("--only", ","), "--only takes the names of outputs, separated by commas"),
+        (("--only", ""), "--only takes the names of outputs, separated by commas"),
+        (("--backend", "report"), "there is no text backend `report`; there are wiki"),
+    ],
+)
+def test_a_name_that_is_no_output(run: Run, build: Builds, words: tuple[str, ...], error: str) -> None:
+    ran = run("build", build.project, "-o", build.target, *words)
+    assert ran.status == 2
+    assert ran.err.splitlines()[-1] == f"Error: {error}"
+    assert not build.target.exists()
+
+
+def test_an_output_is_announced_before_the_next_one_fails(run: Run, build: Builds) -> None:
+    (build.target / "site").mkdir(parents=True)
+    (build.target / "site" / "mine.txt").write_text("mine")
+    ran = run("build", build.project, "-o", build.target)
+    assert (ran.status, ran.out) == (2, f"wrote {build.target}/report.docx\n")
+    (build.target / "site" / "mine.txt").unlink()
+    build()
+    # The stamp of the report was stored although the build failed.
+    assert build.made == [ALL, ("site", "diagrams", "packed")]

@@ -74,3 +74,24 @@ def test_files_of_others_stay(run: Run, first: Path, tmp_path: Path) -> None:
     assert ran.status == 2
     assert "holds files that archgen did not write: `notes.txt`" in ran.err
     assert [path.name for path in mine.iterdir()] == ["notes.txt"]
+
+
+def test_a_picture_that_there_is_not(run: Run, first: Path, tmp_path: Path) -> None:
+    ran = run("diagram", first, "--only", "nothing/*")
+    assert ran.status == 2
+    assert ran.err.startswith("Error: no picture is called nothing/*; there are overview, components, groups/")
+    assert ran.err.endswith(", ...\n")
+    (tmp_path / "archgen.yaml").write_text("archgen: 1\n")
+    ran = run("diagram", tmp_path, "--only", "overview")
+    assert (ran.status, ran.err) == (2, "Error: no picture is called overview; there is nothing to draw yet\n")
+
+
+def test_a_packed_file_does_not_replace_its_project(run: Run, first: Path) -> None:
+    before = (first / "archgen.yaml").read_bytes()
+    ran = run("pack", first, "-o", first / "archgen.yaml")
+    assert ran.status == 2
+    assert "archgen.yaml is a file of the project itself" in ran.err
+    assert (first / "archgen.yaml").read_bytes() == before
+    # What is packed already may be packed in place: nothing changes.
+    assert run("pack", first, "-o", first / "packed" / "p.yaml").status == 0
+    assert run("pack", first / "packed" / "p.yaml", "-o", first / "packed" / "p.yaml").status == 0

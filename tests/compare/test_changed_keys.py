@@ -54,6 +54,8 @@ project: {id: robot, title: Robot}
         ("title: Robot", "title: Car", "project robot", "title", "Robot", "Car", "the project: title `Robot` → `Car`"),
         ("inputs: {x: a.x}", "inputs: {x: {from: a.x, optional: true}}", "input g.b.x", "optional", None, True, "`g.b.x` is optional now"),
         ("partners: {certh: CERTH", "rules: {unread-output: off}\npartners: {certh: CERTH", "project robot", "rules.unread-output", None, "off", "the project: severity of the rule `unread-output` set to `off`"),
+        ("partners: {certh: CERTH", "rules: {late-chain: {margin: 20 %}}\npartners: {certh: CERTH", "project robot", "rules.late-chain.margin", None, "20 %", "the project: `margin` of the rule `late-chain` set to `20 %`"),
+        ("partners: {certh: CERTH", "rules: {late-chain: {severity: error}}\npartners: {certh: CERTH", "project robot", "rules.late-chain", None, "error", "the project: severity of the rule `late-chain` set to `error`"),
     ],
 )  # fmt: skip
 def test_keys(compared: Compared, case: tuple[str, str, str, str, object, object, str | None]) -> None:
@@ -114,4 +116,11 @@ def test_a_chapter_that_was_written_anew(told: Told) -> None:
     assert told(text, text.replace("One", "Two")) == ["changed chapter a.md: the text of chapter `a.md` is rewritten"]
     assert told(text, text.replace("[a.md, groups]", "[groups, a.md]")) == [
         "changed project robot: the project: chapters are now `groups` and `a.md`, in this order"
+    ]
+
+
+def test_an_option_that_is_written_in_another_way_has_not_changed(told: Told) -> None:
+    assert told("rules: {late-chain: {margin: 20 %}}\n", "rules: {late-chain: {margin: 20.0%}}\n") == []
+    assert told("rules: {late-chain: {margin: 20 %}}\n", "rules: {late-chain: {margin: 2.5 %}}\n") == [
+        "changed project robot: the project: `margin` of the rule `late-chain` `20 %` → `2.5 %`"
     ]

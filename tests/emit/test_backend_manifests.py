@@ -84,3 +84,71 @@ def test_a_backend_that_is_a_link_or_no_file(tmp_path: Path) -> None:
         "`backends/mine` is a link; a backend's folder stands in the project",
         "`backend.yaml` is not a file",
     ]
+
+
+@pytest.mark.parametrize(
+    ("escapes", "problem"),
+    [
+        ("{uml: {ab: x}}", "7:17: `escapes.uml` has the key `ab`: a key is one character"),
+        ("{uml: {'': x}}", "7:17: `escapes.uml` has an empty key: a key is one character"),
+        ("{uml: {a: x, a: y}}", "7:23: `escapes.uml` has the character `a` twice"),
+        ("{uml: {}}", "7:11: `escapes.uml` is not as the schema of backends asks (MinProperties)"),
+        ("{uml: {a: [x]}}", "7:17: `escapes.uml.a` is not as the schema of backends asks (Type)"),
+        ("{uml: {a: " + 65 * "x" + "}}", "7:17: `escapes.uml.a` is longer than 64 characters"),
+        ("{Uml: {a: x}}", "7:11: `escapes` has the key `Uml`: a filter has a lower-case name such as `plantuml`"),
+        ("{__class__: {a: x}}", "7:11: `escapes` has the key `__class__`: a filter has a lower-case name"),
+        ("{? [a] : {a: x}}", "7:13: this is not YAML: found unhashable key"),
+        ("{markdown: {a: x}}", "7:11: there is a filter `markdown` already"),
+        ("{e: {a: x}}", "7:11: there is a filter `e` already"),
+        ("{safe: {a: x}}", "7:11: there is a filter `safe` already"),
+        ("{random: {a: x}}", "7:11: there is a filter `random` already"),
+        ("text", "7:1: `escapes` is not as the schema of backends asks (Type)"),
+        (
+            "{" + ", ".join(f"a{number}: {{a: x}}" for number in range(17)) + "}",
+            "7:1: `escapes` has more than 16 entries",
+        ),
+        (
+            "{a: {" + ", ".join(f"{chr(0x4E00 + number)}: x" for number in range(257)) + "}}",
+            "7:11: `escapes.a` has more than 256 entries",
+        ),
+    ],
+)
+def test_an_escape_that_is_none(tmp_path: Path, escapes: str, problem: str) -> None:
+    (message,) = found_at(tmp_path, f"{GOOD}escapes: {escapes}\n")
+    assert message.startswith(f"backends/mine/backend.yaml:{problem}")
+
+
+@pytest.mark.parametrize(
+    ("more", "problem"),
+    [
+        ("makes: tea\n", "7:1: `makes` must be one of `documents`, `workspace`, `file`"),
+        (
+            "  - {template: b.j2, path: b}\nmakes: file\n",
+            "8:1: `makes: file` goes with exactly one entry in `files`, without `for_each`",
+        ),
+    ],
+)
+def test_what_a_backend_makes_is_one_word(tmp_path: Path, more: str, problem: str) -> None:
+    assert found_at(tmp_path, GOOD + more) == [f"backends/mine/backend.yaml:{problem}"]
+
+
+def test_a_backend_of_one_file_writes_no_others(tmp_path: Path) -> None:
+    many = GOOD.replace("path: a}", "path: a, for_each: pages}") + "makes: file\n"
+    place = "backends/mine/backend.yaml:7:1: "
+    assert found_at(tmp_path, many) == [
+        f"{place}`makes: file` goes with exactly one entry in `files`, without `for_each`"
+    ]
+    (tmp_path / "backends" / "mine" / "backend.yaml").write_text(GOOD + "makes: file\n")
+    backends, diagnostics = find_backends(tmp_path)
+    assert (backends["mine"].makes, diagnostics) == ("file", ())
+    (tmp_path / "backends" / "mine" / "assets").mkdir()
+    _, (diagnostic,) = find_backends(tmp_path)
+    assert f"{diagnostic.span}: {diagnostic.message}" == (
+        f"{place}`makes: file` goes without `assets/`: they would be further files"
+    )
+
+
+def test_every_shipped_backend_says_what_it_makes(tmp_path: Path) -> None:
+    backends, _ = find_backends(tmp_path)
+    for backend in backends.values():
+        assert f"\nmakes: {backend.makes}\n" in (backend.folder / "backend.yaml").read_text()

@@ -23,15 +23,19 @@ def built(tmp_path: Path) -> Path:
     target = tmp_path / "out"
     file_tree.write_file(target / "report.docx", b"report")
     file_tree.write_tree(file_tree.make_file_tree([("index.html", b"page")]), target / "site")
-    build_stamp.store_stamp(
-        tmp_path / "cache", KEY, target, ["report.docx", "site"], {"photo.png": b"photo", "gone": None}
-    )
+    for name in ("report.docx", "site"):
+        asked_files = {"photo.png": b"photo", "gone": None}
+        build_stamp.store_stamp(tmp_path / "cache", f"{KEY}-{name}", target / name, asked_files)
     return target
 
 
+def _fresh_products(folder: Path | None, target: Path, read_file: Callable[[str], bytes | None]) -> tuple[str, ...]:
+    names = ("report.docx", "site")
+    return tuple(name for name in names if build_stamp.is_fresh(folder, f"{KEY}-{name}", target / name, read_file))
+
+
 def test_a_build_that_nobody_touched_is_fresh(built: Path) -> None:
-    found = build_stamp.find_fresh_parts(built.parent / "cache", KEY, built, _photo)
-    assert found == ("report.docx", "site")
+    assert _fresh_products(built.parent / "cache", built, _photo) == ("report.docx", "site")
 
 
 def _replace_by_link(built: Path) -> None:
@@ -40,26 +44,32 @@ def _replace_by_link(built: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("product", "change"),
     [
-        lambda built: (built / "report.docx").write_bytes(b"other"),
-        lambda built: (built / "report.docx").unlink(),
-        _replace_by_link,
-        lambda built: (built / "site" / "index.html").write_bytes(b"other"),
-        lambda built: (built / "site" / "mine.html").touch(),
-        lambda built: (built.parent / "cache" / f"{KEY}.stamp").write_bytes(b"{}"),
-        lambda built: (built.parent / "cache" / f"{KEY}.stamp").write_bytes(b"\xff"),
-        lambda built: (built.parent / "cache" / f"{KEY}.stamp").write_bytes(b'{"made": {}, "asked": {}}'),
+        ("report.docx", lambda built: (built / "report.docx").write_bytes(b"other")),
+        ("report.docx", lambda built: (built / "report.docx").unlink()),
+        ("report.docx", _replace_by_link),
+        ("site", lambda built: (built / "site" / "index.html").write_bytes(b"other")),
+        ("site", lambda built: (built / "site" / "mine.html").touch()),
+        ("site", lambda built: (built.parent / "cache" / f"{KEY}-site.stamp").write_bytes(b"{}")),
+        ("site", lambda built: (built.parent / "cache" / f"{KEY}-site.stamp").write_bytes(b"\xff")),
+        (
+            "site",
+            lambda built: (built.parent / "cache" / f"{KEY}-site.stamp").write_bytes(b'{"made": {}, "asked": {}}'),
+        ),
     ],
 )
-def test_whatever_changed_is_made_again(built: Path, change: Callable[[Path], object]) -> None:
+def test_whatever_changed_is_made_again_and_nothing_else(
+    built: Path, product: str, change: Callable[[Path], object]
+) -> None:
     change(built)
-    assert build_stamp.find_fresh_parts(built.parent / "cache", KEY, built, _photo) is None
+    assert {product, *_fresh_products(built.parent / "cache", built, _photo)} == {"report.docx", "site"}
+    assert product not in _fresh_products(built.parent / "cache", built, _photo)
 
 
 @pytest.mark.parametrize("read_file", [lambda _: None, lambda _: b"photo"])
 def test_a_picture_that_changed_came_or_went_is_a_change(built: Path, read_file: Callable[[str], bytes | None]) -> None:
-    assert build_stamp.find_fresh_parts(built.parent / "cache", KEY, built, read_file) is None
+    assert _fresh_products(built.parent / "cache", built, read_file) == ()
 
 
 def test_other_inputs_and_another_program_have_another_name(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,5 +82,5 @@ def test_other_inputs_and_another_program_have_another_name(monkeypatch: pytest.
 
 def test_without_a_folder_or_with_one_that_cannot_be_nothing_is_kept(built: Path, tmp_path: Path) -> None:
     for folder in (None, tmp_path / "out" / "report.docx"):
-        build_stamp.store_stamp(folder, KEY, built, ["report.docx"], {})
-        assert build_stamp.find_fresh_parts(folder, KEY, built, _photo) is None
+        build_stamp.store_stamp(folder, f"{KEY}-site", built / "site", {})
+        assert _fresh_products(folder, built, _photo) == ()

@@ -16,7 +16,7 @@ from archgen.compare import Comparison
 from archgen.emit.file_tree import OutputError
 from archgen.products import comparison_documents
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
-from archgen.products.project_outputs import OutputOptions
+from archgen.products.output_options import OutputOptions
 from tests import hostile
 from tests.emit.markdown.test_comparison_markdown import ROBOT
 from tests.products.test_agreement_documents import NU, Page

@@ -11,9 +11,11 @@ import jsonschema_rs
 import pytest
 
 from archgen import pipeline, resources
+from archgen.emit import site
 from archgen.model.document_chapters import GENERATED_CHAPTERS
 from archgen.pipeline import CheckedProject
-from archgen.products.project_outputs import OutputOptions, make_scoped_lookup, select_elements
+from archgen.products.output_options import OutputOptions
+from archgen.products.project_views import make_scoped_lookup, select_elements
 from archgen.views import inline_text, resolved_record
 from archgen.views.elements import element_card
 from archgen.views.graphs import make_all_graphs
@@ -207,3 +209,20 @@ def test_what_a_finding_names_is_code() -> None:
 
 def test_every_generated_chapter_has_what_makes_it() -> None:
     assert tuple(report_outline._GENERATED_SECTIONS) == GENERATED_CHAPTERS  # noqa: SLF001 - the registry itself
+
+
+def test_no_two_pages_have_one_address(tmp_path: Path) -> None:
+    outputs = ", ".join(f'o{number}: {{type: "{name}"}}' for number, name in enumerate(("A b", "A/b", "a-b-2", "A:b")))
+    (tmp_path / "archgen.yaml").write_text(f"groups: {{g: {{components: {{c: {{outputs: {{{outputs}}}}}}}}}}}\n")
+    project = pipeline.check_project(tmp_path)
+    lookup = make_scoped_lookup(project, OutputOptions())
+    page_list = site_pages.make_pages(lookup, _edition(project, lookup))
+    # The page whose own name ends in a number keeps its address.
+    assert {page.title: page.path for page in page_list if page.path.startswith("types/")} == {
+        "A b": "types/a-b.html",
+        "A/b": "types/a-b-3.html",
+        "a-b-2": "types/a-b-2.html",
+        "A:b": "types/a-b-4.html",
+    }
+    files = site.build_site(page_list, {}, title="", revision="", notices=(), chapter_files=lambda _path: None)
+    assert {page.path for page in page_list} <= set(files.files)

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.products.project_outputs import OutputOptions, make_scoped_lookup
+from archgen.products.output_options import OutputOptions
+from archgen.products.project_views import make_scoped_lookup
 from archgen.views.elements import element_card
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages

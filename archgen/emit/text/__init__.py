@@ -15,8 +15,9 @@ from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.emit.backend_manifests import BACKEND_ERROR_RULE, Backend
+from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import FileTree, make_file_tree
+from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.text.template_limits import TemplateLimits
 from archgen.views.shapes import shape_to_plain
@@ -39,6 +40,7 @@ def render_backend(
         "files": [asdict(file) for file in backend.files],
         "data": {name: shape_to_plain(views[name]) for name in backend.views},
         "options": shape_to_plain(backend.options),
+        "escapes": {name: dict(table) for name, table in backend.escapes.items()},
         "limits": asdict(limits),
     }
     answer = _run_worker(request, limits)

@@ -6,6 +6,7 @@ The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -74,6 +75,13 @@ def _is_strange(address: str) -> bool:
 def draw_mermaid(graph: object) -> str:
     """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it."""
     return "\n".join(write_flowchart(graph_from_plain(graph), has_stable_names=True))
+
+
+def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
+    """Make a filter that replaces each character of a text by its entry in the table; all others stay."""
+    replacements = str.maketrans(dict(table))
+    # One pass: what an entry puts in place is not replaced again, so `{"&": "&amp;"}` is safe in any order.
+    return lambda text: str(text).translate(replacements)
 
 
 TEMPLATE_FILTERS: dict[str, Any] = {

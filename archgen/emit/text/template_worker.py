@@ -19,7 +19,7 @@ from jinja2.loaders import BaseLoader
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from archgen.emit.safe_names import is_safe_path, make_safe_path
-from archgen.emit.text.template_filters import TEMPLATE_FILTERS
+from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
 from archgen.emit.text.template_limits import TemplateLimits, confine_process
 
 _MAX_TEMPLATE_BYTES = 1_000_000
@@ -49,8 +49,11 @@ class TemplateLoader(BaseLoader):
         return path.read_text("utf-8"), template, None
 
 
-def create_sandbox(folder: Path) -> ImmutableSandboxedEnvironment:
-    """Create the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is random."""
+def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> ImmutableSandboxedEnvironment:
+    """Create the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is random.
+
+    `escapes` become filters of these names.
+    """
     sandbox = ImmutableSandboxedEnvironment(
         loader=TemplateLoader(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
@@ -59,6 +62,8 @@ def create_sandbox(folder: Path) -> ImmutableSandboxedEnvironment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    # Reading the manifest has refused escapes whose name a filter has already.
+    sandbox.filters.update({name: make_escape_filter(table) for name, table in escapes.items()})
     sandbox.filters.update(TEMPLATE_FILTERS)
     # Random words, random choice: the same input must give the same bytes.
     del sandbox.globals["lipsum"]
@@ -72,7 +77,11 @@ def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
     current_template: dict[str, str] = {}
     try:
         return {
-            "files": list(_render_files(create_sandbox(Path(request["templates"])), request, limits, current_template))
+            "files": list(
+                _render_files(
+                    create_sandbox(Path(request["templates"]), request["escapes"]), request, limits, current_template
+                )
+            )
         }
     # MemoryError and RecursionError are caught here too; what is worse ends the process, and the parent explains it.
     except Exception as error:  # noqa: BLE001 - whatever a template raises is the template's mistake

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from typing import Literal
 
@@ -59,8 +60,11 @@ def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str
     }
 
 
-def find_missed_chains(analysis: Analysis, architecture: Architecture) -> Iterator[LateChain]:
-    """Yield the chains that may miss their deadlines; their other figures are left out."""
+def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
+    """Yield the chains that may miss their deadlines; their other figures are left out.
+
+    `margin` is the share of each deadline that must stay free.
+    """
     network = CostNetwork.of_analysis(analysis)
     for asked_chain in architecture.chains.values():
         if asked_chain.deadline is None or asked_chain.unresolved:
@@ -73,7 +77,7 @@ def find_missed_chains(analysis: Analysis, architecture: Architecture) -> Iterat
         path = next(path_set.best_paths(), None) if path_set else None
         if path_set is not None and path is not None:
             bound = _bound_path_set(network, path_set, path, "bound")
-            if judge_deadline(bound, TimingValue(asked_chain.deadline.value)) == "missed":
+            if judge_deadline(bound, TimingValue((1 - margin) * asked_chain.deadline.value)) == "missed":
                 yield LateChain(asked_chain, bound, build_terms(network, path))
 
 

@@ -51,6 +51,7 @@ def draw_agreement(lookup: Lookup, name: str, pair: tuple[str, str], interfaces:
         legend_colours=tuple(zip(_PARTNER_HUES, titles, strict=True)),
         alt=_alternative_text(lookup, pair, interfaces),
         asked=len(placed_flows),
+        kind="agreement",
     )
     return fold_graph(add_legend_keys(graph))
 

@@ -1,17 +1,17 @@
 """Make the pictures of an architecture, as graphs: which there are, and what each shows.
 
-| id | shows |
-|---|---|
-| `overview` | the groups |
-| `components` | all groups with their components |
-| `groups/G` | a group with its neighbours |
-| `components/G.C` | a component with its ports |
-| `implementation/G.C` | a component's nodes and topics |
-| `ros` | all nodes |
-| `hosts` | hosts, containers and links |
-| `views/V` | a view of the project |
-| `timing` | all activities by their period, or those of the selection |
-| `timing/G` | the activities of a group by their period |
+| id | kind | shows |
+|---|---|---|
+| `overview` | `overview` | the groups |
+| `components` | `components` | all groups with their components |
+| `groups/G` | `group` | a group with its neighbours |
+| `components/G.C` | `component` | a component with its ports |
+| `implementation/G.C` | `implementation` | a component's nodes and topics |
+| `ros` | `ros` | all nodes |
+| `hosts` | `hosts` | hosts, containers and links |
+| `views/V` | `view` | a view of the project |
+| `timing` | `timing` | all activities by their period, or those of the selection |
+| `timing/G` | `group-timing` | the activities of a group by their period |
 """
 
 from __future__ import annotations

@@ -41,6 +41,7 @@ def draw_component(lookup: Lookup, component_id: str) -> Graph:
         notes=("Neighbours are folded: a box for each group.",) if is_folded else (),
         alt=_describe_component(component, [box.title for box in neighbours.values()]),
         asked=sum(arrow.count for arrow in arrows),
+        kind="component",
     )
     return add_legend_keys(graph)
 

@@ -49,6 +49,7 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
         notes=("Neighbours are folded: a box for each group, with the number of flows.",) if is_folded else (),
         alt=_describe_group(lookup, group_id, touching_flows, own_ids),
         asked=len(touching_flows),
+        kind="group",
     )
     return add_legend_keys(graph)
 

@@ -33,6 +33,7 @@ def draw_hosts(lookup: Lookup) -> Graph:
         alt=f"{count_noun(len(architecture.hosts), 'host')} with {count_noun(len(architecture.containers), 'container')} "
         f"and {count_noun(len(links), 'link')}: {', '.join(host.title for host in architecture.hosts.values())}.",
         asked=len(arrows),
+        kind="hosts",
     )
     return fold_graph(add_legend_keys(graph))
 

@@ -57,6 +57,7 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         arrows,
         alt=_describe_implementation(component.title, sorted(subject_ids), [box.title for box in topics.values()]),
         asked=len(arrows),
+        kind="implementation",
     )
     return add_legend_keys(graph, *(["star"] if star_of_topic else []))
 

@@ -26,6 +26,7 @@ def draw_overview(lookup: Lookup) -> Graph:
         direction=architecture.layout.direction or "left-right",
         alt=_describe_flows(lookup, f"{count_noun(len(architecture.groups), 'group')} of components", arrows),
         asked=len(between),
+        kind="overview",
     )
     return add_legend_keys(graph)
 
@@ -50,6 +51,7 @@ def draw_components(lookup: Lookup) -> Graph:
         direction=architecture.layout.direction or "left-right",
         alt=_describe_flows(lookup, counted, arrows),
         asked=len(inside) + len(between),
+        kind="components",
     )
     return add_legend_keys(graph)
 

@@ -46,6 +46,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
         alt=f"{count_noun(len(chosen_nodes), 'node')} in {count_noun(len(frames), 'frame')}; "
         f"{count_noun(len(node_flows), 'flow')} over topics, services and actions among them.",
         asked=len(node_flows),
+        kind="ros",
     )
     return fold_graph(add_legend_keys(graph))
 

@@ -67,7 +67,7 @@ def _draw_small_part(
         element_boxes.neighbour_box(lookup, architecture.components[each], None) for each in neighbour_ids
     ]
     arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
-    return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows))
+    return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows), kind="overview")
 
 
 def _draw_large_part(
@@ -110,6 +110,7 @@ def _draw_large_part(
         (*inner_arrows, *coloured_arrows),
         tuple(element_boxes.group_frame(lookup, group) for group in groups),
         asked=len(touching_flows),
+        kind="overview",
     )
 
 
@@ -176,6 +177,7 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
         direction=lookup.architecture.layout.direction or "left-right",
         alt=f"{count_noun(len(chosen_boxes), 'node')} with {count_noun(len(topics), 'topic')} and {count_noun(len(neighbour_boxes), 'neighbour')} in grey.",
         asked=len(arrows),
+        kind="ros",
     )
     return fold_graph(add_legend_keys(graph))
 
@@ -187,8 +189,7 @@ def draw_view(lookup: Lookup, project_view: View, selection: Selection) -> Graph
         graph = draw_implementation_part(lookup, name, project_view.title, selection.nodes)
     else:
         graph = draw_functional_part(lookup, name, project_view.title, selection.components)
-    if project_view.layout.direction:
-        graph = replace(graph, direction=project_view.layout.direction)
+    graph = replace(graph, kind="view", direction=project_view.layout.direction or graph.direction)
     return (
         colour_graph(lookup, graph, project_view.colour)
         if project_view.colour and project_view.colour != "group"

@@ -85,6 +85,7 @@ def _draw_all_activities(graph_data: _TimingGraphData) -> Graph:
         notes=_bound_notes(timed, activities),
         alt=_describe_periods(timed, list(activities), "All activities"),
         asked=sum(len(run.arcs) for run in graph_data.flows),
+        kind="timing",
     )
     return fold_graph(add_legend_keys(graph))
 
@@ -119,6 +120,7 @@ def _draw_selected_nodes(graph_data: _TimingGraphData, node_ids: Collection[str]
         notes=_bound_notes(timed, own_activities),
         alt=_describe_periods(timed, tuple(own_activities), "The selected part"),
         asked=sum(len(run.arcs) for run in touching_flows),
+        kind="timing",
     )
     return fold_graph(add_legend_keys(graph))
 
@@ -163,6 +165,7 @@ def _draw_group(graph_data: _TimingGraphData, group_id: str) -> Graph:
         + (("Neighbours are folded: a box for each group.",) if is_folded else ()),
         alt=_describe_periods(timed, tuple(own_activities), group.title),
         asked=count,
+        kind="group-timing",
     )
     return add_legend_keys(graph)
 

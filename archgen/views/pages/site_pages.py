@@ -38,12 +38,19 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
     """Add numbers to paths that several pages share: the names of two elements may give one file name."""
-    path_counts: dict[str, int] = {}
+    # Folded: some systems take `A.html` and `a.html` for one file.
+    own_paths = {page.path.casefold() for page in page_list}
+    taken_paths: set[str] = set()
     result = []
     for page in page_list:
-        path_counts[page.path] = number = path_counts.get(page.path, 0) + 1
-        stem = page.path.removesuffix(".html")
-        result.append(page if number == 1 else replace(page, path=f"{stem}-{number}.html"))
+        path, number = page.path, 1
+        while path.casefold() in taken_paths:
+            number += 1
+            numbered_path = f"{page.path.removesuffix('.html')}-{number}.html"
+            # A page whose own name ends in this number keeps its address.
+            path = path if numbered_path.casefold() in own_paths else numbered_path
+        taken_paths.add(path.casefold())
+        result.append(page if path == page.path else replace(page, path=path))
     return tuple(result)
 
 

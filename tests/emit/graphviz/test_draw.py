@@ -31,7 +31,14 @@ from tests.architectures import robot
 
 VIEW = make_lookup(robot(1))
 GRAPHS = (draw_overview(VIEW), draw_group(VIEW, "human_state"), draw_component(VIEW, "human_state.fall_detector"))
-TINY = Graph("tiny", "Tiny", "flow", (Box("a", "A", ref="component:a"), Box("b", "B")), (Arrow("x", "a", "b", "Data"),))
+TINY = Graph(
+    "tiny",
+    "Tiny",
+    "flow",
+    (Box("a", "A", ref="component:a"), Box("b", "B")),
+    (Arrow("x", "a", "b", "Data"),),
+    kind="component",
+)
 
 
 def test_all_formats() -> None:

@@ -137,6 +137,7 @@ def hostile(layout: str) -> Graph:
         () if layout == "flow" else clusters,
         notes=HOSTILE[:3],
         alt=HOSTILE[3],
+        kind="view",
     )
 
 
@@ -174,7 +175,7 @@ def test_a_box_with_ports_takes_arrows_at_its_ports() -> None:
         Arrow("2", "s", "r", head_port=None, tail_port="out a"),
         Arrow("3", "s", "l", tail_port="in a", style="service"),
     )
-    graph = Graph("ports", "Ports", "flow", boxes, arrows)
+    graph = Graph("ports", "Ports", "flow", boxes, arrows, kind="component")
     assert faults(graph) == []
     drafted, scene = graph_drawing.lay_out_graph(graph, {})
     by_arrow = {line.arrow: line for line in scene.lines}
@@ -209,7 +210,7 @@ def test_meetings_are_found() -> None:
 
 def test_a_frame_without_boxes_is_left_out() -> None:
     clusters = (Cluster("full", "Full"), Cluster("empty", "Empty"))
-    graph = Graph("g", "G", "framed", (Box("a", "A", cluster="full"),), (), clusters=clusters)
+    graph = Graph("g", "G", "framed", (Box("a", "A", cluster="full"),), (), clusters=clusters, kind="overview")
     scene = lay_out_framed(style_graph(graph, lambda _: None))
     assert [frame.name for frame in scene.frames] == ["c0"]
 

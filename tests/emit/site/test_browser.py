@@ -15,6 +15,7 @@ from archgen import pipeline
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
 from archgen.products import project_outputs
+from archgen.products.output_options import OutputOptions
 from archgen.views import shapes
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -54,9 +55,7 @@ def folder(site: FileTree, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the case study's site, with its real pictures."""
     place = tmp_path_factory.mktemp("out") / "example"
-    project_outputs.write_site(
-        pipeline.check_project(ROOT / "example_ramcip"), project_outputs.OutputOptions(revision="test"), place
-    )
+    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
     return place
 
 

@@ -1,13 +1,15 @@
-"""The manual's example is a backend that works."""
+"""The manual's example is a backend that works, and its tables name what there is."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 from archgen.emit import text
 from archgen.emit.backend_manifests import find_backends
-from archgen.views.shapes import Page, Section
+from archgen.emit.text.template_filters import TEMPLATE_FILTERS
+from archgen.views.shapes import GraphKind, Page, Section
 
 DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
 
@@ -29,3 +31,17 @@ def test_the_example_works(tmp_path: Path) -> None:
         "nodes.md": "# Nodes\n\n- [cam\\_1](nodes/cam_1.md): Driver\n",
         "nodes/cam_1.md": "# cam\\_1\n",
     }
+
+
+def _first_column(heading: str) -> list[str]:
+    """Return the names in the first column of the manual's table whose first heading this is."""
+    table = DOCS.read_text().partition(f"\n| {heading} |")[2].partition("\n\n")[0]
+    return re.findall(r"^\| `(\S+)` ", table, re.MULTILINE)
+
+
+def test_the_manual_names_every_kind_of_graph() -> None:
+    assert _first_column("kind") == list(get_args(GraphKind))
+
+
+def test_the_manual_names_every_filter() -> None:
+    assert sorted(_first_column("filter")) == sorted(TEMPLATE_FILTERS)

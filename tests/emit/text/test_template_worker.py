@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def _make_sandbox(folder: Path) -> ImmutableSandboxedEnvironment:
-    return create_sandbox(folder)
+    return create_sandbox(folder, {})
 
 
 @pytest.mark.parametrize("name", ["a.md.j2", "deep/b.html.j2"])

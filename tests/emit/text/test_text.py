@@ -66,6 +66,23 @@ def test_only_some_items(make: Make) -> None:
     assert list(files(backend)) == ["b.md"]
 
 
+def test_a_backend_brings_an_escape_of_its_own(make: Make) -> None:
+    template = "{{ record.groups.a.title|plantuml }} {{ '<&[1]'|plantuml }} {{ 7|plantuml }}"
+    backend = make(template)
+    manifest = backend.folder / "backend.yaml"
+    manifest.write_text(
+        manifest.read_text() + """escapes: {plantuml: {"<": "&lt;", "&": "&amp;", "[": "~[", "]": ""}}\n"""
+    )
+    backends, diagnostics = find_backends(backend.folder.parents[1])
+    assert diagnostics == ()
+    # What a replacement puts in place (`&lt;`) is not escaped again.
+    assert files(backends["mine"]) == {"out.md": "Sensing &amp; &lt;acting> &lt;&amp;~[1 7"}
+
+
+def test_an_escape_is_known_to_its_own_backend_only(make: Make) -> None:
+    assert "No filter named 'plantuml'" in fault(make("{{ 'x'|plantuml }}"))
+
+
 @pytest.mark.parametrize("name", ["t.html.j2", "t.xml.j2", "t.html", "t.svg.j2"])
 def test_markup_is_escaped(make: Make, name: str) -> None:
     backend = make("{{ record.groups.a.title }}", "x.txt", name=name)

@@ -46,6 +46,7 @@ def wiki(title: str) -> dict[str, str]:
         ),
         (Arrow("e", "g.a", "t", label=title, style="service"),),
         (Cluster("g", title),),
+        kind="group",
     )
     cells = (
         (Text(title, ref="component:g.a"),),
@@ -162,7 +163,7 @@ def test_arrows_between_frames_lead_from_frame_to_frame() -> None:
     """Mermaid would draw a box of its own for a name that it does not know."""
     boxes = (Box("a.x", "X", cluster="a"), Box("b.y", "Y", cluster="b"))
     arrows = (Arrow("e", "a", "b", label="* 2 types\n1. one", style="link"), Arrow("f", "a.x", "b.y", count=3))
-    graph = Graph("g", "G", "two-step", boxes, arrows, (Cluster("a", "A"), Cluster("b", "B")))
+    graph = Graph("g", "G", "two-step", boxes, arrows, (Cluster("a", "A"), Cluster("b", "B")), kind="overview")
     assert draw_mermaid(shape_to_plain(graph)).split("\n") == [
         "flowchart LR",
         '  subgraph n_cluster_20_a["A"]',

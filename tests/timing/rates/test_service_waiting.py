@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 
-from archgen.analyses import slow_responses
+from archgen.analyses import answer_times
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import ServiceLoad
 from archgen.timing.run_analysis import analyse_architecture
@@ -99,8 +99,8 @@ def test_slow_service_adds_all_calls_of_an_activation(derived: Derived) -> None:
     """Three calls with b's before the last: 40 ms each time."""
     callers = {"a": "period: 119 ms, calls: {help: 3}, wcet: 0 ms", "b": "period: 1 s, wcet: 0 ms"}
     architecture = derived(_text(callers, "timing: {wcet: 10 ms}"))
-    (finding,) = slow_responses.slow_service(architecture, analyse_architecture(architecture))
+    (finding,) = answer_times.slow_service(architecture, analyse_architecture(architecture), margin=Fraction(0))
     assert finding.message == "`a` runs every 119 ms, but waits up to 120 ms for `server`, with 2 callers"
     callers["a"] = "period: 120 ms, calls: {help: 3}, wcet: 0 ms"
     architecture = derived(_text(callers, "timing: {wcet: 10 ms}"))
-    assert not list(slow_responses.slow_service(architecture, analyse_architecture(architecture)))
+    assert not list(answer_times.slow_service(architecture, analyse_architecture(architecture), margin=Fraction(0)))

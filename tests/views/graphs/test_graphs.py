@@ -345,7 +345,7 @@ def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
 
 def test_what_cannot_be_folded_says_so() -> None:
     boxes = tuple(Box(f"b{at}", "B") for at in range(71))
-    assert fold_graph(Graph("x", "X", "flow", boxes, ())).notes == (
+    assert fold_graph(Graph("x", "X", "flow", boxes, (), kind="ros")).notes == (
         "This picture is larger than 70 boxes and 160 arrows: select a part to see it well.",
     )
 
@@ -354,7 +354,9 @@ def test_folding_keeps_frames_that_fit() -> None:
     boxes = tuple(Box(f"b{at}", "B", cluster="big" if at < 70 else "small") for at in range(72))
     arrows = (Arrow("1", "b0", "b1"), Arrow("2", "b1", "b71"), Arrow("3", "b2", "b71"), Arrow("4", "b70", "b71"))
     graph = fold_graph(
-        Graph("x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4)
+        Graph(
+            "x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4, kind="ros"
+        )
     )
     assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
     assert text(graph) == ["big > b71 (2)", "b70 > b71"]
@@ -372,3 +374,21 @@ def test_an_arrow_at_a_shared_topic_names_all_its_flows() -> None:
     flows = {arrow.id: arrow.flows for arrow in graph.arrows}
     assert len(flows["a>topic /t"]) == 2
     assert len(flows["topic /t>b"]) == 1
+
+
+def test_every_graph_says_what_it_shows() -> None:
+    views = {
+        "parts": View("parts", "Parts", "*", level="functional"),
+        "code": View("code", "Code", "*", level="implementation"),
+    }
+    graphs = make_all_graphs(replace(robot(), views=views))
+    assert {(graph.id.partition("/")[0], "/" in graph.id, graph.kind) for graph in graphs} == {
+        ("overview", False, "overview"),
+        ("components", False, "components"),
+        ("groups", True, "group"),
+        ("components", True, "component"),
+        ("implementation", True, "implementation"),
+        ("ros", False, "ros"),
+        ("hosts", False, "hosts"),
+        ("views", True, "view"),
+    }

@@ -93,6 +93,7 @@ def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Gra
         direction=after.layout.direction or "left-right",
         notes=notes,
         alt=_alternative_text(overlay),
+        kind="component-changes",
     )
     graph = fold_to_budget(graph, budget)
     return add_legend_keys(replace(graph, asked=sum(arrow.count for arrow in graph.arrows)))

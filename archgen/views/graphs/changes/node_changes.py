@@ -67,6 +67,7 @@ def draw_node_changes(comparison: Comparison, budget: PictureBudget) -> Graph | 
         notes=("Only what changed is drawn.",) if len(drawn_lines) < len(_surrounding_lines(overlay)) else (),
         alt="; ".join(f"{CHANGE_SIGNS[change_kind]} {name}" for name, change_kind in sorted(change_kinds.items()))
         + ".",
+        kind="node-changes",
     )
     # Nodes have no groups to fold.
     if not fits_budget(graph, budget):

@@ -1,16 +1,17 @@
-"""Responses that come too late: of components that promise one, and of services that are called."""
+"""Do components and services answer in the time that they have?"""
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_duration
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from fractions import Fraction
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from archgen.timing.system.timing_system import Activity
 
 
-def slow_component(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """A component's node takes longer than the execution time that its performance asks for.
 
     Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
@@ -52,13 +53,13 @@ def slow_component(architecture: Architecture, analysis: Analysis) -> Iterator[D
             continue  # unknown, or unbounded by an overload, which `overloaded-host` reports
         for indicator in component.performance:
             required_time = indicator.execution_time
-            if required_time is not None and worst_response > required_time.value:
+            if required_time is not None and worst_response > (1 - margin) * required_time.value:
                 # Whether the activity alone is too slow, or what runs beside it makes it so: `wcet` is in ticks.
                 is_undisturbed = (
                     activity.response is not None or worst_response == (activity.wcet or 0) * analysis.system.tick
                 )
                 yield _report_slow_component(
-                    component, indicator, activity, worst_response, is_undisturbed=is_undisturbed
+                    component, indicator, activity, (worst_response, margin), is_undisturbed=is_undisturbed
                 )
 
 
@@ -66,16 +67,17 @@ def _report_slow_component(
     component: Component,
     indicator: PerformanceIndicator,
     activity: Activity,
-    worst_response: Fraction,
+    response_and_margin: tuple[Fraction, Fraction],
     *,
     is_undisturbed: bool,
 ) -> Diagnostic:
-    """Report a response that is above the required execution time, both in ns."""
+    """Report a response (ns) that leaves less of the required execution time than the margin, a share of it."""
+    worst_response, margin = response_and_margin
     span = activity.places.get("wcet" if activity.response is None else "response", activity.at)
     cause = "" if is_undisturbed or activity.host is None else f" with all that works on `{activity.host}`"
     return Diagnostic(
         "slow-component",
-        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {format_duration(worst_response)}{cause}",
+        f"`{component.id}` is asked to need at most {indicator.execution_time}, but `{activity.id}` takes up to {format_duration(worst_response)}{cause}{_describe_margin(margin)}",
         indicator.at,
         labels=(Label(span, "takes longer" if is_undisturbed else "takes longer with what gets in its way"),)
         if span != NO_SPAN
@@ -85,7 +87,7 @@ def _report_slow_component(
     )
 
 
-def slow_service(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def slow_service(_: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """A service takes longer, with all its callers waiting, than one of them has before it runs again.
 
     Why: Each caller may find the calls of all others before its own: with K callers an answer takes up to K times the
@@ -127,19 +129,20 @@ def slow_service(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
         if waiting_time is None or caller.period is None:
             continue
         caller_period = caller.period * analysis.system.tick
-        if waiting_time > caller_period:
+        if waiting_time > (1 - margin) * caller_period:
             server = analysis.system.activities[arc.target]
-            yield _report_slow_service(load, caller, server, (waiting_time, caller_period), arc.at)
+            yield _report_slow_service(load, caller, server, (waiting_time, caller_period, margin), arc.at)
 
 
 def _report_slow_service(
-    load: ServiceLoad, caller: Activity, server: Activity, waiting_and_period: tuple[Fraction, Fraction], span: Span
+    load: ServiceLoad, caller: Activity, server: Activity, figures: tuple[Fraction, Fraction, Fraction], span: Span
 ) -> Diagnostic:
-    """Report a caller that waits longer than its period; `times` are both, in ns, in this order."""
+    """Report a caller that waits too long; `figures` are its waiting time and period (ns), and the margin, a share."""
+    waiting_time, caller_period, margin = figures
     callers_phrase = f", with {len(load.callers)} callers" if len(load.callers) > 1 else ""
     return Diagnostic(
         "slow-service",
-        f"`{caller.id}` runs every {format_duration(waiting_and_period[1])}, but waits up to {format_duration(waiting_and_period[0])} for `{server.id}`{callers_phrase}",
+        f"`{caller.id}` runs every {format_duration(caller_period)}, but waits up to {format_duration(waiting_time)} for `{server.id}`{callers_phrase}{_describe_margin(margin)}",
         span if span != NO_SPAN else caller.at,
         labels=(Label(server.places.get("wcet", server.at), "takes this long for each"),)
         if server.at != NO_SPAN
@@ -149,7 +152,20 @@ def _report_slow_service(
     )
 
 
+def _describe_margin(margin: Fraction) -> str:
+    """Say how much of a time must stay free, where any must."""
+    return f"; {format_percentage(margin)} of it must stay free" if margin else ""
+
+
 RULES = (
-    (slow_component, Severity.WARNING),
-    (slow_service, Severity.WARNING),
+    (
+        slow_component,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the execution time that must stay free."),),
+    ),
+    (
+        slow_service,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the caller's period that must stay free."),),
+    ),
 )

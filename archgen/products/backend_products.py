@@ -1,0 +1,127 @@
+"""Text backends as products: which one a name means, which verb makes it, and how its templates get the views."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Literal
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.emit import file_tree
+from archgen.emit.backend_manifests import Backend
+from archgen.pipeline import CheckedProject
+from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
+from archgen.products.product_table import PRODUCTS
+from archgen.views import resolved_record
+from archgen.views.shapes import Graph
+from archgen.views.tables import statistics_tables
+
+BackendTarget = Literal["documents", "workspace", "file"]
+_COMMANDS: Mapping[BackendTarget, str] = {
+    "documents": "archgen build --backend {}",
+    "workspace": "archgen generate {}",
+    "file": "archgen export {}",
+}
+_TARGET_PHRASES: Mapping[BackendTarget, str] = {
+    "documents": "documents",
+    "workspace": "a workspace",
+    "file": "a single file",
+}
+
+
+def choose_backends(
+    checked_project: CheckedProject,
+    names: Sequence[str],
+    makes: BackendTarget,
+    allowed_names: Collection[str] | None,
+    *,
+    other_outputs: Collection[str] = (),
+) -> tuple[Backend, ...]:
+    """Return the named text backends. Raise OutputError for unknown, broken or forbidden ones, and for others' verbs.
+
+    `allowed_names` are the only backends of the project itself that may run; None allows all of them. `other_outputs`
+    are further names that could have been meant.
+    """
+    if not names:
+        return ()
+    from archgen.emit import backend_manifests
+
+    backends_by_name, problems = backend_manifests.find_backends(checked_project.root)
+    # Only manifests of backends that are asked for count; a broken one beside them must not stop the build.
+    _raise_problems([p for p in problems if any(f"backends/{name}/" in p.span.file for name in names)])
+    for name in names:
+        _refuse_unusable(backends_by_name, name, makes, other_outputs)
+        # The branch under review may be anybody's: its own backends run only if the trusted revision allows them.
+        if backends_by_name[name].from_project and allowed_names is not None and name not in allowed_names:
+            msg = f"the project's own backend `{name}` is not run here: the revision that is trusted does not name it"
+            raise file_tree.OutputError(msg, "add it to `review.backends` there, in a change of its own")
+    return tuple(backends_by_name[name] for name in dict.fromkeys(names))
+
+
+def _refuse_unusable(
+    backends_by_name: Mapping[str, Backend], name: str, makes: BackendTarget, other_outputs: Collection[str]
+) -> None:
+    """Raise OutputError unless there is a text backend of this name that makes what the verb is for."""
+    usable_names = list(other_outputs) + [
+        backend_id
+        for backend_id, backend in backends_by_name.items()
+        if backend.emitter == "text" and backend.makes == makes
+    ]
+    backend = backends_by_name.get(name)
+    if backend is None or backend.emitter != "text":
+        msg = f"there is no {'output' if other_outputs else 'text backend'} `{name}`"
+        listed_names = f"there are {', '.join(usable_names)}" if usable_names else _describe_none(makes)
+        raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or listed_names)
+    if backend.makes != makes:
+        msg = f"the backend `{name}` makes {_TARGET_PHRASES[backend.makes]}, not {_TARGET_PHRASES[makes]}"
+        raise file_tree.OutputError(msg, f"`{_COMMANDS[backend.makes].format(name)}` makes it")
+    # `PRODUCTS` are written into the same folder, and `--only` names both.
+    if backend.from_project and name in PRODUCTS:
+        msg = f"the backend `{name}` is called as an output of archgen itself"
+        raise file_tree.OutputError(msg, "give it another `id`, and its folder the same name")
+
+
+def _describe_none(makes: BackendTarget) -> str:
+    """Say that no backend makes this, and where one would stand."""
+    return f"no backend here says `makes: {makes}`; a project brings its own in backends/"
+
+
+def make_backend_product(backend: Backend) -> Product:
+    """Make the product of a text backend."""
+
+    def start(inputs: ProductInputs) -> FinishProduct:
+        # Templates run when the product is finished: a mistake in them costs this backend's output alone.
+        return lambda _pictures: MadeProduct(_render_backend(inputs, backend))
+
+    # What templates read is not among the inputs of a build, so a backend is made each time.
+    return Product(backend.id, backend.id, start, follows_inputs=False)
+
+
+def render_single_file(inputs: ProductInputs, backend: Backend) -> bytes:
+    """Return the file of a backend that makes a single one. Raise OutputError where its template fails."""
+    (content,) = _render_backend(inputs, backend).files.values()
+    return content
+
+
+def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTree:
+    """Return the files of a text backend. Raise OutputError where its templates fail."""
+    from archgen.emit import text
+
+    # Made only on demand: a backend names the views that it needs in its manifest.
+    shapes: dict[str, Callable[[], object]] = {
+        "outline": lambda: inputs.outline,
+        "pages": lambda: inputs.pages,
+        "graphs": lambda: tuple(graph for graph in inputs.views.drawings.values() if isinstance(graph, Graph)),
+        "record": lambda: resolved_record.make_record(inputs.views.lookup),
+        "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
+    }
+    files, problems = text.render_backend(backend, {name: shapes[name]() for name in backend.views})
+    _raise_problems(problems)
+    return files or file_tree.make_file_tree(())
+
+
+def _raise_problems(problems: Sequence[Diagnostic]) -> None:
+    """Raise OutputError with all problems, if there are any."""
+    if problems:
+        message = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)
+        raise file_tree.OutputError(message, problems[0].help)

@@ -1,0 +1,32 @@
+"""What users may choose about outputs: a part, a level of detail, the printed revision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+
+from archgen.model.selector_evaluation import Selection
+from archgen.views.pages.report_outline import DetailLevel
+
+DrawingProgress = Callable[[int, int], None]
+"""Called with the number of pictures drawn so far, and of all pictures."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutputOptions:
+    """What to show and how to print it: a selection, a level of detail, a revision.
+
+    `selector_text` is the selector as the user wrote it. `progress` is called during long work, `warn` for what an
+    output could not contain as asked for.
+    """
+
+    selection: Selection | None = None
+    selector_text: str = ""
+    level: DetailLevel | None = None
+    revision: str | None = None
+    progress: DrawingProgress | None = None
+    warn: Callable[[str], None] = lambda _text: None
+    show_history: bool = True
+    """Whether documents show how the project grew; only possible where git can tell."""
+    allowed_backends: Collection[str] | None = None
+    """The only backends of the project itself that may run; None allows all of them."""

@@ -1,0 +1,86 @@
+"""What products are made from, and what a product is. Nothing here is written yet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from archgen.emit.file_tree import FileTree
+from archgen.emit.picture import Picture
+from archgen.pipeline import CheckedProject
+from archgen.products import project_views
+from archgen.products.output_options import OutputOptions
+from archgen.products.project_views import ProjectViews
+from archgen.views.pages import report_outline, site_pages
+from archgen.views.shapes import Outline, Page
+
+
+# Without slots: `cached_property` stores its values in the object's dictionary.
+@dataclass(frozen=True)
+class ProductInputs:
+    """What products are made from. Views are made when the first product asks for them, once for all."""
+
+    checked_project: CheckedProject
+    options: OutputOptions
+    template: Path | None = None
+    """The user's template of the Word report."""
+
+    @cached_property
+    def views(self) -> ProjectViews:
+        """The look-ups and drawings."""
+        return project_views.make_views(self.checked_project, self.options)
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The report's contents."""
+        return report_outline.make_report(self.views.lookup, self.views.edition)
+
+    @cached_property
+    def pages(self) -> tuple[Page, ...]:
+        """The site's pages."""
+        return tuple(site_pages.make_pages(self.views.lookup, self.views.edition))
+
+
+@dataclass(frozen=True, slots=True)
+class MadeProduct:
+    """A product in memory: a file's bytes or a folder's files, with the warnings of its writer.
+
+    `asked_files` are the files that the writer asked for beyond the inputs of every build (pictures of chapters), None
+    for one that is absent.
+    """
+
+    content: bytes | FileTree
+    warnings: tuple[str, ...] = ()
+    asked_files: Mapping[str, bytes | None] = field(default_factory=dict)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is a folder without a file."""
+        return isinstance(self.content, FileTree) and not self.content.files
+
+
+FinishProduct = Callable[[Mapping[str, Picture]], MadeProduct]
+"""Makes a product from the drawn pictures, by id."""
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """Something that a build makes.
+
+    `start` does all that needs no picture, while others are drawing, and returns the function that does the rest.
+    """
+
+    name: str
+    part: str
+    """Its file or folder below the output folder."""
+    start: Callable[[ProductInputs], FinishProduct]
+    picture_formats: tuple[str, ...] | None = None
+    """The formats of the pictures that it shows; None if it shows none."""
+    picture_patterns: tuple[str, ...] = ("*",)
+    """The ids of the pictures that it shows."""
+    entry_file: str = ""
+    """The file of its folder to open first."""
+    follows_inputs: bool = True
+    """Whether the inputs of a build decide its bytes, so that it need not be made again while they stay the same."""

@@ -1,0 +1,107 @@
+"""The products of a build, by name, and how each is made: `build` walks all of them, the other verbs one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from archgen.emit import file_tree, picture_files
+from archgen.emit.picture import Picture
+from archgen.products import report_cache
+from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
+from archgen.views.pages import report_outline
+
+
+class _RecordingReader:
+    """Reads files and remembers which were asked for; each is created for one call of one writer."""
+
+    def __init__(self, read_file: Callable[[str], bytes | None]) -> None:
+        self._read_file = read_file
+        self.asked_files: dict[str, bytes | None] = {}
+
+    def read(self, path: str) -> bytes | None:
+        """Read a file; None if there is none."""
+        self.asked_files[path] = self._read_file(path)
+        return self.asked_files[path]
+
+
+def _start_report(inputs: ProductInputs) -> FinishProduct:
+    outline = inputs.outline
+    template = inputs.template.read_bytes() if inputs.template else None
+
+    # Called on a miss only. The cache hands in a reader that records which chapter pictures the writer asks for.
+    def write_anew(
+        pictures: Mapping[str, Picture], chapter_files: report_cache.ChapterFileReader
+    ) -> report_cache.ReportWithWarnings:
+        """Write the report, with a broken template as the user's mistake."""
+        from archgen.emit import docx
+
+        try:
+            return docx.write(outline, pictures, template=template, chapter_files=chapter_files)
+        except docx.TemplateError as error:
+            raise file_tree.OutputError(str(error)) from None
+
+    def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
+        reader = _RecordingReader(inputs.checked_project.chapters.read_picture)
+        # Warnings are cached with the report: a report from the cache must warn as the first one did.
+        document, warnings = report_cache.get_or_write_report(
+            report_cache.cache_folder(),
+            outline,
+            pictures,
+            template=template,
+            chapter_files=reader.read,
+            write_report=lambda chapter_files: write_anew(pictures, chapter_files),
+        )
+        return MadeProduct(document, warnings, reader.asked_files)
+
+    return finish
+
+
+def _start_site(inputs: ProductInputs) -> FinishProduct:
+    page_list = inputs.pages
+
+    def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
+        from archgen.emit import site
+
+        reader = _RecordingReader(inputs.checked_project.chapters.read_picture)
+        files = site.build_site(
+            page_list,
+            pictures,
+            title=inputs.checked_project.architecture.project.title,
+            revision=inputs.views.edition.revision,
+            notices=report_outline.make_notices(inputs.views.lookup, inputs.views.edition),
+            chapter_files=reader.read,
+        )
+        return MadeProduct(files, asked_files=reader.asked_files)
+
+    return finish
+
+
+def make_diagrams_product(formats: Sequence[str], name_patterns: Sequence[str] = ()) -> Product:
+    """Make the product of pictures in these formats (svg, png, pdf, dot), by patterns of their ids (none: all)."""
+
+    def start(_inputs: ProductInputs) -> FinishProduct:
+        return lambda pictures: MadeProduct(picture_files.build_picture_tree(pictures, formats))
+
+    # `dot` is not drawn: it is the source, which every picture carries.
+    drawn_formats = tuple(picture_format for picture_format in formats if picture_format != "dot")
+    return Product("diagrams", "diagrams", start, drawn_formats, tuple(name_patterns) or ("*",))
+
+
+def _start_packed(inputs: ProductInputs) -> FinishProduct:
+    from archgen.syntax import yaml_writer
+
+    packed_project = inputs.checked_project.pack_project()
+    content = yaml_writer.write_yaml(packed_project.data, packed_project.comments).encode()
+    chapters = inputs.checked_project.chapters
+    asked_files = {path: chapters.read_picture(path) for path in chapters.list_picture_paths()}
+    return lambda _pictures: MadeProduct(content, asked_files=asked_files)
+
+
+# A PNG for programs that know no SVG; an SVG with text as outlines, since the reader's Word may lack the font.
+REPORT = Product("report", "report.docx", _start_report, ("png", "svg_outlines"))
+SITE = Product("site", "site", _start_site, ("svg",), entry_file="index.html")
+DIAGRAMS = make_diagrams_product(("svg", "png"))
+PACKED = Product("packed", "packed.yaml", _start_packed)
+
+PRODUCTS: Mapping[str, Product] = {product.name: product for product in (REPORT, SITE, DIAGRAMS, PACKED)}
+"""What `archgen build` makes, in the order in which it is written."""

@@ -1,0 +1,120 @@
+"""From products to files, for every verb in the same steps: make the views, draw, finish each product, write it."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from archgen.emit import file_tree
+from archgen.pipeline import CheckedProject
+from archgen.products import report_cache
+from archgen.products.picture_drawing import DrawnPictures, draw_pictures
+from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
+from archgen.views.chart_shapes import Drawing
+
+_MAX_NAMED_PICTURES = 8
+"""At most this many pictures are named in a message."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartedProducts:
+    """Products of which all is made that needs no picture, and the drawn pictures."""
+
+    finishers: Mapping[str, FinishProduct]
+    """By the product's name."""
+    drawn: DrawnPictures
+
+
+def start_products(inputs: ProductInputs, products: Sequence[Product]) -> StartedProducts:
+    """Draw all pictures that products show, and meanwhile make what needs none. Nothing is written.
+
+    Raise OutputError where patterns match no picture.
+    """
+    shown_products = [product for product in products if product.picture_formats is not None]
+    if not shown_products:
+        return StartedProducts({product.name: product.start(inputs) for product in products}, DrawnPictures())
+    from archgen.emit import graphviz
+
+    formats = dict.fromkeys(name for product in shown_products for name in product.picture_formats or ())
+    # Workers start before the views are made: both take long.
+    with graphviz.start_early_workers(report_cache.cache_folder()) as workers, ThreadPoolExecutor(1) as executor:
+        drawings = _choose_drawings(inputs, shown_products)
+        # Other processes draw, and the thread waits for them.
+        drawing_future = executor.submit(draw_pictures, drawings, tuple(formats), inputs.options.progress, workers)
+        finishers = {product.name: product.start(inputs) for product in products}
+        drawn = drawing_future.result()
+    for warning in drawn.warnings:
+        inputs.options.warn(warning)
+    return StartedProducts(finishers, drawn)
+
+
+def _choose_drawings(inputs: ProductInputs, products: Sequence[Product]) -> tuple[Drawing, ...]:
+    """Return the drawings that any of the products shows."""
+    patterns = dict.fromkeys(pattern for product in products for pattern in product.picture_patterns)
+    if "*" in patterns:
+        return tuple(inputs.views.drawings.values())
+    drawings = tuple(
+        drawing
+        for name, drawing in inputs.views.drawings.items()
+        if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+    )
+    if not drawings:
+        msg = f"no picture is called {' or '.join(patterns)}"
+        raise file_tree.OutputError(msg, _name_pictures(inputs.views.drawings))
+    return drawings
+
+
+def _name_pictures(names: Iterable[str]) -> str:
+    """Name the first pictures of a project, for a message."""
+    all_names = list(names)
+    if not all_names:
+        return "there is nothing to draw yet"
+    further = ", ..." if len(all_names) > _MAX_NAMED_PICTURES else ""
+    return f"there are {', '.join(all_names[:_MAX_NAMED_PICTURES])}{further}"
+
+
+def write_started(
+    inputs: ProductInputs, started_products: StartedProducts, product: Product, target: Path
+) -> MadeProduct:
+    """Finish a product and write it: completely, or not at all. Return it as it was written."""
+    made_product = started_products.finishers[product.name](started_products.drawn.pictures)
+    for warning in made_product.warnings:
+        inputs.options.warn(warning)
+    if isinstance(made_product.content, bytes):
+        write_product_file(inputs.checked_project, target, made_product.content)
+    else:
+        file_tree.write_tree(made_product.content, target)
+    return made_product
+
+
+def write_product(inputs: ProductInputs, product: Product, target: Path) -> MadeProduct:
+    """Make and write a single product."""
+    return write_started(inputs, start_products(inputs, (product,)), product, target)
+
+
+def write_product_file(checked_project: CheckedProject, target: Path, content: bytes) -> None:
+    """Write a single file, unless the project reads another one in its place."""
+    if target.is_file() and _is_read_by_project(checked_project, target) and target.read_bytes() != content:
+        msg = f"{target} is a file of the project itself"
+        raise file_tree.OutputError(msg, "give the name of another file with `-o`")
+    file_tree.write_file(target, content)
+
+
+def _is_read_by_project(checked_project: CheckedProject, file: Path) -> bool:
+    """Whether a file is an input of the project, a picture of its chapters, or part of a backend of its own."""
+    root = checked_project.root
+    inputs = (*checked_project.input_files, *checked_project.chapters.list_picture_paths())
+    return any(_is_same_file(file, root / name) for name in inputs) or file.resolve().is_relative_to(
+        (root / "backends").resolve()
+    )
+
+
+def _is_same_file(first: Path, second: Path) -> bool:
+    """Whether two paths lead to one file, by whatever links."""
+    try:
+        return first.samefile(second)
+    except OSError:  # one of them is gone, or cannot be looked at
+        return False

@@ -1,0 +1,129 @@
+"""The views that a project's outputs are written from: look-ups of the selected part, drawings, history, revision."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from archgen import git
+from archgen.git.project_revision import find_revision
+from archgen.history import count_history
+from archgen.model import selector_evaluation
+from archgen.model.project_history import History
+from archgen.model.selector_evaluation import Selection
+from archgen.model.selector_parser import SelectorProblem
+from archgen.pipeline import CheckedProject
+from archgen.products import report_cache
+from archgen.products.output_options import OutputOptions
+from archgen.project import ProjectNotFoundError
+from archgen.views import drawing_set
+from archgen.views.chart_shapes import Drawing
+from archgen.views.lookup import DocumentScope, Lookup, make_lookup
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.tables import project_growth, statistics_tables
+from archgen.views.timing.timing_lookup import analyse_with_chains
+
+_SHORT_HASH_LENGTH = 10
+"""Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
+
+
+def select_elements(
+    checked_project: CheckedProject, selector_text: str
+) -> tuple[Selection, tuple[SelectorProblem, ...]]:
+    """Evaluate a selector against a project; `finding:` refers to the project's findings.
+
+    Return the selection and the problems of the selector; errors among them make the selection unusable.
+    """
+    return selector_evaluation.evaluate_selector(
+        selector_text, checked_project.architecture, _elements_by_rule(checked_project)
+    )
+
+
+def _elements_by_rule(checked_project: CheckedProject) -> Mapping[str, frozenset[str]]:
+    """Return the ids of elements with findings, by rule."""
+    rule_elements: dict[str, set[str]] = {}
+    for finding in checked_project.findings:
+        if finding.element:
+            rule_elements.setdefault(finding.rule, set()).add(finding.element)
+    return {rule: frozenset(elements) for rule, elements in rule_elements.items()}
+
+
+def make_scoped_lookup(checked_project: CheckedProject, options: OutputOptions) -> Lookup:
+    """Build the look-ups for the selected part of a project."""
+    scope = (
+        DocumentScope(options.selection.components, options.selection.nodes, options.selector_text)
+        if options.selection
+        else DocumentScope()
+    )
+    return make_lookup(checked_project.architecture, checked_project.findings, scope)
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectViews:
+    """The views that documents are written from."""
+
+    lookup: Lookup
+    edition: DocumentEdition
+    drawings: Mapping[str, Drawing]
+
+
+def make_views(checked_project: CheckedProject, options: OutputOptions) -> ProjectViews:
+    """Make the views: look-ups with timing, drawings, history, and what the documents contain."""
+    lookup = replace(
+        make_scoped_lookup(checked_project, options), timing=analyse_with_chains(checked_project.architecture)
+    )
+    project_history = read_history(checked_project, options)
+    all_drawings = drawing_set.make_drawings(lookup, options.selection, options.level or "implementation")
+    all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
+    edition = DocumentEdition(
+        revision=choose_revision(checked_project, options),
+        level=options.level or "implementation",
+        chapter_names=checked_project.chapters.order,
+        project_chapters=checked_project.chapters.texts,
+        drawings=all_drawings,
+        statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
+        history=project_history,
+        has_errors=checked_project.has_errors,
+    )
+    return ProjectViews(lookup, edition, all_drawings)
+
+
+def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:
+    """Whether documents show the history: not if it is not wanted, nor for a part, nor for a project from a commit."""
+    return options.show_history and options.selection is None and not checked_project.loaded_project.files.commit
+
+
+def read_history(checked_project: CheckedProject, options: OutputOptions) -> History:
+    """Return how the project grew, month by month; empty where documents do not show it, and outside of a repository."""
+    if not _shows_history(checked_project, options):
+        return History()
+    try:
+        # `least` 2: one month makes no chart, so it is not even counted.
+        return count_history(
+            checked_project.loaded_project.files.root / checked_project.loaded_project.first_file,
+            "month",
+            cache=report_cache.cache_folder(),
+            least_points=2,
+        )
+    except (git.GitError, ProjectNotFoundError):
+        return History()
+
+
+def identify_history(checked_project: CheckedProject, options: OutputOptions) -> str:
+    """Return a text that changes whenever the history may change; much cheaper than reading the history."""
+    if not _shows_history(checked_project, options):
+        return ""
+    try:
+        repository = git.find_repository(checked_project.root)
+        # Deepening or completing a shallow clone lengthens the history without moving HEAD.
+        return f"{git.resolve_revision(repository, 'HEAD')} {git.list_cut_commits(repository)}"
+    except git.GitError:
+        return ""
+
+
+def choose_revision(checked_project: CheckedProject, options: OutputOptions) -> str:
+    """Return the revision to print: the one asked for, else the commit that the files belong to."""
+    if options.revision is not None:
+        return options.revision
+    commit = checked_project.loaded_project.files.commit
+    return commit[:_SHORT_HASH_LENGTH] if commit else find_revision(checked_project.root, checked_project.input_files)
