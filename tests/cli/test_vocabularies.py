@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any, get_args
 
 import click
@@ -67,8 +68,8 @@ def test_the_schema_takes_the_words_of_the_model(definition: str, words: tuple[s
     assert set(schema["$defs"][definition]["enum"]) - {None} == set(words)
 
 
-def test_a_project_starts_with_any_distribution_whose_interfaces_are_held(run: Run) -> None:
+def test_a_project_starts_with_any_distribution_whose_interfaces_are_held(run: Run, tmp_path: Path) -> None:
     for distro in KNOWN_DISTROS:
-        ran = run("init", distro, "--yes", "--distro", distro)
+        ran = run("init", tmp_path / distro, "--yes", "--distro", distro)
         assert ran.status == 0, ran.err
-        assert run("check", distro).status == 0
+        assert run("check", tmp_path / distro).status == 0
