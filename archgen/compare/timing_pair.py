@@ -6,18 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from archgen.compare.comparison import Change
+from archgen.compare.kinds import Effect, find_effect
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.run_analysis import analyse_architecture
-
-_UNTIMED_KINDS = frozenset({"partner", "use_case", "requirement", "chapter", "view", "policy", "project"})
-_UNTIMED_KEYS = frozenset(
-    {
-        *("title", "description", "functionality", "comment", "owner", "tags", "layout", "role", "requirements"),
-        *("external", "optional", "executable", "package", "plugin", "status", "parameter_files"),
-    }
-)
-_UNTIMED_PREFIXES = ("urls.", "performance.", "parameters.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +36,10 @@ def analyse_timing(before: Architecture, after: Architecture, changes: Sequence[
 
 def can_affect_timing(change: Change) -> bool:
     """Whether a change can affect a figure of timing."""
-    if change.element_kind in _UNTIMED_KINDS:
-        return False
-    if change.kind == "changed" and change.key:
-        return change.key not in _UNTIMED_KEYS and not change.key.startswith(_UNTIMED_PREFIXES)
     # Renames and moves change no figure.
-    return change.kind in {"added", "removed", "changed"}
+    return (
+        change.kind in {"added", "removed", "changed"} and find_effect(change.element_kind, change.key) is Effect.TIMING
+    )
 
 
 def is_overloaded(load: HostLoad | LinkLoad) -> bool:
