@@ -23,7 +23,7 @@ from archgen.model.deployment import Container, Host, Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
 from archgen.views.elements.element_card import kinds_by_id, make_card
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
 from tests.running import ROOT
 
@@ -226,7 +226,7 @@ def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
     file.write_text(ROBOT, encoding="utf-8")
     checked = pipeline.check_project(file)
     assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
-    return Lookup(checked.architecture)
+    return make_lookup(checked.architecture)
 
 
 def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
