@@ -15,6 +15,10 @@ Compared = Callable[[str, str], Comparison]
 Told = Callable[[str, str], list[str]]
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "slow: a property on its full number of examples")
+
+
 @pytest.fixture
 def compared(tmp_path: Path) -> Compared:
     """Compare two one-file projects."""

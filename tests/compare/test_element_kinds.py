@@ -74,9 +74,7 @@ MODEL_ONLY = {
     "input connections": "the kind `connection`",
     "input from_written": "only for rules",
     **dict.fromkeys(("component title_written", "node implements_written", "node written"), "only for rules"),
-    **dict.fromkeys(
-        ("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"
-    ),
+    **dict.fromkeys(("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"),
     "component requirements_known": "only for rules",
     **dict.fromkeys(("input physical", "output physical"), "the key `medium`"),
     "node kinds": "the key `kind`",
