@@ -99,7 +99,10 @@ def test_a_node_may_move_into_a_container_on_its_host() -> None:
 
 def test_what_a_node_has_from_a_component_that_came_or_went() -> None:
     a, b = element("component g.a"), element("component g.b")
-    old, new = element("node n", refs="g.a"), element("node n", refs="g.b")
+    old, new = (
+        ComparedElement("node", "n", "n", {"owner": owner, "co_owners": owner}, component_refs=(component,))
+        for owner, component in (("certh", "g.a"), ("sssa", "g.b"))
+    )
     for key in ("timing.rate", "owner", "co_owners"):
         assert follows(key, old, new, (a,), (b,))
         assert follows(key, old, new, (a, b), (b,))
