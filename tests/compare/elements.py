@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import replace
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
@@ -24,6 +26,11 @@ def element(
         owner or None,
         component_refs=tuple(refs.split()),
     )
+
+
+def with_values(key: str, values: Mapping[str, object]) -> ComparedElement:
+    """Return an element whose keys have any names."""
+    return replace(element(key), values=values)
 
 
 def by_key(*elements: ComparedElement) -> dict[ElementKey, ComparedElement]:
@@ -54,7 +61,6 @@ def pair(
     reads: tuple[str, str] = ("", ""),
     lost: tuple[str, str] = ("", ""),
     serving: tuple[dict[str, frozenset[str]], dict[str, frozenset[str]]] | None = None,
-    unnamed: str = "",
 ) -> VersionPair:
     """Make a pair of versions; `reads` are the connections before and after, `lost` the keys that could not be read."""
     return VersionPair(
@@ -64,5 +70,4 @@ def pair(
         after,
         serving or ({}, {}),
         (frozenset(lost[0].split()), frozenset(lost[1].split())),
-        frozenset(unnamed.split()),
     )

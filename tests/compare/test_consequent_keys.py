@@ -7,7 +7,7 @@ import pytest
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.consequent_keys import is_consequence
 from archgen.compare.normal_values import ElementTitle
-from tests.compare.elements import by_key, element
+from tests.compare.elements import by_key, element, with_values
 
 
 def follows(
@@ -40,7 +40,7 @@ def title(text: str, *, generated: bool = False) -> ElementTitle:
 )
 def test_titles(old: tuple[str, ElementTitle], new: tuple[str, ElementTitle], same: bool) -> None:  # noqa: FBT001
     sides = [element("component g.eye", own_id=own_id, title=text) for own_id, text in (old, new)]
-    assert follows("title", *sides) is same
+    assert follows("title", sides[0], sides[1]) is same
 
 
 def test_a_title_in_one_version_only_is_news() -> None:
@@ -53,8 +53,8 @@ def test_a_title_in_one_version_only_is_news() -> None:
     [("node", "implements", "component"), ("component", "requirements", "requirement"), ("chain", "requirements", "requirement"), ("requirement", "use_cases", "use_case"), ("link", "connects", "host")],
 )  # fmt: skip
 def test_what_was_removed_is_no_longer_named(kind: str, key: str, referred: str) -> None:
-    both, one = (element(f"{kind} n", **{key: frozenset(names)}) for names in ("xy", "x"))
-    none, other = element(f"{kind} n"), element(f"{kind} n", **{key: frozenset("z")})
+    both, one = (with_values(f"{kind} n", {key: frozenset(names)}) for names in ("xy", "x"))
+    none, other = element(f"{kind} n"), with_values(f"{kind} n", {key: frozenset("z")})
     gone, there = (element(f"{referred} x"),), (element(f"{referred} x"), element(f"{referred} y"))
     assert follows(key, both, one, there, gone)
     assert not follows(key, both, one, there, there)
@@ -156,8 +156,8 @@ def test_a_node_inherits_the_owner_of_its_components() -> None:
     ],
 )
 def test_the_project(key: str, old: object, new: object, is_news: bool) -> None:  # noqa: FBT001
-    sides = [element("project robot", **({key: value} if value is not None else {})) for value in (old, new)]
-    assert follows(key, *sides) is not is_news
+    sides = [with_values("project robot", {key: value} if value is not None else {}) for value in (old, new)]
+    assert follows(key, sides[0], sides[1]) is not is_news
 
 
 def test_only_a_project_goes_without_a_name_and_ports_are_reported_themselves() -> None:

@@ -29,14 +29,38 @@ from tests.running import ROOT
 
 SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
 MODEL_CLASSES: Mapping[str, type] = {
-    **{"project": ProjectInfo, "partner": Partner, "use_case": UseCase, "requirement": Requirement, "group": Group},
-    **{"component": Component, "output": Output, "input": Input, "type": ConceptualType, "node": Node, "host": Host},
-    **{"container": Container, "link": Link, "chain": Chain, "policy": Policy, "view": View},
+    "project": ProjectInfo,
+    "partner": Partner,
+    "use_case": UseCase,
+    "requirement": Requirement,
+    "group": Group,
+    "component": Component,
+    "output": Output,
+    "input": Input,
+    "type": ConceptualType,
+    "node": Node,
+    "host": Host,
+    "container": Container,
+    "link": Link,
+    "chain": Chain,
+    "policy": Policy,
+    "view": View,
 }
 SECTIONS = {
-    **{"partner": "partners", "use_case": "use_cases", "requirement": "requirements", "group": "groups"},
-    **{"component": "components", "output": "outputs", "input": "inputs", "type": "types", "node": "nodes"},
-    **{"host": "hosts", "container": "containers", "link": "links", "chain": "chains", "policy": "policies"},
+    "partner": "partners",
+    "use_case": "use_cases",
+    "requirement": "requirements",
+    "group": "groups",
+    "component": "components",
+    "output": "outputs",
+    "input": "inputs",
+    "type": "types",
+    "node": "nodes",
+    "host": "hosts",
+    "container": "containers",
+    "link": "links",
+    "chain": "chains",
+    "policy": "policies",
     "view": "views",
 }
 """Each kind with its section of the architecture."""
@@ -188,12 +212,12 @@ policies: {p: {title: P, forbid: {from: g, to: g}}}
 
 
 def table_keys(kind: str) -> set[str]:
-    """The first parts of all keys of a kind, as they are written: `latency` for `latency.best`."""
+    """Return the first parts of all keys of a kind, as they are written: `latency` for `latency.best`."""
     return {key.name.partition(".")[0] for key in ELEMENT_KINDS[kind].keys}
 
 
 def missing(kind: str, names: Iterable[str], exceptions: Mapping[str, str], known: Iterable[str]) -> list[str]:
-    """The names that are neither known nor excepted."""
+    """Return the names that are neither known nor excepted."""
     return sorted(name for name in set(names) - set(known) if f"{kind} {name}" not in exceptions)
 
 
@@ -228,7 +252,7 @@ def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
 
 
 def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
-    """The keys that elements of a kind have in the record."""
+    """Return the keys that elements of a kind have in the record."""
     if kind == "project":
         return set(record["project"])
     if kind in {"input", "output"}:
@@ -314,26 +338,32 @@ def test_no_key_is_listed_twice() -> None:
     [
         (
             Effect.TEXT,
-            "group title, group description, group tags, group layout, group urls.docs, component functionality, "
-            "component performance.p.accuracy, type comment, input external, output description, chapter text, "
-            "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
-            "project layout, partner description, host tags, node urls.x",
+            (
+                "group title, group description, group tags, group layout, group urls.docs, component functionality, "
+                "component performance.p.accuracy, type comment, input external, output description, chapter text, "
+                "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
+                "project layout, partner description, host tags, node urls.x"
+            ),
         ),
         (
             Effect.SYSTEM,
-            "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, "
-            "component requirements, chain requirements, node package, node executable, node plugin, node status, "
-            "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
-            "project version, project rules.unread-output, project review.main, project shared_topics, "
-            "partner contact, partner reviewers, requirement use_cases, policy forbid.from",
+            (
+                "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, "
+                "component requirements, chain requirements, node package, node executable, node plugin, node status, "
+                "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
+                "project version, project rules.unread-output, project review.main, project shared_topics, "
+                "partner contact, partner reviewers, requirement use_cases, policy forbid.from"
+            ),
         ),
         (
             Effect.TIMING,
-            "component timing.rate, component timing.outputs.x.max_gap, node timing.g.a.wcet, node host, node kind, "
-            "node container, node implements, port qos, port qos.depth, port topic, port message, type size, "
-            "type message, type request, message fields, output type, input type, output medium, host cores, "
-            "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
-            "chain deadline, component inputs",
+            (
+                "component timing.rate, component timing.outputs.x.max_gap, node timing.g.a.wcet, node host, node kind, "
+                "node container, node implements, port qos, port qos.depth, port topic, port message, type size, "
+                "type message, type request, message fields, output type, input type, output medium, host cores, "
+                "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
+                "chain deadline, component inputs"
+            ),
         ),
     ],
 )

@@ -84,7 +84,7 @@ def test_sentences(element: str, key: str, before: object, after: object, text: 
 
 
 def test_values_in_sentences() -> None:
-    values = (None, True, 2, 2.5, "a `b`\nc", ["a", 1], [])
+    values: tuple[object, ...] = (None, True, 2, 2.5, "a `b`\nc", ["a", 1], [])
     assert [format_value(value) for value in values] == [
         "unlimited",
         "true",

@@ -45,7 +45,7 @@ def test_a_title_made_from_the_id_is_generated_even_if_written() -> None:
 
 
 def test_keys_without_a_value_are_dropped_but_not_those_that_are_false_or_zero() -> None:
-    values = {"a": None, "b": (), "c": frozenset(), "d": 0, "e": False, "f": "", "g": ("x",)}
+    values: dict[str, object] = {"a": None, "b": (), "c": frozenset(), "d": 0, "e": False, "f": "", "g": ("x",)}
     assert drop_unset_values(values) == {"d": 0, "e": False, "f": "", "g": ("x",)}
 
 
@@ -72,7 +72,7 @@ def test_parameters_become_their_leaves() -> None:
 
 
 def test_true_is_not_one() -> None:
-    assert dict(parameter_leaves("p", True)) != dict(parameter_leaves("p", 1))
+    assert dict(parameter_leaves("p", {"on": True})) != dict(parameter_leaves("p", {"on": 1}))
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import pytest
 
 from archgen.compare import Change
@@ -12,7 +15,7 @@ from archgen.compare.element_sentences import describe_element_change
 from archgen.compare.normal_values import ElementTitle
 from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
-from tests.compare.elements import by_key, element, pair, some
+from tests.compare.elements import by_key, element, pair, some, with_values
 
 ALL = ("input g.i", "input g.j", "output g.x", "output g.y", "output g.z")
 
@@ -78,12 +81,12 @@ def part(kind: str, key: str) -> Change:
     return Change("added" if kind == "+" else "removed", element_kind, name)
 
 
-def whole(sign: str, key: str, parts: str, versions: VersionPair, **values: object) -> str:
+def whole(sign: str, key: str, parts: str, versions: VersionPair, values: Mapping[str, object] | None = None) -> str:
     """Describe an element that was added (+) or removed (-) with parts."""
     change = part(sign, key)
     parts_of = tuple(part(sign, each) for each in parts.split(", ") if each)
     change = Change(change.kind, change.element_kind, change.element_id, parts=parts_of)
-    return describe_element_change(change, element(key, **values), versions)
+    return describe_element_change(change, with_values(key, values or {}), versions)
 
 
 NOTHING = pair({}, {})
@@ -109,7 +112,7 @@ PORTS = ("input g.i", "output g.x", "output g.y")
     ],
 )  # fmt: skip
 def test_elements(sign: str, key: str, values: dict[str, object], text: str) -> None:
-    assert whole(sign, key, "", NOTHING, **{name.replace(".", "__"): value for name, value in values.items()}) == text
+    assert whole(sign, key, "", NOTHING, values) == text
 
 
 def test_parts_are_counted() -> None:
@@ -122,22 +125,23 @@ def test_parts_are_counted() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sign", "key", "parts", "reads", "sides", "text"),
+    ("what", "parts", "reads", "sides", "text"),
     [
         # Who reads what is added, and what it reads.
-        ("+", "output g.x", "connection g.i", ("", "g.i <- g.x"), ("input g.i", "input g.i, output g.x"), "output `g.x` is added; `g.i` gets its first source"),
-        ("+", "output g.x", "connection g.i", ("g.i <- g.y", "g.i <- g.x g.y"), ("input g.i, output g.y", "input g.i, output g.x, output g.y"), "output `g.x` is added; `g.i` gets another source"),
-        ("-", "output g.x", "connection g.i", ("g.i <- g.x", ""), ("input g.i, output g.x", "input g.i"), "output `g.x` is removed; `g.i` has no source any more"),
-        ("-", "output g.x", "connection g.i", ("g.i <- g.x g.y", "g.i <- g.y"), ("input g.i, output g.x, output g.y", "input g.i, output g.y"), "output `g.x` is removed; `g.i` loses one of its sources"),
-        ("+", "input g.i", "connection g.i", ("", "g.i <- g.x"), ("output g.x", "input g.i, output g.x"), "input `g.i` is added; `g.x` is read for the first time"),
-        ("+", "input g.i", "connection g.i", ("g.j <- g.x", "g.i <- g.x, g.j <- g.x"), ("output g.x, input g.j", "input g.i, input g.j, output g.x"), "input `g.i` is added; it reads `g.x`"),
-        ("-", "input g.i", "connection g.i", ("g.i <- g.x, g.j <- g.x", "g.j <- g.x"), ("output g.x, input g.j, input g.i", "input g.j, output g.x"), "input `g.i` is removed; it read `g.x`"),
-        ("-", "input g.i", "connection g.i", ("g.i <- g.x", ""), ("output g.x, input g.i", "output g.x"), "input `g.i` is removed; `g.x` is no longer read by anybody"),
-        ("-", "component g.a", "input g.i, connection g.i", ("g.i <- g.x, g.j <- g.x", "g.j <- g.x"), ("output g.x, input g.j, input g.i, component g.a", "input g.j, output g.x"), "component `g.a` is removed with 1 input"),
-        ("+", "component g.a", "input g.i, connection g.i, output g.y", ("", "g.i <- g.y"), ("", "input g.i, output g.y, component g.a"), "component `g.a` is added with 1 input and 1 output"),
+        ("+ output g.x", "connection g.i", ("", "g.i <- g.x"), ("input g.i", "input g.i, output g.x"), "output `g.x` is added; `g.i` gets its first source"),
+        ("+ output g.x", "connection g.i", ("g.i <- g.y", "g.i <- g.x g.y"), ("input g.i, output g.y", "input g.i, output g.x, output g.y"), "output `g.x` is added; `g.i` gets another source"),
+        ("- output g.x", "connection g.i", ("g.i <- g.x", ""), ("input g.i, output g.x", "input g.i"), "output `g.x` is removed; `g.i` has no source any more"),
+        ("- output g.x", "connection g.i", ("g.i <- g.x g.y", "g.i <- g.y"), ("input g.i, output g.x, output g.y", "input g.i, output g.y"), "output `g.x` is removed; `g.i` loses one of its sources"),
+        ("+ input g.i", "connection g.i", ("", "g.i <- g.x"), ("output g.x", "input g.i, output g.x"), "input `g.i` is added; `g.x` is read for the first time"),
+        ("+ input g.i", "connection g.i", ("g.j <- g.x", "g.i <- g.x, g.j <- g.x"), ("output g.x, input g.j", "input g.i, input g.j, output g.x"), "input `g.i` is added; it reads `g.x`"),
+        ("- input g.i", "connection g.i", ("g.i <- g.x, g.j <- g.x", "g.j <- g.x"), ("output g.x, input g.j, input g.i", "input g.j, output g.x"), "input `g.i` is removed; it read `g.x`"),
+        ("- input g.i", "connection g.i", ("g.i <- g.x", ""), ("output g.x, input g.i", "output g.x"), "input `g.i` is removed; `g.x` is no longer read by anybody"),
+        ("- component g.a", "input g.i, connection g.i", ("g.i <- g.x, g.j <- g.x", "g.j <- g.x"), ("output g.x, input g.j, input g.i, component g.a", "input g.j, output g.x"), "component `g.a` is removed with 1 input"),
+        ("+ component g.a", "input g.i, connection g.i, output g.y", ("", "g.i <- g.y"), ("", "input g.i, output g.y, component g.a"), "component `g.a` is added with 1 input and 1 output"),
     ],
 )  # fmt: skip
-def test_effects(sign: str, key: str, parts: str, reads: tuple[str, str], sides: tuple[str, str], text: str) -> None:
+def test_effects(what: str, parts: str, reads: tuple[str, str], sides: tuple[str, str], text: str) -> None:
+    sign, _, key = what.partition(" ")
     before, after = (some(*filter(None, side.split(", "))) for side in sides)
     assert whole(sign, key, parts, pair(before, after, reads)) == text
 
@@ -155,10 +159,10 @@ def test_components_that_a_removed_node_leaves() -> None:
     other = by_key(element("node m", implements=frozenset({"g.b"})), element("component g.a"), element("component g.b"))
     versions = pair(by_key(element("node n")), other)
     values = {"implements": frozenset({"g.a", "g.b", "g.gone"})}
-    assert whole("-", "node n", "", versions, **values) == "node `n` is removed; no node implements `g.a` any more"
-    assert whole("+", "node n", "", versions, **values) == "node `n` is added; it implements `g.a`, `g.b` and `g.gone`"
-    assert whole("-", "node n", "", versions, implements=frozenset({"g.b"})) == "node `n` is removed"
-    assert whole("-", "container n", "", versions, **values) == "container `n` is removed"
+    assert whole("-", "node n", "", versions, values) == "node `n` is removed; no node implements `g.a` any more"
+    assert whole("+", "node n", "", versions, values) == "node `n` is added; it implements `g.a`, `g.b` and `g.gone`"
+    assert whole("-", "node n", "", versions, {"implements": frozenset({"g.b"})}) == "node `n` is removed"
+    assert whole("-", "container n", "", versions, values) == "container `n` is removed"
 
 
 SERVING = ({"R": frozenset({"g.a", "g.b"}), "S": frozenset({"g.b"})}, {"S": frozenset({"g.c"})})
@@ -211,7 +215,7 @@ def test_names_that_follow_a_rename(key: str, unnamed: str, text: str) -> None:
     old = by_key(element("output h.a.x", own_id="g.a.x"), element("output h.a.y", own_id="g.a.y"))
     kind, name = key.split(" ")
     change = Change("renamed", kind, name, old_id="g.a")
-    sentence = describe_rename(change, pair(old, {}, unnamed=unnamed))
+    sentence = describe_rename(change, replace(pair(old, {}), unnamed_outputs=frozenset(unnamed.split())))
     assert sentence.partition(" now")[2] == text
 
 
