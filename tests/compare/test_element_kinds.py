@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
+import jsonschema_rs
 import pytest
 
 from archgen import pipeline
@@ -249,6 +250,12 @@ def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
     checked = pipeline.check_project(file)
     assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
     return make_lookup(checked.architecture)
+
+
+def test_the_record_of_a_project_that_has_everything_follows_its_schema(lookup: Lookup) -> None:
+    schema = json.loads((ROOT / "schemas" / "resolved.schema.json").read_text(encoding="utf-8"))
+    data = json.loads(json.dumps(make_record(lookup)))
+    assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
 
 
 def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
