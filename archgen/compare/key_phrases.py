@@ -19,7 +19,7 @@ def describe_key_change(change: Change) -> str:
     subject = name if "." in change.element_id and kind.has_path_id else f"{kind.kind_word} {name}"
     if change.element_kind == "project":
         subject = "the project"
-    if key == "qos" and isinstance(before, Mapping) and isinstance(after, Mapping):
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
         values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
         return f"{subject}: {spec.noun} {join_words(values)}"
     if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):

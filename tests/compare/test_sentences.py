@@ -147,7 +147,12 @@ def test_effects(what: str, parts: str, reads: tuple[str, str], sides: tuple[str
 
 
 def test_a_reader_may_be_given_by_its_old_id() -> None:
-    old = by_key(element("input g.b.i", own_id="g.a.i"), element("output g.x"))
+    old = by_key(
+        element("input g.b.h", own_id="g.a.h"),
+        element("host g.b", own_id="g.a.i"),
+        element("input g.b.i", own_id="g.a.i"),
+        element("output g.x"),
+    )
     versions = pair(old, some("output g.x"), ("g.b.i <- g.x", ""))
     change = Change("removed", "input", "g.a.i", parts=(Change("removed", "connection", "g.a.i"),))
     assert describe_element_change(change, old["input", "g.b.i"], versions) == (
