@@ -124,7 +124,7 @@ def test_the_order_of_changes() -> None:
         change("added", "host b"),
         change("added", "view a"),
     ]
-    assert sorted(ordered[::-1], key=change_order) == ordered
+    assert sorted([*ordered[5:], *ordered[:5]], key=change_order) == ordered
 
 
 @pytest.mark.parametrize(
