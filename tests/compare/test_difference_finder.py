@@ -98,6 +98,12 @@ def test_changes(told: Told, case: str) -> None:
     assert heads(told, *edits, base=base) == expected
 
 
+def test_a_reference_to_what_has_no_output_yet_is_a_connection(told: Told) -> None:
+    text = "groups: {g: {components: {a: {title: A}, b: {title: B}, c: {inputs: {x: a}}}}}\n"
+    assert heads(told, ("x: a", "x: b"), base=text) == ["changed connection g.c.x"]
+    assert heads(told, ("x: a", "x: "), base=text) == ["removed connection g.c.x"]
+
+
 def test_lost_sources_have_their_old_ids(compared: Compared) -> None:
     after = (
         ROBOT.replace("      a: ", "      eye: ").replace("a.x, y: a.y", "eye.x, y: eye.y").replace("{x: a.x}", "{x: }")

@@ -247,3 +247,9 @@ def test_all_keys_in_normal_form(name: str) -> None:
 
 def _parts(elements: Elements, name: str) -> list[str]:
     return [line for line in lines(elements) if name == "all" or not line.startswith("project")]
+
+
+def test_a_project_that_sets_nothing_has_only_its_chapters() -> None:
+    before, _ = list_both(*SPLIT)
+    (project,) = (each for key, each in before.items() if key[0] == "project")
+    assert list(project.values) == ["chapters"]

@@ -28,6 +28,7 @@ from archgen.model.quantity import Quantity
         ("one\ntwo", "one\ntwo"),
         ("one  \r\ntwo\t\rthree\n\n", "one\ntwo\nthree"),
         ("one\rtwo ", "one\ntwo"),
+        ("one  \ntwo", "one\ntwo"),
         ("ä ", "ä"),
         ("\n \n", None),
         ("é\u00a0", "é"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
 from archgen.compare.losses.overloaded_resources import _has_grown as has_grown
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import _drops_requirement as drops_requirement
@@ -17,6 +19,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from tests.compare.conftest import Compared
 from tests.compare.elements import by_key, element, pair
 from tests.compare.losses.test_losses import BASE, broken
+from tests.compare.losses.test_missed_deadlines import BASE as TIMED
 
 BEFORE = by_key(
     element("output g.a.x", owner="certh", own_id="g.old.x"),
@@ -188,3 +191,43 @@ NEW = "what was built before cannot talk to what is built after"
 )  # fmt: skip
 def test_fields(compared: Compared, old: str, new: str, said: str) -> None:
     assert broken(compared, REDEFINED, [(old, new)]) == [f"x_msgs/msg/Image/fields sssa: {said}"]
+
+
+def result(verdict: str, bound: int | None, *, terms: bool = True) -> Any:  # noqa: ANN401 - stands for a result
+    limits = SimpleNamespace(value=None if bound is None else bound * 10**6, complete=True)
+    deadline = SimpleNamespace(value=5 * 10**6, complete=True)
+    return SimpleNamespace(id="c", verdict=verdict, bound=limits, deadline=deadline, terms=(1,) if terms else ())
+
+
+MISSES = "makes the chain `c` miss its deadline of 5 ms"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "reason"),
+    [
+        (result("met", 4), result("met", 5), ""),
+        (result("met", 4), result("missed", 6), f"{MISSES} (4 ms → 6 ms)"),
+        (result("met", 4), result("open", None), "leaves the chain `c`, which met its deadline of 5 ms with 4 ms, without a bound"),
+        (result("met", 4), result("open", None, terms=False), "cuts the chain `c`, which met its deadline of 5 ms with 4 ms"),
+        (result("missed", 6), result("missed", 7), f"{MISSES} by still more (6 ms → 7 ms)"),
+        (result("missed", 6), result("missed", None), f"{MISSES} by still more (6 ms → no bound)"),
+        (result("missed", 6), result("missed", 6), ""),
+        (result("missed", 7), result("missed", 6), ""),
+        (result("missed", None), result("missed", 6), ""),
+        (result("missed", 6), result("met", 4), ""),
+        (result("open", None), result("missed", 6), ""),
+    ],
+)  # fmt: skip
+def test_how_much_worse_a_chain_is(before: Any, after: Any, reason: str) -> None:  # noqa: ANN401
+    assert lateness_reason(before, after) == reason
+
+
+def test_a_host_of_several_cores(compared: Compared) -> None:
+    base = (
+        TIMED[: TIMED.index("chains:")]
+        .replace("pc: {cores: 1}", "pc: {cores: 2}")
+        .replace("wcet: 20 ms", "wcet: 60 ms")
+    )
+    assert broken(compared, base, [("wcet: 2 ms", "wcet: 150 ms")]) == [
+        "sensing.camera/timing.wcet sssa: overloads the host `pc` (105 % of its 2 cores), where `mind` of sssa runs"
+    ]
