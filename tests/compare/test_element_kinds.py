@@ -386,9 +386,9 @@ def test_how_far_a_whole_element_reaches() -> None:
     }
 
 
-def test_a_key_that_no_kind_has_is_a_bug() -> None:
-    with pytest.raises(KeyError):
-        find_key("host", "colour")
+def test_a_key_that_no_kind_has_may_affect_everything() -> None:
+    assert find_effect("host", "colour") is Effect.TIMING
+    assert find_effect("partner", "colour") is Effect.SYSTEM
     assert find_key("component", "timing.wcet").name == "wcet"
     assert find_key("component", "timing.outputs.x").name == "timing."
     assert find_key("port", "qos") is find_key("port", "qos.depth")
