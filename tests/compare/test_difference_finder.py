@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from archgen.compare.comparison import Change
-from archgen.compare.difference_finder import change_order
+from archgen.compare.difference_finder import DifferenceFinder, change_order
+from archgen.compare.matched_ids import MatchedIds
 from tests.compare.conftest import Compared, Told
+from tests.compare.elements import pair, some
 
 ROBOT = """\
 groups:
@@ -143,3 +145,25 @@ def test_the_order_of_changes() -> None:
 def test_what_could_not_be_read_did_not_change(told: Told, before: str, after: str, expected: list[str]) -> None:
     assert [line.split(": ")[0] for line in told(before, after)] == expected
     assert [line.split(": ")[0] for line in told(after, before)] == expected
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "lost", "reported"),
+    [
+        ("g.i <- g.x", "", ("", ""), True),
+        ("g.i <- g.x", "", ("", "x"), False),
+        ("g.i <- g.x", "", ("", "i"), False),
+        ("g.i <- g.x", "", ("x", ""), True),
+        ("", "g.i <- g.x", ("x", ""), False),
+        ("", "g.i <- g.x", ("", "x"), True),
+        ("g.i <- g.x", "g.i <- g.y", ("", "y"), True),
+        ("g.i <- g.x", "g.i <- g.y", ("y", ""), False),
+    ],
+)
+def test_a_connection_whose_end_could_not_be_read(
+    before: str, after: str, lost: tuple[str, str], reported: bool
+) -> None:  # noqa: FBT001
+    ports = some("input g.i", "output g.x", "output g.y")
+    versions = pair(ports, ports, (before, after), lost)
+    finder = DifferenceFinder(ports, ports, MatchedIds(), versions)
+    assert bool(finder.find_all_changes(versions.connections_before, versions.connections_after)) is reported
