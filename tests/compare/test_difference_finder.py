@@ -161,8 +161,11 @@ def test_what_could_not_be_read_did_not_change(told: Told, before: str, after: s
     ],
 )
 def test_a_connection_whose_end_could_not_be_read(
-    before: str, after: str, lost: tuple[str, str], reported: bool
-) -> None:  # noqa: FBT001
+    before: str,
+    after: str,
+    lost: tuple[str, str],
+    reported: bool,  # noqa: FBT001
+) -> None:
     ports = some("input g.i", "output g.x", "output g.y")
     versions = pair(ports, ports, (before, after), lost)
     finder = DifferenceFinder(ports, ports, MatchedIds(), versions)
