@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.consequent_keys import is_consequence
-from archgen.compare.node_elements import default_qos
+from archgen.compare.kinds.ros_kinds import default_qos
 from archgen.compare.normal_values import to_plain_data
 
 KeyChange = tuple[str, object, object]

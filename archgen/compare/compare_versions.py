@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
 from archgen.compare.chain_changes import compare_chains
-from archgen.compare.compared_elements import ComparedElement, ElementKey, list_elements
+from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.connection_maps import map_connections
 from archgen.compare.difference_finder import DifferenceFinder
+from archgen.compare.element_listing import list_elements
 from archgen.compare.finding_changes import judge_findings
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements

@@ -5,18 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.compare.compared_elements import MAPPED_KEY, SOME_PORTS, ComparedElement, ElementKey
+from archgen.compare.kinds import find_key
 from archgen.compare.normal_values import ElementTitle
 from archgen.model.path_resolver import title_from_id
 
 ElementsByKey = Mapping[ElementKey, ComparedElement]
 _OWNER_KEYS = frozenset({"owner", "co_owners"})
-_REFERRED_KINDS = {
-    "implements": "component",
-    "requirements": "requirement",
-    "use_cases": "use_case",
-    "connects": "host",
-}
-"""Keys that name elements, with the kind of these: that a removed element is no longer named is no news."""
 
 
 def is_consequence(
@@ -28,12 +22,14 @@ def is_consequence(
     old_value, new_value = old_element.values.get(key), new_element.values.get(key)
     if isinstance(old_value, ElementTitle) and isinstance(new_value, ElementTitle):
         return _is_same_title(old_value, new_value, old_element, new_element)
-    if key in _REFERRED_KINDS:
-        return _lost_removed_only(old_value, new_value, _REFERRED_KINDS[key], after)
     if key in _OWNER_KEYS:
         return _component_came_or_went(old_element, new_element, before, after) or _owner_is_inherited(
             key, old_element, new_element, before, after
         )
+    # That a removed element is no longer named is no news.
+    referred_kind = find_key(new_element.kind, key).refers_to
+    if referred_kind and _lost_removed_only(old_value, new_value, referred_kind, after):
+        return True
     return _follows_by_kind(key, old_element, new_element, before, after)
 
 
@@ -57,8 +53,6 @@ def _follows_by_kind(
                 if key == "host"
                 else key.startswith("timing.") and _component_came_or_went(old_element, new_element, before, after)
             )
-        case "message":
-            return key == "parts" and old_element.values.get("fields") != new_element.values.get("fields")
     is_unnamed = new_element.kind == "project" and key in {"id", "title"} and None in {old_value, new_value}
     return is_unnamed or key == "carried" or (key == "chapters" and _only_chapters_differ(old_value, new_value))
 

@@ -6,23 +6,13 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from archgen.compare import change_sentences, changed_keys
+from archgen.compare import change_sentences, changed_keys, connection_sentences, element_sentences
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.connection_maps import ConnectionMap, RewiredInput, find_rewired_inputs
+from archgen.compare.kinds import KIND_ORDER
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
-
-KIND_ORDER = {
-    sort: rank
-    for rank, sort in enumerate(
-        (
-            *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
-            *("connection", "type", "message", "node", "port", "host", "container", "link", "chain", "policy", "view"),
-        )
-    )
-}
-"""The position of each kind of element in the order in which changes are reported."""
 
 
 @dataclass(slots=True)
@@ -101,7 +91,7 @@ class DifferenceFinder:
         ] + self.attached_changes.pop(key, [])
         change = Change("added" if change_kind == "added" else "removed", element.kind, element.own_id)
         change = replace(change, parts=tuple(sorted(part_changes, key=change_order)))
-        return replace(change, text=change_sentences.describe_element_change(change, element, self.versions))
+        return replace(change, text=element_sentences.describe_element_change(change, element, self.versions))
 
     def _add_renames(self) -> None:
         for (kind, name), confidence in self.matched_ids.confidence.items():
@@ -181,7 +171,7 @@ class DifferenceFinder:
                 self._old_input_id(rewired_input.input_id) if change_kind == "removed" else rewired_input.input_id
             )
             change = Change(change_kind, "connection", input_id, before=self._old_output_ids(before), after=after)  # type: ignore[arg-type]
-            change = replace(change, text=change_sentences.describe_connection(rewired_input, self.versions))
+            change = replace(change, text=connection_sentences.describe_connection(rewired_input, self.versions))
             (self.attached_changes[cause_key] if cause_key else self.top_changes).append(change)
 
     def _may_be_unread(self, rewired_input: RewiredInput) -> bool:

@@ -21,27 +21,6 @@ def project_messages(architecture: Architecture) -> list[str]:
     )
 
 
-IDS_BY_KIND: Mapping[str, Callable[[Architecture], Iterable[str]]] = {
-    "partner": lambda found: found.partners,
-    "group": lambda found: found.groups,
-    "component": lambda found: found.components,
-    "output": lambda found: found.outputs,
-    "input": lambda found: found.inputs,
-    "type": lambda found: [t.name for t in found.types.values() if t.origin == "project" and t.at.file],
-    "message": project_messages,
-    "node": lambda found: [node.id for node in found.nodes.values() if node.written],
-    "container": lambda found: found.containers,
-    "host": lambda found: found.hosts,
-    "link": lambda found: found.links,
-    "chain": lambda found: found.chains,
-    "requirement": lambda found: found.requirements,
-    "use_case": lambda found: found.use_cases,
-    "view": lambda found: found.views,
-    "policy": lambda found: found.policies,
-}
-"""For each kind of element, the ids of all that somebody wrote."""
-
-
 @dataclass
 class ElementRelations:
     """An architecture with reverse look-ups; `find_common_id` returns the id after the comparison's matching, None if

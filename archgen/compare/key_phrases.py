@@ -6,104 +6,62 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from archgen.compare.comparison import Change
+from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.diagnostics.common_wording import join_words
 
 _MAX_LENGTH = 80
-_PROSE_KEYS = frozenset({"functionality", "description", "comment", "text", "external"})
-_KEY_VERBS = {
-    "owner": "belongs to",
-    "host": "runs on",
-    "container": "runs in the container",
-    "message": "is",
-    "deadline": "must end within",
-    "role": "is a",
-    "status": "is",
-    "version": "is version",
-}
-"""Keys with a verb of their own: `x` VERB new value instead of old value."""
-_KEY_NAMES = {
-    "timing.rate": "rate",
-    "timing.wcet": "worst case execution time",
-    "timing.bcet": "best case execution time",
-    "timing.response": "stated response time",
-    "use_cases": "use cases",
-    "co_owners": "further owners",
-    "latency.best": "best latency",
-    "latency.worst": "worst latency",
-    "forbid.from": "forbidden source",
-    "forbid.to": "forbidden target",
-    "show": "selector",
-    "shared_topics": "shared topics",
-    "distro": "ROS distribution",
-    "parameter_files": "parameter files",
-    "execution_time": "execution time",
-}
-_LIST_VERBS = {
-    "implements": ("now implements", "no longer implements"),
-    "requirements": ("now serves", "no longer serves"),
-    "tags": ("now has the tag", "no longer has the tag"),
-    "connects": ("now connects", "no longer connects"),
-    "through": ("now leads through", "no longer leads through"),
-    "use_cases": ("now belongs to", "no longer belongs to"),
-    "kind": ("is now", "is no longer"),
-}
-"""List keys, with what the element does with added and with removed items."""
-_PATH_KINDS = frozenset({"component", "input", "output", "connection", "port"})
-"""Kinds whose ids are paths that need no kind in front of them."""
-_KIND_NAMES = {"use_case": "use case", "message": "message", "port": "port"}
 
 
 def describe_key_change(change: Change) -> str:
     """Describe how the value of a key changed."""
     key, before, after = change.key or "", change.before, change.after
+    kind, spec = ELEMENT_KINDS[change.element_kind], find_key(change.element_kind, key)
     name = f"`{shorten_text(change.element_id)}`"
-    subject = (
-        name
-        if "." in change.element_id and change.element_kind in _PATH_KINDS
-        else f"{_KIND_NAMES.get(change.element_kind, change.element_kind)} {name}"
-    )
+    subject = name if "." in change.element_id and kind.has_path_id else f"{kind.kind_word} {name}"
     if change.element_kind == "project":
         subject = "the project"
-    if key == "qos" and isinstance(before, Mapping) and isinstance(after, Mapping):
-        return f"{subject}: QoS {join_words([f'{_spell_out(k)} {format_value(before[k])} → {format_value(after[k])}' for k in before])}"
-    if key in _PROSE_KEYS and (key == "text" or not (_is_brief(before) and _is_brief(after))):
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
+        return f"{subject}: {spec.noun} {join_words(values)}"
+    if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
         return f"the {_spell_out(key)} of {subject} {_rewrite_phrase(before, after)}"
     if change.element_kind in {"input", "output"} and key in {"type", "optional"}:
-        return f"{subject} {_port_phrase(change)}"
-    if key in _KEY_VERBS and _has_verb_form(key, before, after):
-        return f"{subject} {_verb_phrase(key, before, after)}"
+        return f"{subject} {_port_phrase(change, spec.verb)}"
+    if spec.verb and _has_verb_form(key, before, after):
+        return f"{subject} {_verb_phrase(spec.verb, before, after)}"
     if key == "topic" and (".serves." in change.element_id or ".calls." in change.element_id):
         # What is called a topic in the files is the name of a service or action here.
-        key = "name"
+        noun = "name"
+    else:
+        noun = spec.noun or _key_noun(key)
     if isinstance(before, list) or isinstance(after, list):
-        return f"{subject}{_list_phrase(key, before, after)}"
-    return f"{subject}: {_value_phrase(_key_name(key), before, after)}"
+        return f"{subject}{_list_phrase(noun, spec.list_verbs, before, after)}"
+    return f"{subject}: {_value_phrase(noun, before, after)}"
 
 
 def _has_verb_form(key: str, before: object, after: object) -> bool:
     return key == "container" or (before is not None and after is not None)
 
 
-def _verb_phrase(key: str, before: object, after: object) -> str:
+def _verb_phrase(verb: str, before: object, after: object) -> str:
     if after is None:
-        return f"no longer {_KEY_VERBS[key]} {format_value(before)}"
-    return f"now {_KEY_VERBS[key]} {_instead_phrase(before, after, '')}"
+        return f"no longer {verb} {format_value(before)}"
+    return f"now {verb} {_instead_phrase(before, after, '')}"
 
 
-def _port_phrase(change: Change) -> str:
+def _port_phrase(change: Change, verb: str) -> str:
     if change.key == "optional":
         return "is optional now" if change.after else "is no longer optional"
-    verb = "carries" if change.element_kind == "output" else "expects"
     return f"now {verb} {_instead_phrase(change.before, change.after, 'nothing named')}"
 
 
-def _key_name(key: str) -> str:
+def _key_noun(key: str) -> str:
     if key.startswith("rules."):
         rule, _, option = key.removeprefix("rules.").partition(".")
         return f"`{option}` of the rule `{rule}`" if option else f"severity of the rule `{rule}`"
     if key.startswith("parameters."):
         return f"parameter `{shorten_text(key.removeprefix('parameters.'))}`"
-    return _KEY_NAMES.get(key) or _spell_out(key.removeprefix("timing.").replace(".", " "))
+    return _spell_out(key.removeprefix("timing.").replace(".", " "))
 
 
 def _spell_out(key: str) -> str:
@@ -140,21 +98,21 @@ def _rewrite_phrase(before: object, after: object) -> str:
     return "is gone" if after is None else "is rewritten"
 
 
-def _list_phrase(key: str, before: object, after: object) -> str:
+def _list_phrase(noun: str, verbs: tuple[str, str] | None, before: object, after: object) -> str:
     """Describe what a list gained and lost, with the key's own verbs if it has any."""
     old_items = before if isinstance(before, list) else []
     new_items = after if isinstance(after, list) else []
-    name = f": {_key_name(key)}"
+    name = f": {noun}"
     if len(old_items) == len(new_items) == 1:
         return f"{name} {format_value(old_items[0])} → {format_value(new_items[0])}"
     gained = [format_value(item) for item in new_items if item not in old_items]
     lost = [format_value(item) for item in old_items if item not in new_items]
     if not gained and not lost:
         return f"{name} are now {join_words([format_value(item) for item in new_items])}, in this order"
-    if key in _LIST_VERBS:
+    if verbs:
         words = [
             f" {verb} {join_words(_limit_items(items))}"
-            for verb, items in zip(_LIST_VERBS[key], (gained, lost), strict=True)
+            for verb, items in zip(verbs, (gained, lost), strict=True)
             if items
         ]
         return " and".join(words)

@@ -6,15 +6,16 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
-from archgen.compare import element_features
-from archgen.compare.element_likeness import FeatureMap, find_likely_pairs
-from archgen.compare.element_relations import IDS_BY_KIND, ElementRelations
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.element_likeness import Feature, FeatureMap, find_likely_pairs
+from archgen.compare.element_relations import ElementRelations
+from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
+from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
-
-FeatureFunction = Callable[[ElementRelations, str], FeatureMap]
 
 
 def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
@@ -27,16 +28,15 @@ def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
         ElementRelations(after, _matched_or_none(matched_ids)),
     )
     matched_ids.add_pair("project", before.project.id, after.project.id)
-    for kind, ids in _KINDS_WITH_SAME_ID.items():
-        _pair_same_ids(matched_ids, kind, ids(before), ids(after))
-    _pair_by_likeness(matched_ids, "partner", old_relations, new_relations, element_features.describe_partner)
-    _pair_by_likeness(matched_ids, "group", old_relations, new_relations, element_features.describe_group)
-    _pair_below_parents(matched_ids, "component", before.components, after.components, "group")
-    _pair_by_likeness(matched_ids, "component", old_relations, new_relations, element_features.describe_component)
-    _pair_ports(matched_ids, "output", old_relations, new_relations, element_features.describe_output)
-    _pair_ports(matched_ids, "input", old_relations, new_relations, element_features.describe_input)
-    for kind, describe in _REFERRING_KINDS.items():
-        _pair_by_likeness(matched_ids, kind, old_relations, new_relations, describe)
+    matcher = _Matcher(matched_ids, old_relations, new_relations)
+    kinds = [ELEMENT_KINDS[name] for name in MATCHING_ORDER]
+    for kind in kinds:
+        if kind.parent_kind is None:
+            matcher.pair_same_ids(kind)
+    for kind in kinds:
+        if kind.parent_kind is not None:
+            matcher.pair_below_parents(kind, kind.parent_kind)
+        matcher.pair_by_likeness(kind)
     return matched_ids
 
 
@@ -44,94 +44,73 @@ def _matched_or_none(matched_ids: MatchedIds) -> Callable[[str, str], str | None
     return lambda kind, name: name if matched_ids.is_matched(kind, name) else None
 
 
-def _pair_same_ids(matched_ids: MatchedIds, kind: str, old_ids: Iterable[str], ids_after: Iterable[str]) -> None:
-    """Pair elements that have the same id in both versions."""
-    new_ids = set(ids_after)
-    for element_id in old_ids:
-        if element_id in new_ids:
-            matched_ids.add_pair(kind, element_id, element_id)
+class _Matcher:
+    """Pairs the elements of one kind after the other."""
+
+    def __init__(
+        self, matched_ids: MatchedIds, old_relations: ElementRelations, new_relations: ElementRelations
+    ) -> None:
+        self.matched_ids = matched_ids
+        self.old_relations = old_relations
+        self.new_relations = new_relations
+
+    def pair_same_ids(self, kind: KindSpec) -> None:
+        """Pair elements that have the same id in both versions."""
+        new_ids = _declared_elements(kind, self.new_relations)
+        for element_id in _declared_elements(kind, self.old_relations):
+            if element_id in new_ids:
+                self.matched_ids.add_pair(kind.name, element_id, element_id)
+
+    def pair_below_parents(self, kind: KindSpec, parent_kind: str) -> None:
+        """Pair elements that have the same name below a matched parent: ids change when a parent is renamed."""
+        new_ids = _declared_elements(kind, self.new_relations)
+        for element_id in _declared_elements(kind, self.old_relations):
+            parent, _, own_name = element_id.rpartition(".")
+            new_parent = self.matched_ids.find_new_id(parent_kind, parent)
+            if new_parent is not None and f"{new_parent}.{own_name}" in new_ids:
+                self.matched_ids.add_pair(kind.name, element_id, f"{new_parent}.{own_name}")
+
+    def pair_by_likeness(self, kind: KindSpec) -> None:
+        """Pair the remaining elements by likeness; ports only within each pair of components."""
+        unmatched_before: dict[str, dict[str, FeatureMap]] = {}
+        for element_id, element in _declared_elements(kind, self.old_relations).items():
+            if self.matched_ids.find_new_id(kind.name, element_id) is None:
+                parent = self._new_parent(kind, element_id)
+                if parent is not None:
+                    features = _describe_element(kind, self.old_relations, element)
+                    unmatched_before.setdefault(parent, {})[element_id] = features
+        if not unmatched_before:
+            return
+        unmatched_after: dict[str, dict[str, FeatureMap]] = {parent: {} for parent in unmatched_before}
+        for element_id, element in _declared_elements(kind, self.new_relations).items():
+            parent = element_id.rpartition(".")[0] if kind.stays_in_parent else ""
+            # Described only where something is left to pair.
+            if parent in unmatched_after and not self.matched_ids.is_matched(kind.name, element_id):
+                unmatched_after[parent][element_id] = _describe_element(kind, self.new_relations, element)
+        for parent, elements in unmatched_before.items():
+            for old_id, new_id, confidence in find_likely_pairs(elements, unmatched_after[parent]):
+                self.matched_ids.add_pair(kind.name, old_id, new_id, confidence)
+
+    def _new_parent(self, kind: KindSpec, element_id: str) -> str | None:
+        """Return the element of the second version below which a match must be, "" if it may be anywhere."""
+        if not kind.stays_in_parent or kind.parent_kind is None:
+            return ""
+        return self.matched_ids.find_new_id(kind.parent_kind, element_id.rpartition(".")[0])
 
 
-def _pair_below_parents(
-    matched_ids: MatchedIds, kind: str, old_ids: Iterable[str], ids_after: Iterable[str], parent_kind: str
-) -> None:
-    """Pair elements that have the same name below a matched parent."""
-    new_ids = set(ids_after)
-    for element_id in old_ids:
-        parent, _, own_name = element_id.rpartition(".")
-        new_parent = matched_ids.find_new_id(parent_kind, parent)
-        if new_parent is not None and f"{new_parent}.{own_name}" in new_ids:
-            matched_ids.add_pair(kind, element_id, f"{new_parent}.{own_name}")
+def _declared_elements(kind: KindSpec, relations: ElementRelations) -> Mapping[str, Any]:
+    """Return the elements of a kind that somebody wrote."""
+    elements = kind.elements(ArchitectureVersion(relations.architecture)) if kind.elements else {}
+    return {element_id: element for element_id, element in elements.items() if kind.is_declared(element)}
 
 
-def _pair_by_likeness(
-    matched_ids: MatchedIds,
-    kind: str,
-    old_relations: ElementRelations,
-    new_relations: ElementRelations,
-    describe: FeatureFunction,
-) -> None:
-    """Pair the remaining elements by likeness."""
-    ids = IDS_BY_KIND[kind]
-    unmatched_before = {
-        element_id: describe(old_relations, element_id)
-        for element_id in ids(old_relations.architecture)
-        if matched_ids.find_new_id(kind, element_id) is None
+def _describe_element(kind: KindSpec, relations: ElementRelations, element: object) -> FeatureMap:
+    """Return the features of an element."""
+    return {
+        feature.name: Feature(
+            feature.weight,
+            feature.marks(relations, element),
+            feature.is_generated is not None and feature.is_generated(element),
+        )
+        for feature in kind.features
     }
-    if not unmatched_before:
-        return
-    # Described only if something is left to pair.
-    unmatched_after = {
-        element_id: describe(new_relations, element_id)
-        for element_id in ids(new_relations.architecture)
-        if not matched_ids.is_matched(kind, element_id)
-    }
-    for old_id, new_id, confidence in find_likely_pairs(unmatched_before, unmatched_after):
-        matched_ids.add_pair(kind, old_id, new_id, confidence)
-
-
-def _pair_ports(
-    matched_ids: MatchedIds,
-    kind: str,
-    old_relations: ElementRelations,
-    new_relations: ElementRelations,
-    describe: FeatureFunction,
-) -> None:
-    """Pair ports, first by name, then by likeness within each pair of components."""
-    ids = IDS_BY_KIND[kind]
-    _pair_below_parents(
-        matched_ids, kind, ids(old_relations.architecture), ids(new_relations.architecture), "component"
-    )
-    unmatched_before: dict[str, dict[str, FeatureMap]] = {}
-    for port in ids(old_relations.architecture):
-        component = matched_ids.find_new_id("component", port.rpartition(".")[0])
-        if component is not None and matched_ids.find_new_id(kind, port) is None:
-            unmatched_before.setdefault(component, {})[port] = describe(old_relations, port)
-    for component, ports in unmatched_before.items():
-        new_component = new_relations.architecture.components[component]
-        ports_after: Mapping[str, object] = new_component.outputs if kind == "output" else new_component.inputs
-        candidate_ids = [
-            f"{component}.{name}" for name in ports_after if not matched_ids.is_matched(kind, f"{component}.{name}")
-        ]
-        for old_id, new_id, confidence in find_likely_pairs(
-            ports, {port: describe(new_relations, port) for port in candidate_ids}
-        ):
-            matched_ids.add_pair(kind, old_id, new_id, confidence)
-
-
-# Components and ports are matched below their group or component instead: their ids change when a parent is renamed.
-_KINDS_WITH_SAME_ID = {sort: ids for sort, ids in IDS_BY_KIND.items() if sort not in {"component", "input", "output"}}
-_REFERRING_KINDS: Mapping[str, FeatureFunction] = {
-    # In an order in which an element comes after those its features refer to: hosts after nodes, links after hosts.
-    "type": element_features.describe_type,
-    "message": element_features.describe_message,
-    "node": element_features.describe_node,
-    "container": element_features.describe_container,
-    "host": element_features.describe_host,
-    "link": element_features.describe_link,
-    "chain": element_features.describe_chain,
-    "requirement": element_features.describe_requirement,
-    "use_case": element_features.describe_use_case,
-    "view": element_features.describe_view,
-    "policy": element_features.describe_policy,
-}

@@ -34,7 +34,7 @@ def normalize_text(text: str | None) -> str | None:
     """Return a text without line endings of its file and trailing blanks; None for an empty one."""
     # Short cut for most texts, one line of ASCII.
     if text is None or (text.isascii() and "\n" not in text and "\r" not in text):
-        return text and (text.strip() or None)
+        return (text or "").strip() or None
     lines = (line.rstrip() for line in text.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
     return "\n".join(lines).strip() or None
 

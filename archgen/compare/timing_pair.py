@@ -7,17 +7,9 @@ from dataclasses import dataclass
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
+from archgen.compare.kinds import Effect, find_effect
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.run_analysis import analyse_architecture
-
-_UNTIMED_KINDS = frozenset({"partner", "use_case", "requirement", "chapter", "view", "policy", "project"})
-_UNTIMED_KEYS = frozenset(
-    {
-        *("title", "description", "functionality", "comment", "owner", "tags", "layout", "role", "requirements"),
-        *("external", "optional", "executable", "package", "plugin", "status", "parameter_files"),
-    }
-)
-_UNTIMED_PREFIXES = ("urls.", "performance.", "parameters.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +43,10 @@ def _analysis_of(version: ArchitectureVersion) -> Analysis:
 
 def can_affect_timing(change: Change) -> bool:
     """Whether a change can affect a figure of timing."""
-    if change.element_kind in _UNTIMED_KINDS:
-        return False
-    if change.kind == "changed" and change.key:
-        return change.key not in _UNTIMED_KEYS and not change.key.startswith(_UNTIMED_PREFIXES)
     # Renames and moves change no figure.
-    return change.kind in {"added", "removed", "changed"}
+    return (
+        change.kind in {"added", "removed", "changed"} and find_effect(change.element_kind, change.key) is Effect.TIMING
+    )
 
 
 def is_overloaded(load: HostLoad | LinkLoad) -> bool:

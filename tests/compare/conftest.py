@@ -9,10 +9,23 @@ import pytest
 
 from archgen import pipeline
 from archgen.compare import Change, Comparison, compare_versions
+from archgen.model.architecture import Architecture
 from archgen.products.compared_versions import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
+Checked = Callable[[str], Architecture]
 Told = Callable[[str, str], list[str]]
+
+
+@pytest.fixture
+def checked(tmp_path: Path) -> Checked:
+    """Check a one-file project, and return its architecture."""
+
+    def run(text: str) -> Architecture:
+        (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+        return pipeline.check_project(tmp_path / "robot.yaml").architecture
+
+    return run
 
 
 @pytest.fixture

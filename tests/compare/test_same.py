@@ -176,7 +176,11 @@ EDITS: tuple[Edit, ...] = (
 )
 
 
-@pytest.mark.parametrize("number", range(len(EDITS) + 2))
+# Edits 2 and 8 change rates everywhere: both versions are analysed anew, for seconds. Edit 9 does so as well, and stays.
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(n, marks=pytest.mark.slow) if n in {2, 8} else n for n in range(len(EDITS) + 2)],
+)
 def test_the_way_back_is_the_mirror_image(number: int, ramcip: ArchitectureVersion, tmp_path: Path) -> None:
     """Each edit alone, and some of them together."""
     chosen = EDITS[number : number + 1] or random.Random(number).sample(EDITS, 4)  # noqa: S311 - any four

@@ -9,6 +9,7 @@ from functools import cached_property
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
+from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
@@ -21,13 +22,6 @@ from archgen.timing.system.timing_system import Activity
 
 ActivityKey = tuple[str, str]
 """An activity in both versions: the common ids of its component and of its node ("" for a planned one)."""
-_LESS_IS_WORSE = frozenset({"cores", "threads", "bandwidth", "timing.every", "timing.throttle", "deadline"})
-_MORE_IS_WORSE = frozenset(
-    {"timing.wcet", "timing.bcet", "timing.response", "timing.jitter", "latency.best", "latency.worst", "size"}
-)
-_ALWAYS_WORSE = frozenset(
-    {"host", "container", "implements", "kind", "qos", "message", "fields", "connects", "through"}
-)
 
 
 @dataclass
@@ -166,23 +160,20 @@ class TimingCauses:
         """Whether a change can make a figure worse. A better figure is never blamed."""
         if not can_affect_timing(change):
             return False
-        key = change.key or ""
-        if change.kind != "changed" or not key or key in _ALWAYS_WORSE:
+        if change.kind != "changed" or not change.key:
             return True
-        # Bounds are sums, so each figure makes them worse in one direction only (docs/decisions/0007-breaking-
-        # changes.md).
-        less_is_worse = key in _LESS_IS_WORSE
-        if less_is_worse or key in _MORE_IS_WORSE:
+        worsening = find_key(change.element_kind, change.key).worsening
+        # Bounds are sums, so each figure makes them worse in one direction only
+        # (docs/decisions/0007-breaking-changes.md).
+        if worsening in {Worsening.LESS, Worsening.MORE}:
             old_value, new_value = (
-                _numeric_value(elements.get((change.element_kind, change.element_id)), key)
+                _numeric_value(elements.get((change.element_kind, change.element_id)), change.key)
                 for elements in self._element_tables
             )
-            return (
-                old_value is None
-                or new_value is None
-                or (new_value < old_value if less_is_worse else new_value > old_value)
-            )
-        return key.startswith("timing.")
+            if old_value is None or new_value is None:
+                return True
+            return new_value < old_value if worsening is Worsening.LESS else new_value > old_value
+        return worsening is Worsening.ALWAYS
 
     def _figure_changes(self, activity_id: str) -> Iterator[int]:
         """Yield the indices of changes of an activity's figures or place."""

@@ -10,34 +10,12 @@ from typing import Literal
 
 from archgen.compare import Change, Comparison
 from archgen.compare.comparison import ChangeKind
+from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
 from archgen.views.shapes import Inlines, Text
 
 CHANGE_SIGNS = {"added": "+", "removed": "\u2212", "changed": "~", "renamed": "→", "moved": "→"}
 """A sign for each kind of change, so that nothing depends on colour."""
 _CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {"added": "added", "removed": "removed"}
-_SECTION_HEADINGS = {
-    "project": "Project",
-    "chapter": "Chapters",
-    "partner": "Partners",
-    "use_case": "Use cases",
-    "requirement": "Requirements",
-    "type": "Types",
-    "message": "Message definitions",
-    "node": "Nodes",
-    "port": "Nodes",
-    "host": "Hosts",
-    "container": "Containers",
-    "link": "Links",
-    "chain": "Chains",
-    "policy": "Policies",
-    "view": "Views",
-}
-"""The headings for changes outside of all groups, in the order of the document."""
-_TEXT_KINDS = frozenset({"chapter", "view", "use_case"})
-_TEXT_KEYS = frozenset(
-    {"title", "description", "functionality", "comment", "tags", "layout", "colour", "text", "external"}
-)
-_TEXT_PREFIXES = ("urls.", "performance.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +38,7 @@ def group_changes(changes: Iterable[Change], comparison: Comparison) -> Iterator
     changes_by_heading: dict[tuple[bool, str], list[Change]] = {}
     for change in changes:
         # Kinds without a heading are those inside of groups: their ids begin with the group's.
-        heading_name = _SECTION_HEADINGS.get(change.element_kind)
+        heading_name = ELEMENT_KINDS[change.element_kind].heading
         changes_by_heading.setdefault(
             (heading_name is not None, heading_name or change.element_id.partition(".")[0]), []
         ).append(change)
@@ -70,16 +48,14 @@ def group_changes(changes: Iterable[Change], comparison: Comparison) -> Iterator
             groups[heading_name].title if heading_name in groups else "",
             tuple(changes_by_heading[is_ungrouped, heading_name]),
         )
-    for heading_name in dict.fromkeys(_SECTION_HEADINGS.values()):
+    for heading_name in dict.fromkeys(kind.heading for kind in ELEMENT_KINDS.values() if kind.heading):
         if (True, heading_name) in changes_by_heading:
             yield ChangeGroup("", heading_name, tuple(changes_by_heading[True, heading_name]))
 
 
 def is_textual(change: Change) -> bool:
     """Whether a change only concerns texts, pictures and addresses: nothing of the system itself."""
-    if change.kind == "changed" and change.key:
-        return change.element_kind in _TEXT_KINDS or change.key in _TEXT_KEYS or change.key.startswith(_TEXT_PREFIXES)
-    return change.element_kind in _TEXT_KINDS
+    return find_effect(change.element_kind, change.key) is Effect.TEXT
 
 
 def count_by_kind(changes: Iterable[Change]) -> str:

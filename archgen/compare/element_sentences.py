@@ -1,0 +1,172 @@
+"""Describe elements that were added or removed, and what that means at the other end of their connections."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from archgen.compare.compared_elements import ComparedElement, ElementKey
+from archgen.compare.comparison import Change
+from archgen.compare.key_phrases import shorten_text
+from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.normal_values import ElementTitle, to_plain_data
+from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
+from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.common_wording import join_words
+
+
+def describe_element_change(change: Change, element: ComparedElement, versions: VersionPair) -> str:
+    """Describe an element that was added or removed, with the effects of its connections on others."""
+    verb = "is added" if change.kind == "added" else "is removed"
+    kind_word = ELEMENT_KINDS[change.element_kind].element_word
+    sentence = f"{kind_word} `{shorten_text(change.element_id)}`{_title_note(element)} {verb}{_count_parts(change)}"
+    if change.kind == "added":
+        sentence += _describe_new_element(element)
+    effects = list(_describe_effects(change, element, versions))
+    return "; ".join((sentence, *limit_effects(effects)))
+
+
+def _title_note(element: ComparedElement) -> str:
+    title = element.values.get("title")
+    return f" ({shorten_text(title.text)})" if isinstance(title, ElementTitle) and not title.generated else ""
+
+
+def _describe_new_element(element: ComparedElement) -> str:
+    """Describe what matters most of a new element, such as a node's place or the way of a chain."""
+    if element.kind == "policy":
+        return f"; nothing may lead from `{shorten_text(str(element.values['forbid.from']))}` to `{shorten_text(str(element.values['forbid.to']))}`"
+    clauses = [
+        f"{key.new_verb} {tick_names(referred_names)}"
+        for key in ELEMENT_KINDS[element.kind].keys
+        if key.new_verb and (referred_names := _value_names(element.values.get(key.name)))
+    ]
+    return f"; it {join_words(clauses)}" if clauses else ""
+
+
+def _count_parts(change: Change) -> str:
+    """Count the components and ports that were added or removed with it."""
+    counts = {"component": 0, "input": 0, "output": 0}
+    for part in _walk_parts(change):
+        if part.element_kind in counts and part.kind == change.kind:
+            counts[part.element_kind] += 1
+    words = [f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in counts.items() if count]
+    return f" with {join_words(words)}" if words else ""
+
+
+def _walk_parts(change: Change) -> Iterator[Change]:
+    for part in change.parts:
+        yield part
+        yield from _walk_parts(part)
+
+
+def _describe_effects(change: Change, element: ComparedElement, versions: VersionPair) -> Iterator[str]:
+    """Describe who lost the last reader or source or gained the first, and which requirements are served no more."""
+    changed_keys = {(part.element_kind, part.element_id) for part in (change, *_walk_parts(change))}
+    # A connection is known by its input.
+    reader_ids = {common_input for kind, common_input in changed_keys if kind == "connection"}
+    own_connections, other_connections = (
+        (versions.connections_before, versions.connections_after)
+        if change.kind == "removed"
+        else (versions.connections_after, versions.connections_before)
+    )
+    if change.kind == "added" or change.element_kind == "input":
+        yield from _describe_sources(reader_ids, changed_keys, versions, change.kind)
+    for reader in sorted(reader_ids):
+        common_input = _common_input(reader, versions)
+        for source in sorted(
+            own_connections.sources_by_input.get(common_input, frozenset())
+            - other_connections.sources_by_input.get(common_input, frozenset())
+        ):
+            # A source that came or went itself has a change of its own.
+            source_stays = ("output", source) in versions.elements_before and (
+                "output",
+                source,
+            ) in versions.elements_after
+            if source_stays and not other_connections.readers_by_output.get(source):
+                yield _describe_open_end(source, "read", change.kind)
+        if ("input", reader) not in changed_keys and not other_connections.sources_by_input.get(common_input):
+            yield _describe_open_end(common_input, "fed", change.kind)
+        elif ("input", reader) not in changed_keys:
+            yield f"`{common_input}` {'loses one of its sources' if change.kind == 'removed' else 'gets another source'}"
+    if (
+        element.kind == "node"
+        and change.kind == "removed"
+        and isinstance(implemented_ids := element.values.get("implements"), frozenset)
+    ):
+        still_implemented = {
+            common_input
+            for key, candidate in versions.elements_after.items()
+            if key[0] == "node"
+            for common_input in _value_names(candidate.values.get("implements"))
+        }
+        unimplemented = [
+            common_input
+            for common_input in sorted(implemented_ids)
+            if common_input not in still_implemented and ("component", common_input) in versions.elements_after
+        ]
+        yield from [f"no node implements {tick_names(unimplemented)} any more"] if unimplemented else []
+    yield from _describe_unserved(element, versions)
+    if element.kind == "requirement" and change.kind == "removed":
+        serving_components = sorted(versions.serving_components[0].get(element.id, ()))
+        yield from [f"it was served by {tick_names(serving_components)}"] if serving_components else []
+
+
+def _describe_sources(
+    reader_ids: Iterable[str], changed_keys: Collection[ElementKey], versions: VersionPair, change_kind: str
+) -> Iterator[str]:
+    """Describe what added or removed inputs read from outside of the change, except what is reported anyway."""
+    own_connections, other_connections = (
+        (versions.connections_after, versions.connections_before)
+        if change_kind == "added"
+        else (versions.connections_before, versions.connections_after)
+    )
+    common_inputs = [_common_input(name, versions) for name in reader_ids if ("input", name) in changed_keys]
+    source_ids = sorted(
+        {source for port in common_inputs for source in own_connections.sources_by_input.get(port, frozenset())}
+    )
+    staying_sources = {
+        name
+        for name in source_ids
+        if ("output", name) in versions.elements_before and ("output", name) in versions.elements_after
+    }
+    told_anyway = {name for name in staying_sources if not other_connections.readers_by_output.get(name)}
+    shown_ids = [shown_id("output", name, versions) for name in source_ids if name not in told_anyway]
+    outside_ids = [name for name in shown_ids if ("output", name) not in changed_keys]
+    if outside_ids:
+        yield f"it {'reads' if change_kind == 'added' else 'read'} {tick_names(outside_ids)}"
+
+
+def _common_input(own_id: str, versions: VersionPair) -> str:
+    """Return the common id of an input that may be given by its old one."""
+    if ("input", own_id) in versions.elements_before or ("input", own_id) in versions.elements_after:
+        return own_id
+    return next(
+        (
+            name
+            for (kind, name), old_element in versions.elements_before.items()
+            if kind == "input" and old_element.own_id == own_id
+        ),
+        own_id,
+    )
+
+
+def _describe_open_end(name: str, verb: str, change_kind: str) -> str:
+    if change_kind == "removed":
+        return f"`{name}` is no longer read by anybody" if verb == "read" else f"`{name}` has no source any more"
+    return f"`{name}` is read for the first time" if verb == "read" else f"`{name}` gets its first source"
+
+
+def _describe_unserved(element: ComparedElement, versions: VersionPair) -> Iterator[str]:
+    if element.kind not in {"component", "group"}:
+        return
+    before, after = versions.serving_components
+    for requirement in sorted(before):
+        if requirement not in after and ("requirement", requirement) in versions.elements_after:
+            first_component = min(before[requirement])  # so that one change of several says it
+            if element.id == first_component or first_component.startswith(f"{element.id}."):
+                yield f"no component serves `{requirement}` any more"
+
+
+def _value_names(value: object) -> list[str]:
+    if isinstance(value, (frozenset, tuple)):
+        return sorted(map(str, value)) if isinstance(value, frozenset) else [*map(str, value)]
+    return [] if value is None else [str(to_plain_data(value))]

@@ -1,0 +1,47 @@
+"""The table of kinds: what elements of each kind have, how it is compared, matched and worded.
+
+A new field of a kind is one `KeySpec` (and a `FeatureSpec`, if elements are recognised by it) in the module of its kind.
+tests/compare/test_element_kinds.py compares the table with the schema, the model, the resolved record and the cards.
+"""
+
+from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
+from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, Worsening
+from archgen.compare.kinds.project_kinds import PROJECT_KINDS
+from archgen.compare.kinds.ros_kinds import ROS_KINDS
+from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
+
+ELEMENT_KINDS: dict[str, KindSpec] = {
+    kind.name: kind for kind in (*PROJECT_KINDS, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)
+}
+"""All kinds by name, in the order in which changes are reported."""
+KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
+"""The position of each kind in that order."""
+MATCHING_ORDER = (
+    *("partner", "group", "component", "output", "input", "type", "message", "node", "container", "host", "link"),
+    *("chain", "requirement", "use_case", "view", "policy"),
+)
+"""The kinds that are recognised under other ids, each after those that its features refer to: groups before components,
+hosts after nodes, links after hosts."""
+
+__all__ = [
+    "ELEMENT_KINDS",
+    "KIND_ORDER",
+    "MATCHING_ORDER",
+    "Effect",
+    "KeySpec",
+    "KindSpec",
+    "Worsening",
+    "find_effect",
+    "find_key",
+]
+
+
+def find_key(kind: str, key: str) -> KeySpec:
+    """Return what the table says of a key of a kind."""
+    return ELEMENT_KINDS[kind].find_key(key)
+
+
+def find_effect(kind: str, key: str | None) -> Effect:
+    """Return how far a change of a key reaches; without a key, a change of the whole element."""
+    spec = ELEMENT_KINDS[kind]
+    return min(spec.effect, spec.find_key(key).effect) if key else spec.effect

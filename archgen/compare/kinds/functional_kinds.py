@@ -1,0 +1,244 @@
+"""The functional level: groups, components, their ports, and the connections between these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.compare.compared_elements import MAPPED_KEY, SOME_PORTS
+from archgen.compare.element_likeness import letter_pairs, word_set
+from archgen.compare.element_relations import ElementRelations, ports_of
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import (
+    CO_OWNERS,
+    DESCRIPTION,
+    LAYOUT,
+    NAME_FEATURES,
+    OWNER,
+    TAGS,
+    TIMING_KEYS,
+    TITLE,
+    URLS,
+    key_values,
+    mark_values,
+    prose_key,
+    read_owner,
+    requirements_key,
+    text_feature,
+    timing_key,
+)
+from archgen.compare.normal_values import normalize_title
+from archgen.model.component import Component, Input, Output
+from archgen.model.path_resolver import title_from_id
+
+GROUP = KindSpec(
+    "group",
+    None,
+    (
+        TITLE,
+        DESCRIPTION,
+        OWNER,
+        CO_OWNERS,
+        TAGS,
+        LAYOUT,
+        URLS,
+    ),
+    elements=lambda version: version.architecture.groups,
+    features=(
+        *NAME_FEATURES,
+        # The names of its components outweigh all else: a group is what it holds.
+        FeatureSpec("components", 8, lambda _, group: frozenset(group.components)),
+        text_feature(2, "description"),
+        FeatureSpec("owner", 0.5, lambda relations, group: relations.common_ids("partner", [group.owner])),
+    ),
+    owner=read_owner,
+)
+
+
+def _describe_ports(*, is_known: bool, ports: Mapping[str, object]) -> str | None:
+    """Return whether there are ports: these are elements of their own."""
+    return SOME_PORTS if ports else "none" if is_known else None
+
+
+def _read_performance(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    return {
+        f"{performance.id}.{key}": value
+        for performance in component.performance
+        for key, value in (
+            ("title", normalize_title(performance.id, performance.title)),
+            ("accuracy", performance.accuracy),
+            ("execution_time", performance.execution_time),
+        )
+    }
+
+
+def _read_timing(component: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return a component's timing: that of its node if it has exactly one, else what it says itself."""
+    component_nodes = context.nodes_by_component.get(component.id, [])
+    has_one_node = (
+        len(component_nodes) == 1
+        and context.matched_ids.common_id("component", component.id) not in context.split_components
+    )
+    timing = component_nodes[0].timing.get(component.id) if has_one_node else component.timing
+    return key_values(TIMING_KEYS, timing, context) if timing else {}
+
+
+def _is_mapped(component: Component, context: ReadContext) -> bool | None:
+    return any(node.written for node in context.nodes_by_component.get(component.id, ())) or None
+
+
+def _mark_ports(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    # The direction is part of the mark, so that an input and an output of one name are not alike.
+    ports = [f"> {port.name}" for port in component.inputs.values()]
+    ports += [f"{port.name} >" for port in component.outputs.values()]
+    return mark_values(*ports, *(port.type for port in ports_of(component)))
+
+
+def _mark_neighbours(relations: ElementRelations, component: Component) -> frozenset[str]:
+    sources = [source for port in component.inputs.values() for source in relations.outputs_by_input[port.id]]
+    readers = [reader for port in component.outputs.values() for reader in relations.readers_by_output[port.id]]
+    return relations.common_ids("component", _components_of([*sources, *readers]))
+
+
+def _components_of(ports: Sequence[str]) -> list[str]:
+    return [port.rpartition(".")[0] for port in ports]
+
+
+def _mark_performance(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    return mark_values(
+        *(
+            f"{performance.id} {performance.accuracy} {performance.execution_time}"
+            for performance in component.performance
+        )
+    )
+
+
+def _mark_timing(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    timing = component.timing
+    return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
+
+
+COMPONENT = KindSpec(
+    "component",
+    None,
+    (
+        KeySpec("title", lambda component, _: normalize_title(component.name, component.title), Effect.TEXT),
+        prose_key("functionality"),
+        DESCRIPTION,
+        OWNER,
+        CO_OWNERS,
+        KeySpec("role", effect=Effect.SYSTEM, verb="is a"),
+        requirements_key(lambda component: tuple(use.text for use in component.requirements)),
+        TAGS,
+        LAYOUT,
+        KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
+        KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
+        URLS,
+        KeySpec("performance.", _read_performance, Effect.TEXT),
+        timing_key(_read_timing),
+        KeySpec(MAPPED_KEY, _is_mapped, Effect.SYSTEM),
+    ),
+    elements=lambda version: version.architecture.components,
+    features=(
+        FeatureSpec("name", 2, lambda _, component: letter_pairs(component.name)),
+        FeatureSpec(
+            "title",
+            2,
+            lambda _, component: word_set(component.title),
+            lambda component: component.title in {title_from_id(component.name), component.name},
+        ),
+        FeatureSpec("ports", 4, _mark_ports),
+        text_feature(3, "functionality", "description"),
+        FeatureSpec("near", 3, _mark_neighbours),
+        FeatureSpec(
+            "nodes",
+            3,
+            lambda relations, component: relations.common_ids(
+                "node", relations.nodes_by_place[f"component:{component.id}"]
+            ),
+        ),
+        FeatureSpec("group", 0.5, lambda relations, component: relations.common_ids("group", [component.group])),
+        FeatureSpec("owner", 0.5, lambda relations, component: relations.common_ids("partner", [component.owner])),
+        FeatureSpec("requirements", 1, lambda _, component: mark_values(*(use.text for use in component.requirements))),
+        FeatureSpec("performance", 1, _mark_performance),
+        FeatureSpec("timing", 1, _mark_timing),
+        FeatureSpec("tags", 0.5, lambda _, component: frozenset(component.tags)),
+    ),
+    has_path_id=True,
+    parent_kind="group",
+    parent=lambda component, context: ("group", context.matched_ids.common_id("group", component.group)),
+    owner=read_owner,
+    components=lambda component, context: (context.matched_ids.common_id("component", component.id),),
+)
+
+
+def _port_owner(port: Input | Output, context: ReadContext) -> str | None:
+    return context.common_id("partner", context.architecture.components[port.component].owner)
+
+
+def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
+    return ("component", context.matched_ids.common_id("component", port.component))
+
+
+_PORT_KEYS = (
+    KeySpec("medium", lambda port, _: "physical" if port.physical else None),
+    prose_key("external"),
+    DESCRIPTION,
+)
+_PORT_FEATURES = (
+    FeatureSpec("name", 2, lambda _, port: letter_pairs(port.name)),
+    FeatureSpec("type", 4, lambda _, port: mark_values(port.type)),
+    FeatureSpec("topics", 3, lambda relations, port: frozenset(relations.topics_by_port[port.id])),
+    text_feature(1, "description", "external"),
+)
+OUTPUT = KindSpec(
+    "output",
+    None,
+    (
+        KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="carries"),
+        *_PORT_KEYS,
+    ),
+    elements=lambda version: version.architecture.outputs,
+    features=(
+        *_PORT_FEATURES,
+        FeatureSpec(
+            "readers",
+            5,
+            lambda relations, port: relations.common_ids(
+                "component", _components_of(relations.readers_by_output[port.id])
+            ),
+        ),
+    ),
+    has_path_id=True,
+    parent_kind="component",
+    stays_in_parent=True,
+    parent=_port_parent,
+    owner=_port_owner,
+    components=lambda port, context: (_port_parent(port, context)[1],),
+)
+INPUT = KindSpec(
+    "input",
+    None,
+    (
+        KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="expects"),
+        *_PORT_KEYS,
+        KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
+    ),
+    elements=lambda version: version.architecture.inputs,
+    features=(
+        *_PORT_FEATURES,
+        FeatureSpec(
+            "sources",
+            5,
+            lambda relations, port: relations.common_ids("output", relations.outputs_by_input[port.id]),
+        ),
+    ),
+    has_path_id=True,
+    parent_kind="component",
+    stays_in_parent=True,
+    parent=_port_parent,
+    owner=_port_owner,
+    components=lambda port, context: (_port_parent(port, context)[1],),
+)
+# Which outputs an input reads: compared by `connection_maps`, since it has no keys.
+CONNECTION = KindSpec("connection", None, has_path_id=True)
+FUNCTIONAL_KINDS = (GROUP, COMPONENT, OUTPUT, INPUT, CONNECTION)

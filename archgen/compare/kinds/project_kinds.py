@@ -1,0 +1,141 @@
+"""The project itself, its chapters, partners, use cases and requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.element_likeness import letter_pairs, word_set
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import (
+    DESCRIPTION,
+    NAME_FEATURES,
+    TAGS,
+    TITLE,
+    URLS,
+    text_feature,
+)
+from archgen.compare.normal_values import normalize_text, unordered_values
+from archgen.model.architecture import ProjectInfo
+
+
+def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    review = context.architecture.review
+    return {
+        "main": review.main,
+        "breaking": review.breaking and str(review.breaking),
+        "backends": unordered_values(review.backends),
+        **{
+            f"accepted.{name}": f"{entry.reason} ({entry.key})" if entry.key else entry.reason
+            for name, entry in review.accepted.items()
+        },
+    }
+
+
+def _read_named(key: str, context: ReadContext, value: str) -> str | None:
+    """Return the id or title of the project, None if the project does not write it."""
+    return None if key in context.version.unnamed_keys else value
+
+
+PROJECT = KindSpec(
+    "project",
+    "Project",
+    (
+        KeySpec("id", lambda project, context: _read_named("id", context, project.id)),
+        KeySpec("title", lambda project, context: _read_named("title", context, project.title), Effect.TEXT),
+        KeySpec("version", verb="is version"),
+        DESCRIPTION,
+        KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
+        KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
+        KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
+        KeySpec("chapters", lambda _, context: context.version.chapter_order),
+        KeySpec("review.", _read_review),
+        KeySpec("rules.", lambda _, context: context.version.rule_settings),
+    ),
+    Effect.SYSTEM,
+    lambda version: {version.architecture.project.id: version.architecture.project},
+)
+
+
+def _list_chapters(version: ArchitectureVersion) -> Mapping[str, str]:
+    return version.chapters
+
+
+CHAPTER = KindSpec(
+    "chapter",
+    "Chapters",
+    (KeySpec("text", lambda text, _: normalize_text(text), is_prose=True),),
+    Effect.TEXT,
+    _list_chapters,
+)
+PARTNER = KindSpec(
+    "partner",
+    "Partners",
+    (
+        TITLE,
+        DESCRIPTION,
+        KeySpec("contact"),
+        KeySpec("reviewers", lambda partner, _: unordered_values(partner.reviewers)),
+    ),
+    Effect.SYSTEM,
+    lambda version: version.architecture.partners,
+    (
+        *NAME_FEATURES,
+        FeatureSpec("owns", 4, lambda relations, partner: frozenset(relations.elements_by_owner[partner.id])),
+    ),
+    owner=lambda partner, context: context.common_id("partner", partner.id),
+)
+# Unlike elsewhere the title weighs more than the id: ids of requirements and use cases are mostly numbers.
+_NUMBERED_FEATURES = (
+    FeatureSpec("name", 1, lambda _, element: letter_pairs(element.id)),
+    FeatureSpec("title", 4, lambda _, element: word_set(element.title), lambda element: element.title == element.id),
+    text_feature(2, "description"),
+)
+USE_CASE = KindSpec(
+    "use_case",
+    "Use cases",
+    (TITLE, DESCRIPTION),
+    Effect.TEXT,
+    lambda version: version.architecture.use_cases,
+    (
+        *_NUMBERED_FEATURES,
+        FeatureSpec(
+            "users",
+            3,
+            lambda relations, use_case: relations.common_ids(
+                "requirement", relations.users_by_element[f"use_case:{use_case.id}"]
+            ),
+        ),
+    ),
+    word="use case",
+)
+REQUIREMENT = KindSpec(
+    "requirement",
+    "Requirements",
+    (
+        TITLE,
+        DESCRIPTION,
+        KeySpec(
+            "use_cases",
+            lambda requirement, context: context.common_ids("use_case", requirement.use_cases),
+            refers_to="use_case",
+            list_verbs=("now belongs to", "no longer belongs to"),
+            new_verb="belongs to",
+        ),
+        TAGS,
+        URLS,
+    ),
+    Effect.SYSTEM,
+    lambda version: version.architecture.requirements,
+    (
+        *_NUMBERED_FEATURES,
+        FeatureSpec(
+            "users",
+            3,
+            lambda relations, requirement: relations.common_ids(
+                "component", relations.users_by_element[f"requirement:{requirement.id}"]
+            ),
+        ),
+    ),
+)
+PROJECT_KINDS = (PROJECT, CHAPTER, PARTNER, USE_CASE, REQUIREMENT)

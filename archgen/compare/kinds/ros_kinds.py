@@ -1,0 +1,276 @@
+"""What is written for ROS: conceptual types, message definitions, nodes, and what nodes say of their ports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from typing import NamedTuple
+
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.element_likeness import letter_pairs
+from archgen.compare.element_relations import ElementRelations, project_messages
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.shared_keys import (
+    CO_OWNERS,
+    DESCRIPTION,
+    NAME_FEATURES,
+    OWNER,
+    TAGS,
+    TIMING_KEYS,
+    TITLE,
+    URLS,
+    key_values,
+    mark_values,
+    prose_key,
+    read_owner,
+    text_feature,
+    timing_key,
+)
+from archgen.compare.normal_values import parameter_leaves, unordered_values
+from archgen.model.known_interfaces import Interface
+from archgen.model.message_types import ConceptualType
+from archgen.model.node import Node, PortUse, Qos
+from archgen.transform import ros_names
+
+_DEFAULT_QOS = Qos()
+_QOS_NAMES = tuple(each.name for each in fields(Qos) if each.name not in {"profile", "written", "at"})
+"""What counts of `qos`: a profile is only another way of writing the rest."""
+
+
+def _inner_type_key(name: str) -> KeySpec:
+    return KeySpec(name, lambda each, context: context.common_id("type", getattr(each, name)), refers_to="type")
+
+
+def _is_own_type(conceptual_type: ConceptualType) -> bool:
+    return conceptual_type.origin == "project" and bool(conceptual_type.at.file)
+
+
+def _list_types(version: ArchitectureVersion) -> Mapping[str, ConceptualType]:
+    return {
+        name: conceptual_type
+        for name, conceptual_type in version.architecture.types.items()
+        if conceptual_type.origin != "message" or conceptual_type.at.file
+    }
+
+
+def _mark_ports(relations: ElementRelations, conceptual_type: ConceptualType) -> frozenset[str]:
+    ports = relations.users_by_element[f"type:{conceptual_type.name}"]
+    return relations.common_ids("output", ports) | relations.common_ids("input", ports)
+
+
+TYPE = KindSpec(
+    "type",
+    "Types",
+    (
+        KeySpec(
+            "message",
+            lambda each, context: context.common_id("message", each.message),
+            worsening=Worsening.ALWAYS,
+            refers_to="message",
+            verb="is",
+            new_verb="is",
+        ),
+        prose_key("comment"),
+        KeySpec("size", worsening=Worsening.MORE),
+        # Defaults count as not written: writing them out is no change.
+        KeySpec("status", lambda each, _: None if each.status == "existing" else each.status, Effect.SYSTEM, verb="is"),
+        _inner_type_key("request"),
+        _inner_type_key("response"),
+        _inner_type_key("feedback"),
+    ),
+    elements=_list_types,
+    features=(
+        FeatureSpec("name", 2, lambda _, each: letter_pairs(each.name)),
+        FeatureSpec("message", 3, lambda _, each: mark_values(each.message)),
+        FeatureSpec("users", 5, _mark_ports),
+        text_feature(1, "comment"),
+        FeatureSpec("size", 1, lambda _, each: mark_values(each.size)),
+        FeatureSpec("inside", 2, lambda _, each: mark_values(each.request, each.response, each.feedback)),
+    ),
+    is_declared=_is_own_type,
+)
+
+
+class ProjectMessage(NamedTuple):
+    """An interface of one of the project's packages; its definition is None if only its name is known."""
+
+    name: str
+    definition: Interface | None
+
+
+def _list_messages(version: ArchitectureVersion) -> Mapping[str, ProjectMessage]:
+    definitions = version.architecture.interfaces.definitions
+    return {name: ProjectMessage(name, definitions.get(name)) for name in project_messages(version.architecture)}
+
+
+def _read_fields(message: ProjectMessage, _context: ReadContext) -> tuple[str, ...]:
+    """Return the fields of an interface as ROS writes them, with `---` between the parts of a service or action."""
+    lines: list[str] = []
+    for part in message.definition.parts if message.definition else ():
+        lines += (["---"] if part is not message.definition.parts[0] else []) if message.definition else []
+        lines += [f"{field.type}{field.array} {field.name}" for field in part]
+    return tuple(lines)
+
+
+def _mark_fields(_relations: ElementRelations, message: ProjectMessage) -> frozenset[str]:
+    parts = message.definition.parts if message.definition else ()
+    return mark_values(*(f"{field.name} {field.type}" for part in parts for field in part))
+
+
+def _mark_types(relations: ElementRelations, message: ProjectMessage) -> frozenset[str]:
+    types = relations.architecture.types.values()
+    return relations.common_ids("type", [each.name for each in types if each.message == message.name])
+
+
+MESSAGE = KindSpec(
+    "message",
+    "Message definitions",
+    (KeySpec("fields", _read_fields, worsening=Worsening.ALWAYS),),
+    elements=_list_messages,
+    features=(
+        FeatureSpec("name", 2, lambda _, message: letter_pairs(message.name.rpartition("/")[2])),
+        FeatureSpec("package", 1, lambda _, message: mark_values(message.name.rpartition("/")[0])),
+        FeatureSpec("fields", 5, _mark_fields),
+        FeatureSpec("users", 4, _mark_types),
+    ),
+    whole_word="message definition",
+)
+
+
+def _read_co_owners(node: Node, context: ReadContext) -> frozenset[str]:
+    """Return a node's further owners, unless they are exactly those of its components."""
+    components = context.architecture.components
+    inherited_owners = {owner for component in node.implements for owner in components[component].owners}
+    return context.common_ids("partner", () if set(node.owners) == inherited_owners else node.co_owners)
+
+
+def _read_host(node: Node, context: ReadContext) -> str | None:
+    own_container = context.architecture.containers.get(node.container) if node.container else None
+    # A host that is the container's own adds nothing, and would change with it.
+    is_inherited = own_container is not None and own_container.host == node.host
+    return None if is_inherited else context.common_id("host", node.host)
+
+
+def _read_parameters(node: Node, _context: ReadContext) -> Mapping[str, object]:
+    return {
+        key: value for name, parameter in node.parameters.items() for key, value in parameter_leaves(name, parameter)
+    }
+
+
+def _read_timing(node: Node, context: ReadContext) -> Mapping[str, object]:
+    """Return the timing that no component reports: of components with several nodes, and of a node without any."""
+    values: dict[str, object] = {}
+    for component, timing in node.timing.items():
+        if component not in context.told_components:
+            prefix = f"{context.matched_ids.common_id('component', component)}." if len(node.implements) > 1 else ""
+            timing_values = key_values(TIMING_KEYS, timing, context)
+            values |= {f"{prefix}{key}": value for key, value in timing_values.items()}
+    return values
+
+
+NODE = KindSpec(
+    "node",
+    "Nodes",
+    (
+        TITLE,
+        KeySpec(
+            "implements",
+            lambda node, context: context.common_ids("component", node.implements),
+            worsening=Worsening.ALWAYS,
+            refers_to="component",
+            list_verbs=("now implements", "no longer implements"),
+            new_verb="implements",
+        ),
+        DESCRIPTION,
+        OWNER,
+        KeySpec("co_owners", _read_co_owners, Effect.SYSTEM, refers_to="partner", noun=CO_OWNERS.noun),
+        # Topics that follow a node's name or namespace are keys of its ports.
+        KeySpec("name", lambda node, _: None if node.name == node.id else node.name, Effect.SYSTEM),
+        KeySpec("namespace", lambda node, _: None if node.namespace == "/" else node.namespace, Effect.SYSTEM),
+        KeySpec(
+            "kind",
+            lambda node, _: unordered_values(() if node.kinds == ("node",) else node.kinds),
+            worsening=Worsening.ALWAYS,
+            list_verbs=("is now", "is no longer"),
+        ),
+        KeySpec("package", effect=Effect.SYSTEM),
+        KeySpec("executable", effect=Effect.SYSTEM),
+        KeySpec("plugin", effect=Effect.SYSTEM),
+        KeySpec(
+            "container",
+            lambda node, context: context.common_id("container", node.container),
+            worsening=Worsening.ALWAYS,
+            refers_to="container",
+            verb="runs in the container",
+            new_verb="runs in the container",
+        ),
+        KeySpec(
+            "host",
+            _read_host,
+            worsening=Worsening.ALWAYS,
+            refers_to="host",
+            verb="runs on",
+            new_verb="runs on",
+        ),
+        KeySpec("status", effect=Effect.SYSTEM, verb="is"),
+        KeySpec("parameter_files", effect=Effect.SYSTEM),
+        TAGS,
+        URLS,
+        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        timing_key(_read_timing),
+    ),
+    elements=lambda version: {name: node for name, node in version.architecture.nodes.items() if node.written},
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("implements", 4, lambda relations, node: relations.common_ids("component", node.implements)),
+        FeatureSpec("package", 2, lambda _, node: mark_values(node.package)),
+        FeatureSpec("program", 2, lambda _, node: mark_values(node.executable, node.plugin)),
+        FeatureSpec("ports", 2, lambda _, node: mark_values(*(f"{use.use} {use.key}" for use in node.uses))),
+        FeatureSpec("topics", 1, lambda _, node: mark_values(*(topic for use in node.uses for topic in use.topics))),
+        FeatureSpec("place", 1, lambda _, node: mark_values(node.host, node.container)),
+        FeatureSpec("parameters", 1, lambda _, node: frozenset(node.parameters)),
+        text_feature(1, "description"),
+    ),
+    owner=read_owner,
+    components=lambda node, context: tuple(
+        context.matched_ids.common_id("component", component) for component in node.implements
+    ),
+)
+
+
+class NodePort(NamedTuple):
+    """What a node says of a port; `is_stated` if it must say that it has the port, because it is not the only node of
+    the component.
+    """
+
+    use: PortUse
+    node: Node
+    is_stated: bool
+
+
+def _read_qos(port: NodePort, _context: ReadContext) -> Mapping[str, object]:
+    qos = port.use.qos or _DEFAULT_QOS
+    return {name: getattr(qos, name) for name in _QOS_NAMES if getattr(qos, name) != default_qos(name)}
+
+
+def default_qos(name: str) -> object:
+    """Return the value of a key of `qos` that nobody wrote."""
+    return getattr(_DEFAULT_QOS, name)
+
+
+def _resolve_topics(port: NodePort, _context: ReadContext) -> frozenset[str]:
+    return unordered_values(ros_names.resolve_ros_name(topic, port.node) for topic in port.use.topics)
+
+
+PORT = KindSpec(
+    "port",
+    "Nodes",
+    (
+        KeySpec("carried", lambda port, _: port.is_stated or None),
+        KeySpec("topic", _resolve_topics),
+        KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
+        KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
+    ),
+    has_path_id=True,
+)
+ROS_KINDS: Sequence[KindSpec] = (TYPE, MESSAGE, NODE, PORT)

@@ -1,0 +1,36 @@
+"""What sentences about changes are made of: names in backticks, ids as readers know them, lists that are cut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from archgen.compare.key_phrases import shorten_text
+from archgen.compare.version_pair import VersionPair
+from archgen.diagnostics.common_wording import join_words
+
+_MAX_EFFECTS = 3
+"""Maximal number of effects in one sentence; all of them are in the parts."""
+_MAX_NAMES = 6
+"""Maximal number of names in one list; the rest is counted."""
+
+
+def limit_effects(effects: Sequence[str]) -> Sequence[str]:
+    """Return the first effects, and how many more there are."""
+    surplus = len(effects) - _MAX_EFFECTS
+    return effects if surplus <= 0 else (*effects[:_MAX_EFFECTS], f"and {surplus} more such effects")
+
+
+def shown_id(kind: str, name: str, versions: VersionPair) -> str:
+    """Return the id that readers know: that of the second version, of a removed element that of the first."""
+    element = None if (kind, name) in versions.elements_after else versions.elements_before.get((kind, name))
+    return element.own_id if element else name
+
+
+def tick_names(names: Iterable[str]) -> str:
+    """Return element names in backticks, the surplus counted."""
+    ticked_names = [f"`{shorten_text(name)}`" for name in names]
+    return (
+        join_words(ticked_names)
+        if len(ticked_names) <= _MAX_NAMES
+        else join_words([*ticked_names[: _MAX_NAMES - 1], f"{len(ticked_names) - _MAX_NAMES + 1} more"])
+    )

@@ -1,0 +1,73 @@
+"""Elements and connections of two versions, made by hand."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import replace
+
+from archgen.compare.compared_elements import ComparedElement, ElementKey
+from archgen.compare.connection_maps import ConnectionMap
+from archgen.compare.version_pair import VersionPair
+
+
+def element(
+    key: str, parent: str = "", own_id: str = "", refs: str = "", owner: str = "", **values: object
+) -> ComparedElement:
+    """Make an element: `element("output g.a.x", parent="component g.a", type="T")`."""
+    kind, name = key.split(" ")
+    parent_kind, _, parent_id = parent.partition(" ")
+    return ComparedElement(
+        kind,
+        name,
+        own_id or name,
+        {name.replace("__", "."): value for name, value in values.items()},
+        (parent_kind, parent_id) if parent else None,
+        owner or None,
+        component_refs=tuple(refs.split()),
+    )
+
+
+def with_values(key: str, values: Mapping[str, object]) -> ComparedElement:
+    """Return an element whose keys have any names."""
+    return replace(element(key), values=values)
+
+
+def by_key(*elements: ComparedElement) -> dict[ElementKey, ComparedElement]:
+    """Return elements by kind and id; a text is an element without values."""
+    return {(each.kind, each.id): each for each in elements}
+
+
+def some(*keys: str) -> dict[ElementKey, ComparedElement]:
+    """Return elements of which nothing matters but that they are there."""
+    return by_key(*map(element, keys))
+
+
+def connections(text: str) -> ConnectionMap:
+    """Read `input <- output output, input <- output`."""
+    sources: dict[str, frozenset[str]] = {}
+    readers: dict[str, set[str]] = defaultdict(set)
+    for entry in filter(None, text.split(", ")):
+        reader, outputs = entry.split(" <- ")
+        sources[reader] = frozenset(outputs.split())
+        for output in outputs.split():
+            readers[output].add(reader)
+    return ConnectionMap(sources, {output: frozenset(names) for output, names in readers.items()})
+
+
+def pair(
+    before: dict[ElementKey, ComparedElement],
+    after: dict[ElementKey, ComparedElement],
+    reads: tuple[str, str] = ("", ""),
+    lost: tuple[str, str] = ("", ""),
+    serving: tuple[dict[str, frozenset[str]], dict[str, frozenset[str]]] | None = None,
+) -> VersionPair:
+    """Make a pair of versions; `reads` are the connections before and after, `lost` the keys that could not be read."""
+    return VersionPair(
+        connections(reads[0]),
+        connections(reads[1]),
+        before,
+        after,
+        serving or ({}, {}),
+        (frozenset(lost[0].split()), frozenset(lost[1].split())),
+    )

@@ -1,0 +1,392 @@
+"""The table of kinds agrees with the schema, the model, the resolved record and the cards: what one of them has, all do.
+
+A new field or kind fails here until the table has it. What is left out on purpose stands in the lists below, with the
+reason; an entry that is no longer needed fails, too.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from typing import Any
+
+import jsonschema_rs
+import pytest
+
+from archgen import pipeline
+from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
+from archgen.compare.kinds.shared_keys import TIMING_KEYS
+from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
+from archgen.model.component import Component, Group, Input, Output
+from archgen.model.declared_timing import Timing
+from archgen.model.deployment import Container, Host, Link
+from archgen.model.message_types import ConceptualType
+from archgen.model.node import Node
+from archgen.views.elements.element_card import kinds_by_id, make_card
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.resolved_record import make_record
+from tests.running import ROOT
+
+SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
+MODEL_CLASSES: Mapping[str, type] = {
+    "project": ProjectInfo,
+    "partner": Partner,
+    "use_case": UseCase,
+    "requirement": Requirement,
+    "group": Group,
+    "component": Component,
+    "output": Output,
+    "input": Input,
+    "type": ConceptualType,
+    "node": Node,
+    "host": Host,
+    "container": Container,
+    "link": Link,
+    "chain": Chain,
+    "policy": Policy,
+    "view": View,
+}
+SECTIONS = {
+    "partner": "partners",
+    "use_case": "use_cases",
+    "requirement": "requirements",
+    "group": "groups",
+    "component": "components",
+    "output": "outputs",
+    "input": "inputs",
+    "type": "types",
+    "node": "nodes",
+    "host": "hosts",
+    "container": "containers",
+    "link": "links",
+    "chain": "chains",
+    "policy": "policies",
+    "view": "views",
+}
+"""Each kind with its section of the architecture."""
+
+NOT_WRITTEN_KINDS = {
+    "chapter": "a file of its own",
+    "message": "a file of its own, or a text below `ros: definitions`",
+    "connection": "the `from` of an input",
+    "port": "an entry of a node's `publishes`, `subscribes`, `serves` or `calls`",
+}
+"""Kinds that are no mapping of the schema."""
+SCHEMA_ONLY = {
+    "group components": "elements of their own",
+    "input from": "the kind `connection`",
+    **dict.fromkeys(("node publishes", "node subscribes", "node serves", "node calls"), "the kind `port`"),
+    "node internal": "the kind `port`",
+}
+TABLE_ONLY_FOR_SCHEMA = {
+    **dict.fromkeys(("group co_owners", "component co_owners", "node co_owners"), "the rest of the list `owner`"),
+    "component mapped": "follows from the nodes",
+    "project distro": "below `ros`",
+    "project shared_topics": "below `ros`",
+    "project layout": "a section of its own",
+    "project chapters": "below `report`",
+    "project review": "a section of its own",
+    "project rules": "a section of its own",
+}
+MODEL_ONLY = {
+    **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
+    "type name": "the key of the element",
+    "type origin": "where it is declared",
+    **dict.fromkeys(("component name", "input name", "output name"), "the last part of the id"),
+    **dict.fromkeys(("component group", "input component", "output component"), "the beginning of the id"),
+    "group components": "elements of their own",
+    "input connections": "the kind `connection`",
+    "input from_written": "only for rules",
+    **dict.fromkeys(("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"),
+    "component requirements_known": "only for rules",
+    **dict.fromkeys(("input physical", "output physical"), "the key `medium`"),
+    "node kinds": "the key `kind`",
+    **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
+    **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
+    "chain unresolved": "only for rules",
+}
+TABLE_ONLY_FOR_MODEL = {
+    **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
+    "node kind": "the field `kinds`",
+    "link latency": "the fields `best` and `worst`",
+    "policy forbid": "the fields `forbid_from` and `forbid_to`",
+    "component mapped": "follows from the nodes",
+    **{
+        f"project {key}": "a field of the architecture or of the version"
+        for key in ("distro", "shared_topics", "layout", "chapters", "review", "rules")
+    },
+}
+RECORD_ONLY = {
+    "requirement served_by": "the key `requirements` of components",
+    "group components": "elements of their own",
+    "component group": "the beginning of the id",
+    "component nodes": "the key `implements` of nodes",
+    **dict.fromkeys(("input id", "output id"), "the key of the element"),
+    **dict.fromkeys(("input sources", "output readers"), "the kind `connection`"),
+    "output message": "that of the type",
+    "node full_name": "made of name and namespace",
+    "node endpoints": "the kind `port`",
+    **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
+}
+NOT_IN_RECORD = {
+    **dict.fromkeys(("group layout", "component layout", "project layout"), "only for pictures"),
+    **dict.fromkeys(("requirement urls", "group urls", "host description"), "not part of version 1 of the record"),
+    "component mapped": "follows from the nodes",
+    "link latency": "the keys `best` and `worst`",
+    **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules")},
+}
+KINDS_NOT_IN_RECORD = {
+    "chapter": "a text, not a part of the system",
+    "message": "a name: at types, endpoints and topics",
+    "connection": "a list",
+    "port": "the endpoints of a node",
+    "view": "a picture, not a part of the system",
+    "policy": "a rule, not a part of the system",
+}
+CARD_ONLY = {
+    "ROS name": "made of name and namespace",
+    "group": "the beginning of the id",
+    "component": "the beginning of the id",
+    "message": "that of the type",
+}
+ROBOT = """\
+archgen: 1
+project: {id: robot, title: Robot, version: "1", description: D}
+ros: {distro: jazzy}
+partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
+use_cases: {UC-1: {title: U, description: D}}
+requirements: {R-1: {title: R, description: D, use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
+groups:
+  g:
+    title: G
+    description: D
+    owner: [certh, sssa]
+    tags: [t]
+    urls: {a: "https://a.eu"}
+    layout: {direction: top-bottom}
+    components:
+      a:
+        title: A
+        functionality: F
+        description: D
+        owner: [certh, sssa]
+        role: source
+        requirements: [R-1]
+        performance: {p: {title: P, accuracy: 90 %, execution_time: 1 ms}}
+        timing: {rate: 10 Hz}
+        tags: [t]
+        urls: {a: "https://a.eu"}
+        inputs: {i: {external: the world, type: T, medium: digital, optional: true, description: D}}
+        outputs: {o: {type: T, external: the world, description: D}}
+types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
+nodes:
+  n:
+    implements: a
+    title: N
+    description: D
+    owner: [certh, sssa]
+    name: m
+    namespace: /ns
+    kind: [composable, driver]
+    package: p
+    executable: e
+    plugin: p::P
+    container: box
+    host: pc
+    status: planned
+    parameters: {x: 1}
+    parameter_files: [p.yaml]
+    tags: [t]
+    urls: {a: "https://a.eu"}
+    publishes: {o: /o}
+hosts: {pc: {title: P, cores: 4, description: D, tags: [t]}, arm: }
+containers: {box: {title: B, host: pc, threads: 2}}
+links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
+chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
+views: {v: {title: V, show: g, colour: owner, level: implementation, layout: {direction: top-bottom}}}
+policies: {p: {title: P, forbid: {from: g, to: g}}}
+"""
+"""A project in which every kind has every field."""
+
+
+def table_keys(kind: str) -> set[str]:
+    """Return the first parts of all keys of a kind, as they are written: `latency` for `latency.best`."""
+    return {key.name.partition(".")[0] for key in ELEMENT_KINDS[kind].keys}
+
+
+def missing(kind: str, names: Iterable[str], exceptions: Mapping[str, str], known: Iterable[str]) -> list[str]:
+    """Return the names that are neither known nor excepted."""
+    return sorted(name for name in set(names) - set(known) if f"{kind} {name}" not in exceptions)
+
+
+@pytest.mark.parametrize("kind", [name for name in ELEMENT_KINDS if name not in NOT_WRITTEN_KINDS])
+def test_what_the_schema_lets_one_write_is_compared(kind: str) -> None:
+    written = SCHEMA["$defs"][kind]["properties"]
+    assert missing(kind, written, SCHEMA_ONLY, table_keys(kind)) == [], "keys of the schema without a KeySpec"
+    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_SCHEMA, written) == [], "keys that nobody can write"
+
+
+@pytest.mark.parametrize("kind", list(MODEL_CLASSES))
+def test_what_the_model_holds_is_compared(kind: str) -> None:
+    held = [field.name for field in fields(MODEL_CLASSES[kind]) if field.compare]
+    assert missing(kind, held, MODEL_ONLY, table_keys(kind)) == [], "fields of the model without a KeySpec"
+    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_MODEL, held) == [], "keys without a field"
+
+
+def test_what_timing_can_be_written_is_compared() -> None:
+    names = {key.name.partition(".")[0] for key in TIMING_KEYS}
+    # A period is compared as the rate that it amounts to.
+    assert set(SCHEMA["$defs"]["timing"]["properties"]) == names | {"period"}
+    assert {field.name for field in fields(Timing) if field.compare} == names | {"period"}
+
+
+@pytest.fixture(scope="module")
+def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
+    file = tmp_path_factory.mktemp("robot") / "robot.yaml"
+    file.write_text(ROBOT, encoding="utf-8")
+    checked = pipeline.check_project(file)
+    assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
+    return make_lookup(checked.architecture)
+
+
+def test_the_record_of_a_project_that_has_everything_follows_its_schema(lookup: Lookup) -> None:
+    schema = json.loads((ROOT / "schemas" / "resolved.schema.json").read_text(encoding="utf-8"))
+    data = json.loads(json.dumps(make_record(lookup)))
+    assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
+
+
+def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
+    """Return the keys that elements of a kind have in the record."""
+    if kind == "project":
+        return set(record["project"])
+    if kind in {"input", "output"}:
+        ports = (port for each in record["components"].values() for port in each[SECTIONS[kind]].values())
+        return {key for port in ports for key in port}
+    return {key for element in record[SECTIONS[kind]].values() for key in element}
+
+
+@pytest.mark.parametrize("kind", [name for name in ELEMENT_KINDS if name not in KINDS_NOT_IN_RECORD])
+def test_what_the_record_gives_is_compared(lookup: Lookup, kind: str) -> None:
+    given = record_keys(make_record(lookup), kind)
+    assert missing(kind, given, RECORD_ONLY, table_keys(kind)) == [], "keys of the record without a KeySpec"
+    assert missing(kind, table_keys(kind), NOT_IN_RECORD, given) == [], "keys that the record does not give"
+
+
+def test_what_cards_show_is_compared(lookup: Lookup) -> None:
+    shown = {
+        (kind.replace(" ", "_"), fact)
+        for element_id, kinds in kinds_by_id(lookup).items()
+        for kind in kinds
+        if kind != "topic"  # made of what nodes say of their ports
+        for fact, _ in make_card(lookup, kind, element_id).facts
+    }
+    assert [(k, fact) for k, fact in sorted(shown) if fact not in {*table_keys(k), *CARD_ONLY}] == []
+
+
+def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> None:
+    kinds = set(ELEMENT_KINDS) - set(NOT_WRITTEN_KINDS)
+    assert set(MODEL_CLASSES) == kinds
+    assert set(SECTIONS) == kinds - {"project"}
+    carded = {kind.replace(" ", "_") for kinds in kinds_by_id(lookup).values() for kind in kinds}
+    assert carded - {"topic"} == set(SECTIONS)
+    # What else an architecture maps from ids: topics follow from nodes.
+    mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
+    assert mapped - {"topics"} == set(SECTIONS.values())
+
+
+def test_the_exceptions_are_needed() -> None:
+    schema = {f"{k} {name}" for k in MODEL_CLASSES for name in SCHEMA["$defs"][k]["properties"]}
+    model = {f"{k} {field.name}" for k, each in MODEL_CLASSES.items() for field in fields(each)}
+    table = {f"{k} {name}" for k in ELEMENT_KINDS for name in table_keys(k)}
+    assert set(SCHEMA_ONLY) <= schema - table
+    assert set(MODEL_ONLY) <= model - table
+    assert set(TABLE_ONLY_FOR_SCHEMA) <= table - schema
+    assert set(TABLE_ONLY_FOR_MODEL) <= table - model
+    assert set(NOT_IN_RECORD) <= table
+    assert not set(RECORD_ONLY) & table
+
+
+def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> None:
+    assert sorted(MATCHING_ORDER) == sorted(name for name, kind in ELEMENT_KINDS.items() if kind.features)
+    place = MATCHING_ORDER.index
+    for earlier, later in (
+        *(("group", "component"), ("component", "output"), ("output", "input"), ("type", "message")),
+        *(("component", "node"), ("node", "container"), ("node", "host"), ("container", "host"), ("host", "link")),
+        *(("node", "chain"), ("component", "requirement"), ("requirement", "use_case"), ("partner", "group")),
+    ):
+        assert place(earlier) < place(later), (earlier, later)
+
+
+def test_the_order_of_the_report() -> None:
+    assert list(KIND_ORDER) == [
+        *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
+        *("connection", "type", "message", "node", "port", "host", "container", "link", "chain", "policy", "view"),
+    ]
+    assert list(KIND_ORDER.values()) == list(range(20))
+
+
+def test_whatever_refers_to_a_kind_names_one() -> None:
+    for kind in ELEMENT_KINDS.values():
+        for key in kind.keys:
+            assert key.refers_to is None or key.refers_to in ELEMENT_KINDS, (kind.name, key.name)
+
+
+def test_no_key_is_listed_twice() -> None:
+    for kind in ELEMENT_KINDS.values():
+        names = [key.name for key in kind.keys]
+        assert len(names) == len(set(names)), kind.name
+
+
+@pytest.mark.parametrize(
+    ("effect", "keys"),
+    [
+        (
+            Effect.TEXT,
+            (
+                "group title, group description, group tags, group layout, group urls.docs, component functionality, "
+                "component performance.p.accuracy, type comment, input external, output description, chapter text, "
+                "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
+                "project layout, partner description, host tags, node urls.x"
+            ),
+        ),
+        (
+            Effect.SYSTEM,
+            (
+                "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, "
+                "component requirements, chain requirements, node package, node executable, node plugin, node status, "
+                "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
+                "project version, project rules.unread-output, project review.main, project shared_topics, "
+                "partner contact, partner reviewers, requirement use_cases, policy forbid.from"
+            ),
+        ),
+        (
+            Effect.TIMING,
+            (
+                "component timing.rate, component timing.outputs.x.max_gap, node timing.g.a.wcet, node host, node kind, "
+                "node container, node implements, port qos, port qos.depth, port topic, port message, type size, "
+                "type message, type request, message fields, output type, input type, output medium, host cores, "
+                "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
+                "chain deadline, component inputs"
+            ),
+        ),
+    ],
+)
+def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
+    for kind, key in (each.split() for each in keys.split(", ")):
+        assert find_effect(kind, key) is effect, (kind, key)
+
+
+def test_how_far_a_whole_element_reaches() -> None:
+    assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
+    assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
+        *("project", "partner", "requirement", "policy")
+    }
+
+
+def test_a_key_that_no_kind_has_may_affect_everything() -> None:
+    assert find_effect("host", "colour") is Effect.TIMING
+    assert find_effect("partner", "colour") is Effect.SYSTEM
+    assert find_key("component", "timing.wcet").name == "wcet"
+    assert find_key("component", "timing.outputs.x").name == "timing."
+    assert find_key("port", "qos") is find_key("port", "qos.depth")

@@ -1,0 +1,198 @@
+"""A comparison narrowed to what touches some components and nodes, and to what breaks somebody."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.compare import Change, Comparison
+from archgen.compare.breaking_changes import find_idle_acceptances, keep_breaking_only
+from archgen.compare.select_changes import select_changes
+from archgen.diagnostics.diagnostic import Severity
+from archgen.model.selector_evaluation import Selection
+from tests.compare.conftest import Compared
+
+ROBOT = """\
+partners: {certh: CERTH, sssa: SSSA, tum: TUM}
+requirements: {R: {title: R}}
+groups:
+  g:
+    owner: certh
+    components:
+      a: {requirements: [R], outputs: {x: T, y: U}}
+      b: {inputs: {x: a.x}}
+  h: {owner: sssa, components: {c: {inputs: {y: a.y}}}}
+types: {T: {size: 1 kB}, U: {size: 1 kB}}
+hosts: {pc: {cores: 4}, arm: {cores: 2}}
+containers: {box: {host: arm, threads: 2}}
+nodes:
+  na: {implements: a, host: pc, publishes: {x: {topic: /x}}}
+  nb: {implements: b, container: box}
+  nc: {implements: c, host: arm}
+chains: {k: {through: [a.x, b], deadline: 1 s}, l: {through: [nc], deadline: 1 s}}
+views: {v: {show: g}}
+project: {id: robot, title: Robot}
+"""
+
+
+def selected(components: str = "", nodes: str = "") -> Selection:
+    return Selection(frozenset(components.split()), frozenset(nodes.split()))
+
+
+def keys(changes: tuple[Change, ...]) -> list[str]:
+    return [f"{change.element_kind} {change.element_id} {change.key or change.kind}" for change in changes]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "touched"),
+    [
+        ("size: 1 kB}, U", "size: 2 kB}, U", "g.a"),
+        ("U: {size: 1 kB}", "U: {size: 2 kB}", "g.a"),
+        ("{title: R}", "{title: S}", "g.a"),
+        ("pc: {cores: 4}", "pc: {cores: 3}", "g.a na"),
+        ("arm: {cores: 2}", "arm: {cores: 1}", "g.b h.c nb nc"),
+        ("threads: 2", "threads: 1", "g.b nb"),
+        ("topic: /x", "topic: /y", "g.a na"),
+        ("implements: b,", "implements: b, package: p,", "g.b nb"),
+        ("deadline: 1 s}, l", "deadline: 2 s}, l", "g.a g.b"),
+        ("[nc], deadline: 1 s", "[nc], deadline: 2 s", "nc"),
+        ("show: g", "show: h", ""),
+        ("title: Robot", "title: Car", ""),
+        ("sssa: SSSA", "sssa: {title: SSSA, contact: a@b.eu}", "h.c nc"),
+        ("tum: TUM", "tum: {title: TUM, contact: a@b.eu}", ""),
+        ("inputs: {x: a.x}", "inputs: {x: {from: a.x, description: D}}", "g.b"),
+        ("  h: {", "  h: {description: D, ", "h.c"),
+        ("inputs: {y: a.y}", "inputs: {y: a.x}", "h.c"),
+    ],
+)
+def test_what_touches_an_element(compared: Compared, old: str, new: str, touched: str) -> None:
+    assert old in ROBOT
+    found = compared(ROBOT, ROBOT.replace(old, new, 1))
+    assert found.changes
+    for name in ("g.a", "g.b", "h.c"):
+        side = selected(components=name)
+        assert bool(select_changes(found, side, side).changes) is (name in touched.split()), name
+        assert bool(select_changes(found, side, selected()).changes) is (name in touched.split()), name
+    for name in ("na", "nb", "nc"):
+        side = selected(nodes=name)
+        kept = keys(select_changes(found, side, side).changes)
+        if name in touched.split():
+            assert kept, name
+
+
+def test_chains_owners_and_findings_are_narrowed_too(compared: Compared) -> None:
+    timed = ROBOT.replace("implements: a,", "implements: a, timing: {rate: 10 Hz, wcet: 1 ms},")
+    timed = timed.replace("implements: b,", "implements: b, timing: {behaviour: event, wcet: 1 ms},")
+    changed = (
+        timed.replace("10 Hz", "5 Hz").replace("x: T, y: U", "x: T, y: U, z: U").replace("threads: 2", "threads: 1")
+    )
+    found = compared(timed, changed)
+    assert [chain.id for chain in found.chains] == ["k"]
+    assert {finding.element for finding in found.new_findings} >= {"g.a"}
+    for name, chains, findings, owners in (
+        ("g.a", ["k"], True, ("certh",)),
+        ("g.b", ["k"], False, ("certh",)),
+        ("h.c", [], False, ()),
+    ):
+        # Chains lead through the nodes of components.
+        side = selected(name, f"n{name[-1]}")
+        narrowed = select_changes(found, side, side)
+        assert [chain.id for chain in narrowed.chains] == chains, name
+        assert bool([each for each in narrowed.new_findings if each.element == "g.a"]) is findings, name
+        assert narrowed.concerned_owners == owners, name
+    back = compared(changed, timed)
+    assert [each.element for each in select_changes(back, selected("g.a"), selected("g.a")).cured_findings] == ["g.a"]
+    assert select_changes(back, selected("h.c"), selected("h.c")).cured_findings == ()
+    quiet = compared(changed, changed + "rules: {unread-output: off}\n")
+    assert [each.element for each in select_changes(quiet, selected("g.a"), selected()).silenced_findings] == ["g.a"]
+    assert select_changes(quiet, selected("h.c"), selected("h.c")).silenced_findings == ()
+
+
+def test_a_node_selects_the_chain_through_its_components(compared: Compared) -> None:
+    text = ROBOT.replace(
+        "implements: c, host: arm", "implements: [c, b], host: arm, timing: {c: {rate: 10 Hz, wcet: 1 ms}}"
+    )
+    found = compared(text, text.replace("wcet: 1 ms", "wcet: 2 ms"))
+    narrowed = select_changes(found, selected(nodes="nc"), selected(nodes="nc"))
+    assert [chain.id for chain in narrowed.chains] == [chain.id for chain in found.chains]
+    assert narrowed.changes == found.changes
+
+
+def test_removed_and_renamed_elements_are_selected_by_their_old_ids(compared: Compared) -> None:
+    without = (
+        ROBOT.replace("      b: {inputs: {x: a.x}}\n", "")
+        .replace("  nb: {implements: b, container: box}\n", "")
+        .replace("[a.x, b]", "[a.x]")
+    )
+    found = compared(ROBOT, without)
+    assert "component g.b removed" in keys(select_changes(found, selected("g.b"), selected()).changes)
+    assert "component g.b removed" not in keys(select_changes(found, selected("h.c"), selected()).changes)
+    renamed = compared(ROBOT, ROBOT.replace("  h: {", "  hall: {"))
+    assert keys(select_changes(renamed, selected("h.c"), selected()).changes) == ["group hall renamed"]
+
+
+REVIEWED = ROBOT + "review: {breaking: error}\n"
+GONE = REVIEWED.replace("x: T, y: U", "x: T").replace("y: a.y", "y: ")
+
+
+def accepted(entries: str) -> str:
+    return GONE.replace("breaking: error", f"breaking: error, accepted: {{{entries}}}")
+
+
+@pytest.mark.parametrize(
+    ("text", "refused", "idle"),
+    [
+        (GONE, True, []),
+        (accepted("g.a.y: Agreed"), False, []),
+        (accepted("g.a.y: {reason: Agreed, key: type}"), True, ["g.a.y"]),
+        (accepted("g.a.x: Agreed"), True, ["g.a.x"]),
+        (accepted("g.a.y: Agreed, h.c: Agreed"), False, ["h.c"]),
+        (GONE.replace("breaking: error", "breaking: warning"), True, []),  # the stricter policy of both counts
+    ],
+)
+def test_what_the_project_refuses(compared: Compared, text: str, refused: bool, idle: list[str]) -> None:  # noqa: FBT001
+    found = compared(REVIEWED, text)
+    assert found.is_refused is refused
+    assert [entry.element for entry in find_idle_acceptances(found.changes, found.after.architecture.review)] == idle
+    assert [entry.element for entry in found.idle_acceptances] == idle
+
+
+def test_a_warning_refuses_nothing_and_off_is_not_even_looked_at(compared: Compared) -> None:
+    warned = compared(REVIEWED.replace("error", "warning"), GONE.replace("error", "warning"))
+    assert (warned.is_refused, warned.breaking_severity) == (False, Severity.WARNING)
+    assert [change.broken_partners for change in warned.changes if change.breaks] == [("sssa",)]
+    quiet = compared(REVIEWED.replace("error", "off"), GONE.replace("error", "off"))
+    assert (quiet.is_refused, quiet.breaking_severity) == (False, Severity.OFF)
+    assert [change for change in quiet.changes if change.breaks] == []
+    assert compared(ROBOT, ROBOT).breaking_severity is Severity.WARNING
+
+
+def test_only_what_breaks(compared: Compared) -> None:
+    found = compared(REVIEWED, GONE.replace("title: Robot", "title: Car"))
+    narrowed: Comparison = keep_breaking_only(found)
+    assert keys(narrowed.changes) == ["output g.a.y removed"]
+    assert narrowed.only_breaking
+    assert not found.only_breaking
+    assert (narrowed.chains, narrowed.new_findings, narrowed.cured_findings) == ((), (), ())
+    assert narrowed.concerned_owners == ("certh", "sssa")
+
+
+def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(compared: Compared) -> None:
+    other = (
+        GONE.replace("title: Robot", "title: Car")
+        .replace("x: T}", "}")
+        .replace("x: a.x", "x: ")
+        .replace("[a.x, b]", "[b]")
+    )
+    other = other.replace("h: {owner: sssa", "h: {owner: tum")
+    base = REVIEWED.replace("b: {inputs: {x: a.x}}", "b: {owner: tum, inputs: {x: a.x}}")
+    other = other.replace("b: {inputs: {x: }}", "b: {owner: tum, inputs: {x: }}")
+    plain = compared(base, other)
+    assert [change.element_id for change in plain.changes if change.breaks] == ["g.a.x", "g.a.y"]
+    assert [bool(change.breaks) for change in plain.changes][:3] == [True, True, False]
+    agreed = compared(base, other.replace("breaking: error", "breaking: error, accepted: {g.a.x: Agreed}"))
+    assert [change.element_id for change in agreed.changes if change.breaks] == ["g.a.y", "g.a.x"]
+
+
+def test_a_comparison_in_which_nothing_differs_is_empty(compared: Compared) -> None:
+    assert compared(ROBOT, ROBOT).is_empty
+    assert not compared(ROBOT, ROBOT.replace("title: Robot", "title: Car")).is_empty
