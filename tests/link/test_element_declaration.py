@@ -149,7 +149,9 @@ def test_an_entry_of_a_node_is_internal_only_below_internal(linked: Linked) -> N
 def test_a_node_whose_components_are_unknown_has_no_ports_of_its_own() -> None:
     """Only a node without `implements` names ports freely."""
     timing = "timing: {trigger: [x], outputs: {y: {conditional: true}}}"
-    free, bound = link_unchecked(f"nodes: {{free: {{{timing}}}, bound: {{implements: [nothing], {timing}}}}}").nodes.values()
+    free, bound = link_unchecked(
+        f"nodes: {{free: {{{timing}}}, bound: {{implements: [nothing], {timing}}}}}"
+    ).nodes.values()
     assert (list(free.timing[""].outputs), free.timing[""].trigger is None) == (["y"], False)
     assert (list(bound.timing[""].outputs), bound.timing[""].trigger) == ([], None)
 

@@ -81,12 +81,20 @@ def test_what_makes_no_sense_is_refused(architecture: Architecture, text: str, s
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("timing.wcet=3 ms", "`timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms"),
-        (".timing.wcet=3 ms", "`.timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms"),
+        (
+            "timing.wcet=3 ms",
+            "`timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms",
+        ),
+        (
+            ".timing.wcet=3 ms",
+            "`.timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms",
+        ),
         (
             "cam.timing.xyzzy=3 ms",
-            "`timing` has no key `xyzzy` that can be set: use period, rate, jitter, wcet, bcet, throttle, response, every,"
-            " priority, core, behaviour, trigger",
+            (
+                "`timing` has no key `xyzzy` that can be set: use period, rate, jitter, wcet, bcet, throttle, response, every,"
+                " priority, core, behaviour, trigger"
+            ),
         ),
         ("cam.timing.wcet=3", "`wcet` takes a duration such as 120 ms (units: ns us ms s min h), not `3`"),
         ("cam.timing.rate=3 ms", "`rate` takes a frequency such as 10 Hz (units: Hz kHz), not `3 ms`"),
@@ -101,7 +109,10 @@ def test_what_makes_no_sense_is_refused(architecture: Architecture, text: str, s
         ("unmapped.timing.wcet=3 ms", "no node implements `see.unmapped`: its timing counts nowhere"),
         ("same.timing.wcet=3 ms", "`same` may mean see.same, hear.same"),
         ("find.timing.every=0", "find: `every` is 1 or more; `every: 3` fires at each third input"),
-        ("cam.timing.bcet=6 ms", "cam: the best case execution time (`bcet`, 6 ms) is above the worst (`wcet`, 5 ms); exchange them, or leave `bcet` out"),
+        (
+            "cam.timing.bcet=6 ms",
+            "cam: the best case execution time (`bcet`, 6 ms) is above the worst (`wcet`, 5 ms); exchange them, or leave `bcet` out",
+        ),
     ],
 )
 def test_a_refusal_says_what_would_do(text: str, message: str) -> None:

@@ -33,22 +33,24 @@ def reader_of(architecture: Architecture) -> Endpoint:
 
 
 @pytest.mark.parametrize(
-    ("sent", "expected", "written", "read", "message", "kind"),
+    ("statements", "message", "kind"),
     [
-        ("Known", "", "", "", "std_msgs/msg/Int8", "Known"),
-        ("Known", "Other", "", "", "std_msgs/msg/Int8", "Other"),
-        ("Open", "Other", "", "", "std_msgs/msg/Int16", "Other"),
-        ("Open", "Open", "", "", None, "Open"),
-        ("", "Other", "", "", "std_msgs/msg/Int16", "Other"),
-        ("", "", "", "", None, None),
-        ("Open", "Other", "std_msgs/msg/Int32", "", "std_msgs/msg/Int32", "Other"),
-        ("Known", "Other", "std_msgs/msg/Int32", "std_msgs/msg/Int64", "std_msgs/msg/Int64", "Other"),
-        ("Known", "", "", "std_msgs/msg/Int64", "std_msgs/msg/Int64", "Known"),
+        (("Known", "", "", ""), "std_msgs/msg/Int8", "Known"),
+        (("Known", "Other", "", ""), "std_msgs/msg/Int8", "Other"),
+        (("Open", "Other", "", ""), "std_msgs/msg/Int16", "Other"),
+        (("Open", "Open", "", ""), None, "Open"),
+        (("", "Other", "", ""), "std_msgs/msg/Int16", "Other"),
+        (("", "", "", ""), None, None),
+        (("Open", "Other", "std_msgs/msg/Int32", ""), "std_msgs/msg/Int32", "Other"),
+        (("Known", "Other", "std_msgs/msg/Int32", "std_msgs/msg/Int64"), "std_msgs/msg/Int64", "Other"),
+        (("Known", "", "", "std_msgs/msg/Int64"), "std_msgs/msg/Int64", "Known"),
     ],
 )
 def test_what_a_node_writes_outranks_what_is_sent_and_that_what_is_expected(
-    derived: Derived, sent: str, expected: str, written: str, read: str, message: str | None, kind: str | None
+    derived: Derived, statements: tuple[str, str, str, str], message: str | None, kind: str | None
 ) -> None:
+    """The statements: the type that is sent, the one that is expected, the messages that writer and reader name."""
+    sent, expected, written, read = statements
     text = PAIR.format(
         sent=sent,
         expected=f", type: {expected}" if expected else "",
@@ -115,7 +117,9 @@ nodes:
 
 
 def texts_of(architecture: Architecture, node: str) -> list[str]:
-    return [f"{e.use} {e.name} {e.flow} {' '.join(e.sources)}".strip() for e in architecture.endpoints if e.node == node]
+    return [
+        f"{e.use} {e.name} {e.flow} {' '.join(e.sources)}".strip() for e in architecture.endpoints if e.node == node
+    ]
 
 
 def test_an_input_reads_topics_and_calls_services_by_what_its_sources_are(derived: Derived) -> None:
@@ -208,7 +212,9 @@ nodes:
 types: {Known: std_msgs/msg/Int8, Call: nav2_msgs/action/Wait}
 """
     endpoints = [e for e in derived(text).endpoints if not e.port]
-    assert [f"{e.node} {e.use} {e.name} {e.flow} {e.message} {e.type} {e.component} {e.internal}" for e in endpoints] == [
+    assert [
+        f"{e.node} {e.use} {e.name} {e.flow} {e.message} {e.type} {e.component} {e.internal}" for e in endpoints
+    ] == [
         "one publishes /g/a/k topic std_msgs/msg/Int16 None g.a True",
         "two subscribes /g/a/k topic std_msgs/msg/Int16 None g.a True",
         "two subscribes /o topic std_msgs/msg/Int8 Known g.a True",
