@@ -30,6 +30,10 @@ from archgen.pipeline import check_project
 
 _GUTTER = "    "
 _ONLY_FILE = "project.yaml"
+# The line of a finding: its drawing (`^^^`, `^^^ to +2:14`, `!`, `? a.yaml:1:1`), its number, its severity, its rule.
+_HEADLINE = re.compile(
+    r"^# +(?:\^+(?: to \S+)?|!|\?(?: \S+)?) (?:\[\d+\] )?(?:error|warning|note) ([a-z-]+)(?= \(|:)", re.MULTILINE
+)
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ class RuleCase:
     @property
     def expected_rules(self) -> frozenset[str]:
         """The rules that the case expects a finding of."""
-        return frozenset(re.findall(r"^#.*(?:error|warning|note) ([a-z-]+)(?= \(|:)", self.text, re.MULTILINE))
+        return frozenset(_HEADLINE.findall(self.text))
 
     def annotate(self, folder: Path) -> str:
         """Check the input in an empty folder and return the case's text with the findings."""
