@@ -206,3 +206,16 @@ def test_an_override_stands_where_the_figure_stood() -> None:
 def test_overrides_that_make_sense_together_may_be_given_one_by_one() -> None:
     timing = apply_overrides(judged(NAMES), ["cam.timing.bcet=6 ms", "cam.timing.wcet=7 ms"]).nodes["cam"].timing
     assert (str(timing["see.camera"].bcet), str(timing["see.camera"].wcet)) == ("6 ms", "7 ms")
+
+
+def test_of_many_elements_that_may_be_meant_six_are_named() -> None:
+    groups = "".join(f"  g{n}: {{components: {{same: {{title: Same}}}}}}\n" for n in range(8))
+    nodes = "".join(f"  n{n}: {{implements: g0.same}}\n" for n in range(8))
+    architecture = judged(f"groups:\n{groups}nodes:\n{nodes}")
+    for element, message in (
+        ("same", "`same` may mean g0.same, g1.same, g2.same, g3.same, g4.same, g5.same"),
+        ("g0.same", "8 nodes implement `g0.same`: name one of them (n0, n1, n2, n3, n4, n5)"),
+    ):
+        with pytest.raises(OverrideError) as caught:
+            read_override(architecture, f"{element}.timing.wcet=1 ms")
+        assert str(caught.value) == message
