@@ -23,7 +23,6 @@ COVERED_BY = {
     "transform.planned_nodes": "transform/test_low_level.py",
     "transform.portless_endpoints": "transform/test_endpoints.py",
     "transform.reading_endpoints": "transform/test_endpoints.py",
-    "transform.ros_names": "transform/test_low_level.py",
     "transform.writing_endpoints": "transform/test_endpoints.py",
     "model.ros_distro": "model/test_known_interfaces.py",
     "model.selector_parser": "model/test_selector_evaluation.py",
