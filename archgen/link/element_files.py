@@ -19,7 +19,7 @@ def find_element_files(root: MappingNode) -> ElementFiles:
             files["component", f"{name}.{part.key}"] = _list_distinct_files(part.key_span.file, part.value)
         # A file that only adds components to a group writes the group's id too, but nothing about the group.
         files["group", name] = _list_distinct_files(
-            "" if components and not own_values else entry.key_span.file, *own_values
+            "" if components.entries and not own_values else entry.key_span.file, *own_values
         )
     for name, entry, body in mapping_values.iterate_elements(root, "nodes"):
         files["node", name] = _list_distinct_files(entry.key_span.file, body)

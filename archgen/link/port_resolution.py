@@ -53,13 +53,16 @@ class PortResolver:
 
     def _diagnose_ambiguous(self, key: str, span: Span, match: PathMatch) -> Diagnostic:
         self.resolver.suspect_ids.update(name.id for name in match.elements)
-        quoted_ends = " or ".join(f"`{take_path_end(name.id, 2)}`" for name in match.elements)
+        paths, form = [take_path_end(name.id, 2) for name in match.elements], "component.port"
+        # Components of one name in two groups: only the complete ids tell their ports apart.
+        if len(set(paths)) < len(paths):
+            paths, form = [name.id for name in match.elements], "group.component.port"
         return Diagnostic(
             "ambiguous-reference",
-            f"`{key}` can mean {quoted_ends}",
+            f"`{key}` can mean {' or '.join(f'`{path}`' for path in paths)}",
             span,
             labels=tuple(Label(self._span_of(name), f"`{name.id}`") for name in match.elements),
-            help="write `component.port` where several components of a node have a port of this name",
+            help=f"write `{form}` where several components of a node have a port of this name",
             element=self.owner_id,
         )
 

@@ -153,6 +153,9 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
             message if components else f"{message}; {guess or '`archgen list` gives the names of all elements'}"
         )
     nodes: list[Node] = list(architecture.nodes_implementing(components[0]))
+    if not nodes:
+        msg = f"no node implements `{components[0]}`: its timing counts nowhere"
+        raise OverrideError(msg)
     if len(nodes) != 1:
         names = [node.id for node in nodes]
         msg = f"{len(nodes)} nodes implement `{components[0]}`: name one of them ({', '.join(names[:6])})"

@@ -79,3 +79,14 @@ def test_what_an_unresolved_reference_meant_is_not_reported_again(found: Found) 
         use driver serves check port=a.camera.check
     """
     assert found(unpublished_output, text) == []
+
+
+def test_an_endpoint_carries_its_port_whether_its_node_lists_it_or_not(found: Found) -> None:
+    text = """
+        out a.camera.image
+        out a.camera.depth
+        node left implements=a.camera
+        node right implements=a.camera
+        end left publishes /image port=a.camera.image
+    """
+    assert found(unpublished_output, text) == ["2: none of the nodes of `a.camera` publishes `depth`"]

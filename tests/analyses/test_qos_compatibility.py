@@ -50,6 +50,13 @@ def test_an_offer_must_be_as_good_as_the_request(policy: str, offered: str | Non
     assert found == ([policy.replace("_", " ")] if (policy, offered, requested) in _TOO_LITTLE else [])
 
 
+@pytest.mark.parametrize("policy", ["deadline", "lease_duration"])
+def test_a_duration_of_one_nanosecond_is_given(policy: str) -> None:
+    (clash,) = find_qos_conflicts(_qos(policy, None), _qos(policy, "1 ns"))
+    assert clash.policy == policy.replace("_", " ")
+    assert list(find_qos_conflicts(_qos(policy, "1 ns"), _qos(policy, "1 ns"))) == []
+
+
 def _judge(writer: Qos, reader: Qos, *, distro: str | None = "jazzy", planned: str = "") -> list[Diagnostic]:
     nodes = {
         name: Node(name, name, written=name != planned, at=Span("a.yaml", 9, 1, 9, 2)) for name in ("lidar", "mapper")

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from dataclasses import asdict
 from fractions import Fraction
+from pathlib import Path
 
-from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts, measure_progress, measure_size
+from archgen.analyses.size_counts import (
+    ArchitectureSize,
+    ProgressCounts,
+    count_mapped_connections,
+    measure_progress,
+    measure_size,
+)
 from archgen.model.architecture import Architecture
+from archgen.pipeline import check_project
 
 Sketch = Callable[[str], Architecture]
 
@@ -76,3 +85,58 @@ def test_progress_measures_the_whole_groups_partners_and_what_nobody_owns(sketch
         ProgressCounts("partner", "certh", "certh", components=2, described=1, typed=1, mapped=1, timed=1, traced=1),
         ProgressCounts("partner", "", "(nobody)", components=2, described=0, typed=1, mapped=1, timed=0, traced=0),
     )
+
+
+def test_a_connection_is_mapped_by_its_type_or_by_the_node_that_publishes() -> None:
+    text = """
+groups:
+  g:
+    components:
+      a: {outputs: {typed: std_msgs/msg/Empty, named: Open, served: Open, light: {medium: physical}, open: Open}}
+      b: {inputs: {i: a.typed, j: a.named, k: a.light, l: a.open, m: [a.typed, a.open], n: a.served, o: c}}
+      c: {title: Stub}
+nodes:
+  a: {implements: a, publishes: {named: {message: std_msgs/msg/Empty}}, serves: {served: {message: std_srvs/srv/Empty}}}
+  b: {implements: b, subscribes: {l: {message: std_msgs/msg/Empty}}}
+types: {Open: {status: planned}}
+"""
+    assert count_mapped_connections(_architecture(text)) == 5
+
+
+def test_progress_has_a_row_for_each_scope_and_for_what_nobody_owns() -> None:
+    text = """
+project: {id: r, title: Robot}
+partners: {lab: The lab, firm: The firm}
+requirements: {R-1: One}
+groups:
+  g:
+    title: Group
+    components:
+      a: {owner: [lab, firm], functionality: F, requirements: [R-1], outputs: {o: std_msgs/msg/Empty}, timing: {rate: 1 Hz}}
+      b: {inputs: {o: a.o}, requirements: [be quick, R-9], outputs: {p: }}
+      c: {owner: lab, title: C, inputs: {o: a.o}}
+nodes:
+  n: {implements: b, timing: {rate: 1 Hz}}
+  m: {implements: c, timing: {rate: 1 Hz}}
+  o: {implements: c}
+"""
+    rows = {(row.scope, row.id): row for row in measure_progress(_architecture(text))}
+    assert {
+        key: (r.title, r.components, r.described, r.typed, r.mapped, r.timed, r.traced) for key, r in rows.items()
+    } == {
+        ("project", "r"): ("Robot", 3, 1, 2, 2, 2, 1),
+        ("group", "g"): ("Group", 3, 1, 2, 2, 2, 1),
+        ("partner", "lab"): ("The lab", 2, 1, 2, 1, 1, 1),
+        ("partner", "firm"): ("The firm", 1, 1, 1, 0, 1, 1),
+        ("partner", ""): ("(nobody)", 1, 0, 0, 1, 1, 0),
+    }
+    owned = text.replace("b: {inputs", "b: {owner: lab, inputs")
+    assert [row.id for row in measure_progress(_architecture(owned))] == ["r", "g", "lab", "firm"]
+    alone = text.replace("partners: {lab: The lab, firm: The firm}", "").replace("owner: [lab, firm], ", "")
+    assert [row.id for row in measure_progress(_architecture(alone.replace("owner: lab, ", "")))] == ["r", "g"]
+
+
+def _architecture(text: str) -> Architecture:
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "project.yaml").write_text(text, encoding="utf-8")
+        return check_project(Path(folder) / "project.yaml").architecture

@@ -105,3 +105,13 @@ def test_internal_topics_connect_the_nodes_of_one_component(found: Found) -> Non
 
 def test_a_node_without_component_is_not_asked(found: Found) -> None:
     assert found(unaccounted_topic, "node relay\nend relay subscribes /in internal") == []
+
+
+def test_a_topic_that_nobody_wrote_is_not_compared(found: Found) -> None:
+    text = f"""{_BASE}
+        end planner publishes /cmd_vel port=a.planner.command
+        end base subscribes /other port=a.base.command
+    """
+    assert found(unaccounted_topic, text) == []
+    written = text.replace("port=a.base.command", "port=a.base.command written")
+    assert len(found(unaccounted_topic, written)) == 1

@@ -230,3 +230,14 @@ def test_a_slip_in_the_type_of_a_field_is_noted() -> None:
     ]
     assert {diagnostic.rule for diagnostic in diagnostics} == {"unchecked-message"}
     assert load_interfaces("foxy", [("demo_msgs/msg/Thing.msg", text)])[1] == ()
+
+
+def test_a_definition_whose_name_is_none_defines_nothing() -> None:
+    interfaces, found = load_interfaces("jazzy", [("msgs/own_msgs/msg/bad_name.msg", "int8 x\n")])
+    assert [brief(d) for d in found] == [
+        f"msgs/own_msgs/msg/bad_name.msg:1:1 `own_msgs/msg/bad_name` is no name of an interface in ROS 2 {NAMES}"
+    ]
+    assert interfaces.status_of("own_msgs/msg/bad_name") == "not held"
+    assert interfaces.project_packages == frozenset()
+    ros_1, found = load_interfaces("noetic", [("msgs/own_msgs/msg/bad_name.msg", "int8 x\n")])
+    assert (ros_1.status_of("own_msgs/msg/bad_name"), found) == ("known", ())

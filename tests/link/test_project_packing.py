@@ -164,6 +164,15 @@ PIXEL = base64.b64decode(
 )
 
 
+def test_of_the_types_that_no_file_declares_the_shipped_ones_come_along(tmp_path: Path) -> None:
+    ports = "{a: Colour image, b: Unheard of, c: std_msgs/msg/Bool, d: Own}"
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml=f"archgen: 1\ngroups: {{g: {{components: {{c: {{outputs: {ports}}}}}}}}}\ntypes: {{Own: std_msgs/msg/Bool}}\n",
+    )
+    assert list(yaml.safe_load(text_of(checked))["types"]) == ["Own", "Colour image"]
+
+
 def test_chapters_pictures_and_definitions_come_along(tmp_path: Path) -> None:
     checked = project(
         tmp_path / "robot",
@@ -248,9 +257,23 @@ PROJECTS = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(PROJECTS)
 def test_whatever_is_written_packs_to_a_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) -> None:
+    check_fixed_point(tmp_path_factory, data)
+
+
+@pytest.mark.slow
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(PROJECTS)
+def test_whatever_is_written_packs_to_a_fixed_point_at_length(
+    tmp_path_factory: pytest.TempPathFactory, data: object
+) -> None:
+    check_fixed_point(tmp_path_factory, data)
+
+
+def check_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) -> None:
+    """Pack a project, read the packed file as a project, and pack that: nothing changes."""
     folder = tmp_path_factory.mktemp("robot")
     (folder / "robot.yaml").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
     checked = check_project(folder / "robot.yaml")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.slice_merging import merge_documents
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
@@ -138,3 +139,25 @@ def test_what_is_accepted_has_a_reason() -> None:
         "a:1:34 missing-key: `a.c` lacks `reason`",
         "a:1:41 missing-key: `a.d` lacks `reason`",
     ]
+
+
+def test_what_is_declared_stays_where_something_else_is_not() -> None:
+    result, found = merged(
+        "groups: {bare: , titled: {title: T, components: {x: {tags: [a]}}}, kept: {components: {c: C, y: {tags: [a]}}}}",
+        "groups: {gone: {components: {z: {tags: [a]}}}, whole: {components: {d: D}}}",
+    )
+    assert result == {
+        "groups": {
+            "bare": {},
+            "titled": {"title": "T", "components": {}},
+            "kept": {"components": {"c": {"title": "C"}}},
+            "whole": {"components": {"d": {"title": "D"}}},
+        }
+    }
+    assert [line.split("component ")[1].split(" |")[0] for line in found] == ["`titled.x`", "`kept.y`", "`gone.z`"]
+
+
+def test_a_merged_mapping_stands_where_its_first_slice_does() -> None:
+    root, _ = merge_documents(slices("groups: {g: {title: G}}", "groups: {h: {title: H}}"))
+    assert (root.span.file, root.entries["groups"].value.span.file) == ("a", "a")
+    assert merge_documents([])[0].span == NO_SPAN

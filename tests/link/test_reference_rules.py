@@ -1,0 +1,16 @@
+"""The rules of linking: which of them nobody can switch off."""
+
+from __future__ import annotations
+
+from archgen import link
+
+
+def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
+    assert {rule.name: (str(rule.severity), rule.fixed) for rule in link.RULES} == {
+        "conflicting-values": ("error", True),
+        "undeclared-element": ("error", True),
+        "unknown-reference": ("error", True),
+        "ambiguous-reference": ("error", True),
+        "hidden-reference": ("warning", False),
+        "missing-chapter": ("error", True),
+    }
