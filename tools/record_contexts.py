@@ -17,6 +17,7 @@ import coverage
 import pytest
 
 _seconds_by_test: dict[str, float] = {}
+_failed_tests: set[str] = set()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -43,9 +44,16 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Generator[None, 
         _switch_context(_current_test())
 
 
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Note a test that fails without any mutant."""
+    if report.failed:
+        _failed_tests.add(report.nodeid)
+
+
 def pytest_sessionfinish() -> None:
-    """Write the seconds of all tests to the file that TEST_SECONDS names."""
-    Path(os.environ["TEST_SECONDS"]).write_text(json.dumps(_seconds_by_test), encoding="utf-8")
+    """Write the seconds of all tests that pass to the file that TEST_SECONDS names."""
+    seconds = {test: count for test, count in _seconds_by_test.items() if test not in _failed_tests}
+    Path(os.environ["TEST_SECONDS"]).write_text(json.dumps(seconds), encoding="utf-8")
 
 
 def _current_test() -> str:

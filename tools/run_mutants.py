@@ -30,9 +30,9 @@ from mutant_kinds import Mutant, find_mutants
 REPOSITORY = Path(__file__).resolve().parent.parent
 FOLDERS = ("compare", "link", "analyses", "timing")
 ACCEPTED_SHARE = 0.05
-_START_SECONDS, _SLOWER = 30, 5
+_START_SECONDS, _SLOWER = 60, 10
 """How long a run may take: so long, and so many times as long as its tests took without a mutant."""
-_PYTEST_OPTIONS = ("-q", "-x", "--assert=plain", "-m", "not slow", "-p", "no:cacheprovider")
+_PYTEST_OPTIONS = ("-q", "--assert=plain", "-m", "not slow", "-p", "no:cacheprovider")
 _JUDGED_STATUSES = {0, 1, 2, 4}
 """Pytest's exit statuses: passed, failed, not collected (2 and 4: the mutant breaks an import). The rest is our mistake."""
 
@@ -52,8 +52,8 @@ class SuiteRecord:
             *(self.tests_by_line.get((mutant.file, line), ()) for line in range(first_line, last_line + 1))
         )
         # A constant or a shared fixture: any test may rest on it.
-        chosen = self.seconds_by_test if "" in tests else tests
-        return sorted(chosen, key=lambda test: (self.seconds_by_test.get(test, 0), test))
+        chosen = self.seconds_by_test if "" in tests else tests & self.seconds_by_test.keys()
+        return sorted(chosen, key=lambda test: (self.seconds_by_test[test], test))
 
 
 def record_suite(copy: Path, folder: str) -> SuiteRecord:
@@ -70,8 +70,10 @@ def record_suite(copy: Path, folder: str) -> SuiteRecord:
         text=True,
         check=False,
     )
-    if run.returncode:
-        sys.exit(f"the tests of {folder} fail without a mutant:\n{run.stdout[-2000:]}")
+    if run.returncode not in {0, 1}:
+        sys.exit(f"the tests of {folder} do not run without a mutant:\n{run.stdout[-2000:]}")
+    # Some measure time, and fail while coverage is recorded: they cannot judge.
+    print(*(f"left out: {line}" for line in run.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))), sep="\n")
     return SuiteRecord(_read_contexts(data, copy), json.loads(seconds.read_text(encoding="utf-8")))
 
 
@@ -101,10 +103,10 @@ def survives(mutant: Mutant, text: str, copy: Path, record: SuiteRecord) -> bool
     selection = copy / ".selected-tests"
     selection.write_text("\n".join(tests), encoding="utf-8")
     # Longer than the tests take without the mutant, on a machine that does other things as well.
-    limit = _START_SECONDS + _SLOWER * sum(record.seconds_by_test.get(test, 0) for test in tests)
+    limit = _START_SECONDS + _SLOWER * sum(record.seconds_by_test[test] for test in tests)
     try:
         run = subprocess.run(
-            [sys.executable, "-B", "-m", "pytest", *_PYTEST_OPTIONS, "--no-header", "--tb=no", f"@{selection}"],
+            [sys.executable, "-B", "-m", "pytest", *_PYTEST_OPTIONS, "-x", "--no-header", "--tb=no", f"@{selection}"],
             cwd=copy,
             capture_output=True,
             timeout=limit,
