@@ -34,7 +34,10 @@ def _sensitivity(nodes: dict[str, str], wires: str, rest: str, chain: str = "see
 
 
 def _gains(found: ChainSensitivity) -> list[str]:
-    return [f"{gain.figure} ({gain.written}) {float(gain.gain / MS):g} @{gain.at.line}:{gain.at.column}" for gain in found.gains]
+    return [
+        f"{gain.figure} ({gain.written}) {float(gain.gain / MS):g} @{gain.at.line}:{gain.at.column}"
+        for gain in found.gains
+    ]
 
 
 def test_a_tenth_of_each_figure_that_bears_on_the_chain() -> None:
@@ -44,8 +47,8 @@ def test_a_tenth_of_each_figure_that_bears_on_the_chain() -> None:
         "cam.timing.period (40 ms) 4 @10:52",
         "act.timing.wcet (8 ms) 0.8 @11:50",
         "cam.timing.jitter (5 ms) 0.5 @10:67",
-        "cam.timing.wcet (3 ms) 0.3 @11:74",
-        "side.timing.wcet (2 ms) 0.2 @13:58",
+        "cam.timing.wcet (3 ms) 0.3 @10:79",
+        "side.timing.wcet (2 ms) 0.2 @12:65",
         "lan.latency.worst (3 ms) 0.1 @19:3",
     ]
     assert (found.gaps, found.untried) == ((), 0)
@@ -70,7 +73,9 @@ def test_what_fires_a_chain_bears_on_it_wherever_it_runs() -> None:
 
 
 def test_a_faster_rate_is_a_shorter_period() -> None:
-    found = _sensitivity({"cam": "rate: 10 Hz, wcet: 1 ms", "act": "wcet: 1 ms"}, "cam>act", "chains: {see: {through: [cam]}}")
+    found = _sensitivity(
+        {"cam": "rate: 10 Hz, wcet: 1 ms", "act": "wcet: 1 ms"}, "cam>act", "chains: {see: {through: [cam]}}"
+    )
     # 10 / 0.9 Hz: 90 instead of 100 ms.
     assert _gains(found) == ["cam.timing.rate (10 Hz) 10 @7:41", "cam.timing.wcet (1 ms) 0.1 @7:54"]
 
@@ -106,12 +111,20 @@ def test_unknown_figures_are_ranked_by_the_terms_that_lack_them() -> None:
 
 
 def test_a_bound_that_nobody_knows_gains_nothing() -> None:
-    found = _sensitivity({"hot @p": "period: 10 ms, wcet: 10 ms"}, "", "hosts: {p: {cores: 1}}\nchains: {see: {through: [hot]}}")
+    found = _sensitivity(
+        {"hot @p": "period: 10 ms, wcet: 10 ms"}, "", "hosts: {p: {cores: 1}}\nchains: {see: {through: [hot]}}"
+    )
     assert found.gains == ()
 
 
 def test_a_best_case_goes_down_with_the_worst() -> None:
     found = _sensitivity(
-        {"cam": "period: 10 ms, wcet: 2 ms, bcet: 2 ms", "act": "wcet: 1 ms"}, "cam>act", "chains: {see: {through: [cam, act]}}"
+        {"cam": "period: 10 ms, wcet: 2 ms, bcet: 2 ms", "act": "wcet: 1 ms"},
+        "cam>act",
+        "chains: {see: {through: [cam, act]}}",
     )
-    assert _gains(found) == ["cam.timing.period (10 ms) 1 @7:43", "cam.timing.wcet (2 ms) 0.2 @7:56", "act.timing.wcet (1 ms) 0.1 @8:41"]
+    assert _gains(found) == [
+        "cam.timing.period (10 ms) 1 @7:43",
+        "cam.timing.wcet (2 ms) 0.2 @7:56",
+        "act.timing.wcet (1 ms) 0.1 @8:41",
+    ]

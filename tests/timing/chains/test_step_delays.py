@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tests.timing.sketches import analyse_sketch, explain, list_chains, read_sketch
 
-
 EVERY_KIND_OF_STEP = (
     {
         "cam @p": "period: 40 ms, jitter: 2 ms, wcet: 3 ms, bcet: 1 ms",
@@ -236,8 +235,7 @@ def test_why_every_kind_of_step() -> None:
         "  assumes: the response of said is as declared @0:0",
         "  assumes: the reaction counts from the event that fires said; data age is larger by its largest gap (26 ms) @0:0",
     ]
-    assert explain(analysis, model, "nobody") == [
-    ]
+    assert explain(analysis, model, "nobody") == []
 
 
 LINKS_HOSTS_AND_DECLARED_RESPONSES = (
@@ -265,8 +263,7 @@ LINKS_HOSTS_AND_DECLARED_RESPONSES = (
 
 
 def test_links_hosts_and_declared_responses() -> None:
-    """On one host with priorities; a link with traffic of its own; what is missing is named.
-    """
+    """On one host with priorities; a link with traffic of its own; what is missing is named."""
     model = read_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES)
     assert list_chains(analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES), model) == [
         "two a > b: 34, best 3, from a sample 24, age 14: missed",
@@ -291,7 +288,10 @@ def test_links_hosts_and_declared_responses() -> None:
 
 
 def test_why_links_hosts_and_declared_responses() -> None:
-    model, analysis = read_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES), analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES)
+    model, analysis = (
+        read_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES),
+        analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES),
+    )
     assert explain(analysis, model, "two") == [
         "two: 34 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
@@ -343,4 +343,3 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "a: response between 1 ms and 1 ms (priorities) @0:0",
         "  everything of its priority or a higher one on p, over all activations of the busy period @13:61",
     ]
-

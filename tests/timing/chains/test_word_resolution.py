@@ -85,7 +85,9 @@ def test_only_whole_parts_of_ids_count() -> None:
 
 
 def test_no_more_than_six_meanings_are_listed() -> None:
-    groups = "".join(f"  g{number}: {{components: {{eye: {{outputs: {{out: std_msgs/msg/Empty}}}}}}}}\n" for number in range(8))
+    groups = "".join(
+        f"  g{number}: {{components: {{eye: {{outputs: {{out: std_msgs/msg/Empty}}}}}}}}\n" for number in range(8)
+    )
     model = architecture("groups:\n" + groups)
     with pytest.raises(UnknownNameError) as error:
         resolve_waypoint(model, analyse_architecture(model).system, "out")

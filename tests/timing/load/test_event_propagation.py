@@ -128,6 +128,38 @@ def test_jitter_goes_round_two_hosts() -> None:
     ]
 
 
+def test_jitter_grows_for_several_rounds() -> None:
+    """X and y pass events to and fro: each round makes the jitter larger, which lets more events come at once, until it rests."""
+    analysis = analyse_sketch(
+        {
+            "a @p": "period: 10 ms, wcet: 1 ms, bcet: 1 ms",
+            "b @q": "wcet: 2 ms, bcet: 1 ms",
+            "c @p": "wcet: 2 ms, bcet: 1 ms",
+            "d @q": "wcet: 2 ms, bcet: 1 ms",
+            "e @q": "period: 30 ms, wcet: 1 ms",
+            "f @p": "period: 20 ms, wcet: 2 ms",
+        },
+        "a>b b>c c>d",
+        "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q], latency: {best: 0 ms, worst: 1 ms}}}",
+    )
+    assert list_paces(analysis) == [
+        "a periodic written: 100 Hz, gap 10, jitter 0, apart 10",
+        "b event inferred: 100 Hz, gap 28, jitter 18, apart 0",
+        "c event inferred: 100 Hz, gap 60, jitter 50, apart 0",
+        "d event inferred: 100 Hz, gap 78, jitter 68, apart 0",
+        "e periodic written: 100/3 Hz, gap 30, jitter 0, apart 30",
+        "f periodic written: 50 Hz, gap 20, jitter 0, apart 20",
+    ]
+    assert list_responses(analysis) == [
+        "a 1..18 host",
+        "b 1..32 host",
+        "c 1..18 host",
+        "d 1..32 host",
+        "e none ?e..32 host",
+        "f none ?f..18 host",
+    ]
+
+
 def test_several_triggers_of_each_kind() -> None:
     """What fires: the sum of streams, all of them, each n-th, with jitter; calls come beside the triggers and are not thinned."""
     analysis = analyse_sketch(

@@ -16,7 +16,7 @@ from tests.timing.sketches import analyse_sketch, read_sketch
 
 
 def test_the_rate_monotonic_bound_is_rounded_down_to_nine_decimals() -> None:
-    """n (2^(1/n) - 1), C. Liu and J. Layland 1973: 1, 0.8284, 0.7798, 0.7568 ... ln 2."""
+    """N (2^(1/n) - 1), C. Liu and J. Layland 1973: 1, 0.8284, 0.7798, 0.7568 ... ln 2."""
     assert [rate_monotonic_bound(count) for count in (0, 1)] == [1, 1]
     assert rate_monotonic_bound(2) == Fraction(828_427_124, 10**9)
     assert rate_monotonic_bound(3) == Fraction(779_763_147, 10**9)
@@ -39,14 +39,19 @@ def test_the_exact_bound_needs_no_root() -> None:
 @pytest.mark.parametrize(
     ("cores", "shares", "responses"),
     [
-        # a and half of the others fill a core: 0.8 + 0.4 / 2 = 1; of the others 0.2 + 1 / 2 leaves room.
-        (2, (8, 2, 2), ["none [unbounded]", "18", "18"]),
-        (2, (7, 2, 2), ["15", "17", "17"]),
-        (3, (8, 2, 2, 2), ["none [unbounded]", "12", "12", "12"]),
-        (3, (6, 2, 2, 2), ["12", "10", "10", "10"]),
+        # 0.8 + 0.4 / 2 = 1. The others have no bound beside what has none.
+        (2, (8, 2, 2), ["none [unbounded]"] * 3),
+        # 7 + 3 (2 + 2) / 2: two jobs of each come within 13, and one is carried in. The others: 2 + (3 x 7 + 4 x 2) / 2.
+        (2, (7, 2, 2), ["13", "33/2", "33/2"]),
+        # 0.8 + 0.6 / 3 = 1.
+        (3, (8, 2, 2, 2), ["none [unbounded]"] * 4),
+        # 6 + 2 (2 + 2 + 2) / 3; 2 + (2 x 6 + 2 x 2 + 2 x 2) / 3.
+        (3, (6, 2, 2, 2), ["10", "26/3", "26/3", "26/3"]),
     ],
 )
-def test_a_thread_and_its_part_of_the_others_fill_a_core(cores: int, shares: tuple[int, ...], responses: list[str]) -> None:
+def test_a_thread_and_its_part_of_the_others_fill_a_core(
+    cores: int, shares: tuple[int, ...], responses: list[str]
+) -> None:
     nodes = {f"c{index} @pc": f"period: 10 ms, wcet: {share} ms" for index, share in enumerate(shares)}
     analysis = analyse_sketch(nodes, "", f"hosts: {{pc: {{cores: {cores}}}}}")
     assert [show_ms(time.worst) for time in analysis.responses.values()] == responses
@@ -55,10 +60,13 @@ def test_a_thread_and_its_part_of_the_others_fill_a_core(cores: int, shares: tup
 @pytest.mark.parametrize(
     ("shares", "others", "responses"),
     [
-        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95; 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
-        ((5, 5, 2), 3, []),
-        ((5, 5, 3), 3, []),
-        ((5, 5, 2), 6, []),
+        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (18 x 5 + 23 x 2) / 2 + 16 x 3 / 3 = 89: with responses of 89, 138 and
+        # 211/3, so many came within 89 and the response before it.
+        ((5, 5, 2), 3, ["89", "89", "138", "211/3"]),
+        # 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
+        ((5, 5, 3), 3, ["none [unbounded]"] * 4),
+        # 0.5 + (0.5 + 0.2) / 2 + 0.6 / 3 = 1.05.
+        ((5, 5, 2), 6, ["none [unbounded]"] * 4),
     ],
 )
 def test_threads_of_one_container_share_its_threads(shares: tuple[int, ...], others: int, responses: list[str]) -> None:

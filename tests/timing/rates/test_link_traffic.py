@@ -78,6 +78,62 @@ def test_what_a_link_of_known_bandwidth_carries() -> None:
     ]
 
 
+def test_two_clients_of_one_server() -> None:
+    """Each client has its own answers: 3 each 50 ms for t, one each 20 ms for u, 500 B both ways: 2 x (60 + 50) x 500 B/s. All ten
+    with those of `p` may wait at once: 5 kB; one more comes until they are sent: 5.5 ms.
+    """
+    analysis = analyse_sketch(
+        {
+            "t @one": "period: 50 ms, wcet: 1 ms, bcet: 1 ms, calls: {s: 3}",
+            "u @one": "period: 20 ms, wcet: 2 ms, bcet: 1 ms",
+            "s @two": "wcet: 1 ms, bcet: 1 ms",
+            "p @two": "period: 30 ms, wcet: 1 ms, bcet: 1 ms",
+            "v @one": "period: 40 ms, wcet: 1 ms, bcet: 1 ms",
+            "q @four": "behaviour: periodic, wcet: 1 ms",
+            "w @three": "period: 40 ms, wcet: 1 ms, bcet: 1 ms",
+        },
+        "t?s u?s v?p w?q",
+        "hosts: {one: {cores: 8}, two: {cores: 8}, three: {cores: 8}, four: {cores: 8}}\n"
+        "links: {lan: {connects: [one, two], bandwidth: 8 Mbit/s}, wan: {connects: [four, three], bandwidth: 8 Mbit/s}}",
+    )
+    assert list_paces(analysis) == [
+        "t periodic written: 20 Hz, gap 50, jitter 0, apart 50",
+        "u periodic written: 50 Hz, gap 20, jitter 0, apart 20",
+        "s on_demand inferred: 110 Hz, gap none ?s, jitter 173273/4000, apart 0",
+        "p periodic written: 100/3 Hz, gap 30, jitter 0, apart 30",
+        "v periodic written: 25 Hz, gap 40, jitter 0, apart 40",
+        "q periodic inferred: none ?q Hz, gap none ?q, jitter none ?q, apart none ?q",
+        "w periodic written: 25 Hz, gap 40, jitter 0, apart 40",
+    ]
+    assert list_outputs(analysis) == [
+        "t g.t.out periodic written: 20 Hz, gap 50, jitter 0, apart 50",
+        "u g.u.out periodic written: 50 Hz, gap 21, jitter 1, apart 19",
+        "s g.s.serve on_demand inferred: 110 Hz, gap none ?s, jitter 185273/4000, apart 0",
+        "p g.p.serve periodic written: none ?p Hz, gap none ?p, jitter 0, apart 30",
+        "v g.v.out periodic written: 25 Hz, gap 40, jitter 0, apart 40",
+        "q g.q.serve periodic inferred: none ?q Hz, gap none ?q, jitter >= none ?q, apart none ?",
+        "w g.w.out periodic written: 25 Hz, gap 40, jitter 0, apart 40",
+    ]
+    assert list_responses(analysis) == [
+        "t 1..1 cores",
+        "u 1..2 cores",
+        "s 1..4 cores",
+        "p 1..1 cores",
+        "v 1..1 cores",
+        "q none ?q..>= 1 ?q cores",
+        "w 1..1 cores",
+    ]
+    assert list_links(analysis) == [
+        "lan: 135000 B/s, share 27/200, burst 5000 B, queueing 11/2; /g/s/serve 110000, /g/p/serve 25000",
+        "wan: 25000 B/s, share 1/40, burst >= 500 ?q B, queueing none ?q; /g/q/serve 25000",
+    ]
+    assert list_services(analysis) == [
+        "s asked by t,u: 4; t waits 45 takes 46, u waits 15 takes 17",
+        "p asked by v: 31; v waits 42 takes 43",
+        "q asked by w: >= 1 ?q; w waits >= 1 ?q,wan takes >= 2 ?q,wan",
+    ]
+
+
 def test_what_is_not_known_of_a_link() -> None:
     """No bandwidth, no size, no rate, or more than the link carries."""
     analysis = analyse_sketch(
