@@ -96,7 +96,8 @@ def test_unknown_figures_are_ranked_by_the_terms_that_lack_them() -> None:
         "poll @p": "period: 20 ms, wcet: 1 ms",
         "far @q": "period: 20 ms, wcet: 1 ms",
     }
-    rest = "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q]}}\n" + (
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q]}}\n"
         "chains: {see: {through: [dark, slow, mute]}, less: {through: [dark, slow]}, hop: {through: [poll, far]}}"
     )
     found = _sensitivity(nodes, "dark>slow slow>mute poll>far", rest)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import pytest
 
@@ -42,7 +43,7 @@ def test_paths_through_three_elements_are_those_of_all_listed(seed: int) -> None
     route = [RouteRegion(frozenset([0]), inside=False), between, RouteRegion(frozenset([1]), inside=False)]
     route += [between, RouteRegion(frozenset([2]), inside=False)]
     expected = sorted(
-        (sum(costs[pair] for pair in zip(path, path[1:], strict=False)), path)
+        (sum(costs[pair] for pair in pairwise(path)), path)
         for path in _listed(graph, (0,))
         if path[-1] == 2 and 1 in path
     )

@@ -25,23 +25,25 @@ EVERY_KIND_OF_STEP = (
         "hub @q": "wcet: 1 ms",
     },
     "cam>thin thin>all2 imu>all2 all2>poll imu>slow imu>late poll>said said>once said>dark imu>cond cond>end imu>prom prom>end2 asker?server late>hub slow>hub imu>poll",
-    "hosts: {p: {cores: 1}, q: {cores: 16}}\n"
-    "links: {lan: {connects: [p, q], latency: {best: 1 ms, worst: 3 ms}}, fast: {connects: [p, q], bandwidth: 80 Mbit/s, latency: {best: 1 ms}}}\n"
-    "chains:\n"
-    "  main: {through: [cam, thin, all2, poll, said], deadline: 300 ms}\n"
-    "  throttled: {through: [imu, slow], deadline: 20 ms}\n"
-    "  jittery: {through: [late, hub], deadline: 1 s}\n"
-    "  world: {through: [slow, hub]}\n"
-    "  once: {through: [said, once], deadline: 1 s}\n"
-    "  dark: {through: [said, dark]}\n"
-    "  from_dark: {through: [dark, cam]}\n"
-    "  from_once: {through: [once]}\n"
-    "  cond: {through: [cond, end]}\n"
-    "  prom: {through: [imu, prom, end2]}\n"
-    "  call: {through: [asker, server]}\n"
-    "  answer: {through: [server, asker]}\n"
-    "  ways: {through: [imu, hub], deadline: 55 ms}\n"
-    "  thinned: {through: [thin, all2]}\n",
+    (
+        "hosts: {p: {cores: 1}, q: {cores: 16}}\n"
+        "links: {lan: {connects: [p, q], latency: {best: 1 ms, worst: 3 ms}}, fast: {connects: [p, q], bandwidth: 80 Mbit/s, latency: {best: 1 ms}}}\n"
+        "chains:\n"
+        "  main: {through: [cam, thin, all2, poll, said], deadline: 300 ms}\n"
+        "  throttled: {through: [imu, slow], deadline: 20 ms}\n"
+        "  jittery: {through: [late, hub], deadline: 1 s}\n"
+        "  world: {through: [slow, hub]}\n"
+        "  once: {through: [said, once], deadline: 1 s}\n"
+        "  dark: {through: [said, dark]}\n"
+        "  from_dark: {through: [dark, cam]}\n"
+        "  from_once: {through: [once]}\n"
+        "  cond: {through: [cond, end]}\n"
+        "  prom: {through: [imu, prom, end2]}\n"
+        "  call: {through: [asker, server]}\n"
+        "  answer: {through: [server, asker]}\n"
+        "  ways: {through: [imu, hub], deadline: 55 ms}\n"
+        "  thinned: {through: [thin, all2]}\n"
+    ),
 )
 
 
@@ -250,15 +252,17 @@ LINKS_HOSTS_AND_DECLARED_RESPONSES = (
         "g @s": "wcet: 1 ms",
     },
     "a>b b>a b>c c>d d>e e>f f>a a>e hot>g",
-    "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}, s: {cores: 1}}\n"
-    "links: {lan: {connects: [p, q], bandwidth: 8 Mbit/s, latency: {best: 1 ms, worst: 2 ms}}, wan: {connects: [q, r], bandwidth: 800 kbit/s, latency: 2 ms}}\n"
-    "chains:\n"
-    "  two: {through: [a, b], deadline: 23 ms}\n"
-    "  far: {through: [a, b, c, d], deadline: 100 ms}\n"
-    "  gap: {through: [d, e], deadline: 40 ms}\n"
-    "  lost: {through: [e, f], deadline: 500 ms}\n"
-    "  hot: {through: [hot, g], deadline: 1 s}\n"
-    "  nowhere: {through: [g, a]}\n",
+    (
+        "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}, s: {cores: 1}}\n"
+        "links: {lan: {connects: [p, q], bandwidth: 8 Mbit/s, latency: {best: 1 ms, worst: 2 ms}}, wan: {connects: [q, r], bandwidth: 800 kbit/s, latency: 2 ms}}\n"
+        "chains:\n"
+        "  two: {through: [a, b], deadline: 23 ms}\n"
+        "  far: {through: [a, b, c, d], deadline: 100 ms}\n"
+        "  gap: {through: [d, e], deadline: 40 ms}\n"
+        "  lost: {through: [e, f], deadline: 500 ms}\n"
+        "  hot: {through: [hot, g], deadline: 1 s}\n"
+        "  nowhere: {through: [g, a]}\n"
+    ),
 )
 
 

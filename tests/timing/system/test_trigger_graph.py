@@ -64,7 +64,7 @@ PERIODIC, ANY, EVENT = "period: 10 ms", "", "behaviour: event"
         ({"v": "behaviour: on_demand"}, "", "", "", "", "", ""),
     ],
 )
-def test_rings_and_what_never_fires(
+def test_rings_and_what_never_fires(  # noqa: PLR0913, PLR0917 - a row of a table
     nodes: dict[str, str], wires: str, endless: str, deadlocked: str, unknown: str, never: str, open_inputs: str
 ) -> None:
     graph = _graph(nodes, wires)
