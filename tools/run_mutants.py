@@ -32,7 +32,7 @@ FOLDERS = ("compare", "link", "analyses", "timing")
 ACCEPTED_SHARE = 0.05
 _START_SECONDS, _SLOWER = 60, 10
 """How long a run may take: so long, and so many times as long as its tests took without a mutant."""
-_PYTEST_OPTIONS = ("-q", "--assert=plain", "-m", "not slow", "-p", "no:cacheprovider")
+_PYTEST_OPTIONS = ("-q", "--assert=plain", "-p", "no:cacheprovider")
 _JUDGED_STATUSES = {0, 1, 2, 4}
 """Pytest's exit statuses: passed, failed, not collected (2 and 4: the mutant breaks an import). The rest is our mistake."""
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.model.architecture import Waypoint
-from archgen.timing.chains import chain_bounds, path_states
+from archgen.timing.chains import path_states
 from archgen.timing.chains.chain_bounds import (
     bound_all_chains,
     find_data_age,
@@ -18,7 +18,7 @@ from archgen.timing.chains.chain_bounds import (
     list_bounded_paths,
 )
 from archgen.timing.chains.chain_regions import resolve_points
-from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture
@@ -85,7 +85,7 @@ WAYS = read_sketch(
         ("best", 2, ["a d 5", "a b d 6"]),
     ],
 )
-def test_ways_from_one_element_to_another(aim: chain_bounds.PathAim, limit: int, lines: list[str]) -> None:
+def test_ways_from_one_element_to_another(aim: PathAim, limit: int, lines: list[str]) -> None:
     """60 + 1, then 2 (b), 2 x 3 (c is fired by a and b), 4 x 4 (d by each of the four ways): 60 + 1 + 2 + 6 + 16."""
     analysis = analyse_architecture(WAYS)
     network = CostNetwork.of_analysis(analysis)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
+from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
 from archgen.timing.figures.tick_unit import TickUnit, choose_tick_unit, written_period
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.random_systems import architecture
 
 _PROJECT = """
@@ -85,3 +88,29 @@ def test_a_period_is_written_as_such_or_as_a_rate() -> None:
     assert written_period(Timing(rate=_quantity(-1))) is None
     assert written_period(Timing(period=_quantity(0), rate=_quantity(50))) == 20_000_000
     assert written_period(Timing(rate=_quantity(1))) == 10**9
+
+
+def _with_rates(*rates: int) -> Architecture:
+    """Return elements with these rates in Hz, however many digits they have."""
+    parts = ", ".join(
+        f"c{place}: {{outputs: {{out: std_msgs/msg/Empty}}, timing: {{rate: 1 Hz}}}}" for place in range(len(rates))
+    )
+    model = architecture(f"groups: {{g: {{components: {{{parts}}}}}}}\n")
+    nodes = {
+        name: replace(node, timing={key: replace(timing, rate=_quantity(rate)) for key, timing in node.timing.items()})
+        for (name, node), rate in zip(model.nodes.items(), rates, strict=True)
+    }
+    return replace(model, nodes=nodes)
+
+
+def test_rates_of_absurd_precision_have_no_common_unit() -> None:
+    """4095 bits of both periods' denominator and one of the single core are 4096; one more is too much."""
+    first = 2**2048 + 1
+    for second, exact in ((2**2046 + 1, True), (2**2047 + 1, False)):
+        unit = choose_tick_unit(_with_rates(first, second))
+        assert unit.exact is exact
+        assert exact or unit.tick == Fraction(1, 2**64)
+    assert [note.text for note in analyse_architecture(_with_rates(first, 2**2048 + 3)).notes] == [
+        "the rates have no common measure of reasonable size: periods are rounded up"
+    ]
+    assert analyse_architecture(_with_rates(10, 20)).notes == ()

@@ -96,3 +96,12 @@ def test_bytes_take_whole_ticks_rounded_up() -> None:
     system, _ = build_system(read_sketch({"a @p": "period: 10 ms, wcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest))
     settled, _, state = settle_links(replace(system, tick=Fraction(3 * 10**6, 7)))
     assert longest_queueing(state, "lan", settled.arcs) == 3
+
+
+@pytest.mark.parametrize(("bandwidth", "response"), [("400 bit/s", "20000"), ("399 bit/s", None)])
+def test_a_wait_of_more_than_twenty_seconds_is_not_given(bandwidth: str, response: str | None) -> None:
+    """1 kB at 50 B/s takes 20 s: the answer's gap of 100 s grows by it; a little slower, and the link counts as unknown."""
+    rest = f"hosts: {{p: {{cores: 1}}, q: {{cores: 1}}}}\nlinks: {{lan: {{connects: [p, q], bandwidth: {bandwidth}}}}}"
+    analysis = analyse_sketch({"a @p": "period: 100 s, wcet: 0 ms, bcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest)
+    jitter = analysis.paces["b"].jitter
+    assert show_ms(jitter) == (response or "none ?lan")
