@@ -9,8 +9,8 @@ observed and do not count. Exit status 1 where five per cent or more of the othe
 from __future__ import annotations
 
 import argparse
-import ast
-import itertools
+import json
+import os
 import random
 import shutil
 import sqlite3
@@ -18,210 +18,109 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
 
 import yaml
+from mutant_kinds import Mutant, find_mutants
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 FOLDERS = ("compare", "link", "analyses", "timing")
-SECONDS_PER_MUTANT = 60
 ACCEPTED_SHARE = 0.05
-
-_COMPARISONS = {
-    ast.Eq: ("==", "!="),
-    ast.NotEq: ("!=", "=="),
-    ast.Lt: ("<", "<="),
-    ast.LtE: ("<=", "<"),
-    ast.Gt: (">", ">="),
-    ast.GtE: (">=", ">"),
-    ast.Is: ("is", "is not"),
-    ast.IsNot: ("is not", "is"),
-    ast.In: ("in", "not in"),
-    ast.NotIn: ("not in", "in"),
-}
-_OPERATORS = {
-    ast.Add: ("+", "-"),
-    ast.Sub: ("-", "+"),
-    ast.Mult: ("*", "+"),
-    ast.FloorDiv: ("//", "*"),
-    ast.Div: ("/", "*"),
-}
+_START_SECONDS, _SLOWER = 60, 10
+"""How long a run may take: so long, and so many times as long as its tests took without a mutant."""
+_PYTEST_OPTIONS = ("-q", "--assert=plain", "-p", "no:cacheprovider")
+_JUDGED_STATUSES = {0, 1, 2, 4}
+"""Pytest's exit statuses: passed, failed, not collected (2 and 4: the mutant breaks an import). The rest is our mistake."""
 
 
 @dataclass(frozen=True)
-class Mutant:
-    """One edit of one source file; offsets count characters."""
+class SuiteRecord:
+    """What one run of a folder's tests without any mutant shows."""
 
-    file: str
-    line: int
-    start: int
-    end: int
-    replacement: str
-    source_line: str
+    tests_by_line: Mapping[tuple[str, int], frozenset[str]]
+    """Tests by the lines that they execute; `""` for what runs at import, or for several tests at once."""
+    seconds_by_test: Mapping[str, float]
 
-    def change(self, text: str) -> str:
-        """Return the file's text with the edit made."""
-        return text[: self.start] + self.replacement + text[self.end :]
-
-    def describe(self, text: str) -> str:
-        """Return one line: where, what was there, what is there now."""
-        return (
-            f"{self.file}:{self.line}: `{text[self.start : self.end]}` -> `{self.replacement}` in `{self.source_line}`"
+    def tests_of(self, mutant: Mutant) -> list[str]:
+        """Return the tests that may notice a mutant, the quick ones first."""
+        first_line, last_line = mutant.lines
+        tests = frozenset[str]().union(
+            *(self.tests_by_line.get((mutant.file, line), ()) for line in range(first_line, last_line + 1))
         )
+        # A constant or a shared fixture: any test may rest on it.
+        chosen = self.seconds_by_test if "" in tests else tests & self.seconds_by_test.keys()
+        return sorted(chosen, key=lambda test: (self.seconds_by_test[test], test))
 
 
-class SourceText:
-    """A file's text, with the offsets (in characters) of the positions that ast gives (in bytes of a line)."""
-
-    def __init__(self, file: str, text: str) -> None:
-        self.file = file
-        self.text = text
-        self.lines = text.split("\n")
-        self.line_starts = [0]
-        for line in self.lines:
-            self.line_starts.append(self.line_starts[-1] + len(line) + 1)
-
-    def start_of(self, node: ast.expr) -> int:
-        """Return the offset of an expression's first character."""
-        return self._offset(node.lineno, node.col_offset)
-
-    def end_of(self, node: ast.expr) -> int:
-        """Return the offset behind an expression's last character."""
-        return self._offset(node.end_lineno or 0, node.end_col_offset or 0)
-
-    def _offset(self, line: int, byte_column: int) -> int:
-        return self.line_starts[line - 1] + len(self.lines[line - 1].encode()[:byte_column].decode())
-
-    def mutant(self, start: int, end: int, replacement: str) -> Mutant:
-        """Return the mutant that puts a replacement between two offsets."""
-        line = self.text.count("\n", 0, start) + 1
-        return Mutant(self.file, line, start, end, replacement, self.lines[line - 1].strip())
-
-    def exchange(self, words: tuple[str, str], left: ast.expr, right: ast.expr) -> Iterator[Mutant]:
-        """Yield the mutant that exchanges the operator between two operands."""
-        old, new = words
-        start, end = self.end_of(left), self.start_of(right)
-        place = self.text.find(old, start, end)
-        # A comment between the operands may hold the same letters: only blanks and brackets may precede.
-        if place >= 0 and not self.text[start:place].strip(" \n\t()"):
-            yield self.mutant(place, place + len(old), new)
-
-
-def find_mutants(file: str, text: str) -> Iterator[Mutant]:
-    """Yield every mutant of a file. Decorators are left out: `frozen=True` and `slots=True` protect, they compute nothing."""
-    source = SourceText(file, text)
-    tree = ast.parse(text)
-    decorating = {
-        id(part)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ClassDef)
-        for d in node.decorator_list
-        for part in ast.walk(d)
-    }
-    for node in ast.walk(tree):
-        if id(node) not in decorating:
-            yield from _mutate_operators(source, node)
-            yield from _mutate_values(source, node)
-
-
-def _mutate_operators(source: SourceText, node: ast.AST) -> Iterator[Mutant]:
-    if isinstance(node, ast.BoolOp):
-        words = ("and", "or") if isinstance(node.op, ast.And) else ("or", "and")
-        for left, right in itertools.pairwise(node.values):
-            yield from source.exchange(words, left, right)
-    elif isinstance(node, ast.Compare) and len(node.ops) == 1:
-        yield from source.exchange(_COMPARISONS[type(node.ops[0])], node.left, node.comparators[0])
-    elif isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
-        yield from source.exchange(_OPERATORS[type(node.op)], node.left, node.right)
-
-
-def _mutate_values(source: SourceText, node: ast.AST) -> Iterator[Mutant]:
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        yield source.mutant(source.start_of(node), source.start_of(node.operand), "")
-    elif isinstance(node, ast.Constant) and isinstance(node.value, int):
-        changed = str(not node.value) if isinstance(node.value, bool) else str(node.value + 1)
-        yield source.mutant(source.start_of(node), source.end_of(node), changed)
-    elif isinstance(node, (ast.If, ast.While, ast.IfExp)) and isinstance(
-        node.test, (ast.Name, ast.Attribute, ast.Call)
-    ):
-        start = source.start_of(node.test)
-        yield source.mutant(start, start, "not ")
-
-
-def record_coverage(copy: Path, folder: str) -> dict[tuple[str, int], list[str]]:
-    """Run the tests of a folder and return, for each line of its code, the tests that execute it."""
-    data = copy / f".coverage-{folder}"
+def record_suite(copy: Path, folder: str) -> SuiteRecord:
+    """Run the tests of a folder, and return what each of them executes of its code and how long it takes."""
+    data, seconds = copy / f".coverage-{folder}", copy / f".seconds-{folder}"
     configuration = copy / f".coveragerc-{folder}"
-    configuration.write_text(
-        f"[run]\nsource = archgen/{folder}\ndata_file = {data}\ndynamic_context = test_function\n", encoding="utf-8"
-    )
-    command = [sys.executable, "-m", "coverage", "run", f"--rcfile={configuration}", "-m", "pytest", "-q", "-x"]
+    configuration.write_text(f"[run]\nsource = archgen/{folder}\ndata_file = {data}\n", encoding="utf-8")
+    command = [sys.executable, "-m", "coverage", "run", f"--rcfile={configuration}", "-m", "pytest"]
     run = subprocess.run(
-        [*command, "-p", "no:cacheprovider", "-p", "no:randomly", f"tests/{folder}"],
+        [*command, *_PYTEST_OPTIONS, "-p", "record_contexts", f"tests/{folder}"],
         cwd=copy,
+        env={**os.environ, "PYTHONPATH": "tools", "TEST_SECONDS": str(seconds)},
         capture_output=True,
         text=True,
         check=False,
     )
-    if run.returncode:
-        sys.exit(f"the tests of {folder} fail without a mutant:\n{run.stdout[-2000:]}")
-    return _read_contexts(data, copy)
+    if run.returncode not in {0, 1}:
+        sys.exit(f"the tests of {folder} do not run without a mutant:\n{run.stdout[-2000:]}")
+    # Some measure time, and fail while coverage is recorded: they cannot judge.
+    print(*(f"left out: {line}" for line in run.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))), sep="\n")
+    return SuiteRecord(_read_contexts(data, copy), json.loads(seconds.read_text(encoding="utf-8")))
 
 
-def _read_contexts(data: Path, copy: Path) -> dict[tuple[str, int], list[str]]:
+def _read_contexts(data: Path, copy: Path) -> dict[tuple[str, int], frozenset[str]]:
     from coverage.numbits import numbits_to_nums
 
-    tests_by_line: dict[tuple[str, int], list[str]] = defaultdict(list)
+    tests_by_line: dict[tuple[str, int], set[str]] = defaultdict(set)
     with sqlite3.connect(data) as database:
         rows = database.execute(
             "select file.path, context.context, line_bits.numbits from line_bits "
             "join file on file.id = line_bits.file_id join context on context.id = line_bits.context_id"
         )
         for path, context, numbits in rows:
-            if context:
-                for line in numbits_to_nums(numbits):
-                    tests_by_line[Path(path).relative_to(copy).as_posix(), line].append(context)
-    return tests_by_line
+            for line in numbits_to_nums(numbits):
+                tests_by_line[Path(path).relative_to(copy).as_posix(), line].add(context)
+    return {place: frozenset(tests) for place, tests in tests_by_line.items()}
 
 
-def survives(mutant: Mutant, text: str, copy: Path, tests: list[str]) -> bool:
-    """Run the tests that execute the mutant's line; whether all of them pass. A run that does not end counts as noticed."""
+def survives(mutant: Mutant, text: str, copy: Path, record: SuiteRecord) -> bool:
+    """Run the tests that may notice a mutant; whether all of them pass. A run that does not end counts as noticed."""
+    tests = record.tests_of(mutant)
     if not tests:
         return True
     target = copy / mutant.file
+    written = target.stat()
     target.write_text(mutant.change(text), encoding="utf-8")
-    # Contexts are `tests.compare.test_x.test_y`, without parameters: pytest takes files and -k; the files are enough to find them.
-    names = sorted({context.rpartition(".")[2] for context in tests})
-    files = sorted({_test_file(copy, context) for context in tests} - {""})
+    selection = copy / ".selected-tests"
+    selection.write_text("\n".join(tests), encoding="utf-8")
+    # Longer than the tests take without the mutant, on a machine that does other things as well.
+    limit = _START_SECONDS + _SLOWER * sum(record.seconds_by_test[test] for test in tests)
     try:
         run = subprocess.run(
-            [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", "--tb=no"]
-            + (["-k", " or ".join(names)] if len(names) <= 40 else [])  # noqa: PLR2004 - a longer expression gains nothing
-            + files,
+            [sys.executable, "-B", "-m", "pytest", *_PYTEST_OPTIONS, "-x", "--no-header", "--tb=no", f"@{selection}"],
             cwd=copy,
             capture_output=True,
-            timeout=SECONDS_PER_MUTANT,
+            timeout=limit,
             check=False,
         )
     except subprocess.TimeoutExpired:
         return False
-    else:
-        return run.returncode == 0
     finally:
         target.write_text(text, encoding="utf-8")
-
-
-def _test_file(copy: Path, context: str) -> str:
-    parts = context.split(".")
-    for length in range(len(parts), 0, -1):
-        file = Path(*parts[:length]).with_suffix(".py")
-        if (copy / file).is_file():
-            return file.as_posix()
-    return ""
+        # The compiled file is valid for this time of change only: -B above keeps it from being replaced.
+        os.utime(target, ns=(written.st_atime_ns, written.st_mtime_ns))
+    if run.returncode not in _JUDGED_STATUSES:
+        sys.exit(f"pytest ended with {run.returncode}:\n{run.stdout.decode()[-2000:]}")
+    return run.returncode == 0
 
 
 def read_equivalents() -> frozenset[tuple[str, str, str]]:
@@ -231,13 +130,15 @@ def read_equivalents() -> frozenset[tuple[str, str, str]]:
 
 
 def copy_repository(target: Path) -> None:
-    """Copy what git tracks, so that a run never touches the working tree."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=REPOSITORY, capture_output=True, check=True).stdout
+    """Copy what git tracks or would track, so that a run never touches the working tree."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=REPOSITORY, capture_output=True, check=True).stdout
     for name in listed.decode().split("\0"):
         source = REPOSITORY / name
         if name and source.is_file():
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target / name)
+    subprocess.run([sys.executable, "-m", "compileall", "-q", "archgen", "tests"], cwd=target, check=True)
 
 
 def main() -> None:
@@ -253,9 +154,7 @@ def main() -> None:
         copies = [Path(temporary) / str(number) for number in range(options.jobs)]
         for copy in copies:
             copy_repository(copy)
-        tests_by_line: dict[tuple[str, int], list[str]] = {}
-        for folder in folders:
-            tests_by_line.update(record_coverage(copies[0], folder))
+        records = {folder: record_suite(copies[0], folder) for folder in folders}
         texts = {
             path.relative_to(copies[0]).as_posix(): path.read_text(encoding="utf-8")
             for folder in folders
@@ -270,7 +169,7 @@ def main() -> None:
         def judge(mutant: Mutant) -> bool:
             copy = idle.get()
             try:
-                return survives(mutant, texts[mutant.file], copy, tests_by_line.get((mutant.file, mutant.line), []))
+                return survives(mutant, texts[mutant.file], copy, records[mutant.file.split("/")[1]])
             finally:
                 idle.put(copy)
 

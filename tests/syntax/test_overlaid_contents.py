@@ -34,7 +34,7 @@ def test_the_new_contents_win(files: OverlaidFiles) -> None:
 
 
 def test_both_are_walked(files: OverlaidFiles) -> None:
-    walked = sorted((folder, names) for folder, _, names in files.walk_folders("") if not folder.startswith("."))
+    walked = sorted((folder, names) for folder, _, names in files.walk_folders("") if "/." not in f"/{folder}")
     assert walked == [
         ("", ["a.yaml", "b.yaml"]),
         ("extra", ["d.yaml"]),

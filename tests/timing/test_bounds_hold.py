@@ -9,7 +9,9 @@ from tests.timing.exceeded import exceeded
 from tests.timing.random_systems import random_text
 
 
-@pytest.mark.parametrize("first", range(0, 500, 50))
+@pytest.mark.parametrize(
+    "first", [*range(0, 150, 50), *(pytest.param(first, marks=pytest.mark.slow) for first in range(150, 500, 50))]
+)
 def test_no_simulation_exceeds_a_bound(first: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # A few systems are just short of full: to search for seconds there, and find nothing, shows nothing here.
     monkeypatch.setattr(busy_windows, "_MAX_TERMS_PER_SEARCH", 100_000)

@@ -1,0 +1,210 @@
+"""Chains beyond the sum: Dürr's bounds and where they do not hold, regions of elements, cut loops, data age, verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from archgen.model.architecture import Waypoint
+from archgen.timing.chains import path_states
+from archgen.timing.chains.chain_bounds import (
+    bound_all_chains,
+    find_data_age,
+    find_missed_chains,
+    find_paths_between,
+    judge_deadline,
+    list_bounded_paths,
+)
+from archgen.timing.chains.chain_regions import resolve_points
+from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.run_analysis import analyse_architecture
+from tests.timing.printed import MS, show_ms
+from tests.timing.random_systems import architecture
+from tests.timing.sketches import analyse_sketch, read_sketch
+
+TASKS = tuple(PeriodicTask(Fraction(period), Fraction(response)) for period, response in ((10, 2), (20, 30), (15, 4)))
+
+
+def test_duerr_by_hand() -> None:
+    """T1 + R3 + max(R1, T2 + p R1) + max(R2, T3 + p R2), and R3 + T1 + p R1 + T2 + p R2 (p = 0 with precedence)."""
+    assert bound_reaction(TASKS, (False, False)) == 10 + 4 + (20 + 2) + (15 + 30)
+    assert bound_reaction(TASKS, (True, True)) == 10 + 4 + 20 + 30
+    assert bound_reduced_age(TASKS, (False, False)) == 4 + (10 + 2) + (20 + 30)
+    assert bound_reduced_age(TASKS, (True, False)) == 4 + 10 + (20 + 30)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "bounds"),
+    [
+        # a before b on one core: 10 + 3 + max(1, 20) and 3 + 10; turned round 10 + 2 + (20 + 3) and 2 + (10 + 3).
+        ("a @p: period: 10 ms, wcet: 1 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", (33, 13)),
+        ("a @p: period: 10 ms, wcet: 1 ms, priority: 1", "b @p: period: 20 ms, wcet: 2 ms, priority: 2", (35, 15)),
+        ("a @p: period: 10 ms, wcet: 1 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 2", (36, 16)),
+        ("a: period: 10 ms, response: 1 ms", "b: period: 20 ms, response: 2 ms", (33, 13)),
+        ("a @p: period: 10 ms, response: 1 ms", "b @p: period: 20 ms, response: 2 ms, priority: 1", (33, 13)),
+        ("a @p: period: 10 ms, wcet: 1 ms", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
+        ("a @p: period: 10 ms, response: 1 ms", "b @q: period: 20 ms, response: 2 ms", None),
+        ("a: period: 10 ms, response: 1 ms", "b: trigger: [a], response: 2 ms", None),
+        ("a: period: 10 ms, response: 1 ms", "b: behaviour: periodic, response: 2 ms", None),
+        ("a: period: 10 ms, response: 1 ms", "b: period: 20 ms", None),
+    ],
+)
+def test_duerr_holds_for_periodic_elements_with_priorities_and_no_link(
+    a: str, b: str, bounds: tuple[int, int] | None
+) -> None:
+    nodes = dict(row.split(": ", 1) for row in (a, b))
+    rest = "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q], latency: 1 ms}}"
+    analysis = analyse_sketch(nodes, "a>b", rest)
+    found = bound_periodic_chain(analysis, ("a", "b"))
+    assert found == (None if bounds is None else tuple(count * MS for count in bounds))
+    assert bound_periodic_chain(analysis, ("a",)) is None
+    assert bound_periodic_chain(analysis, ("b", "a")) is None
+
+
+WAYS = read_sketch(
+    {
+        "a": "period: 60 ms, wcet: 1 ms, bcet: 1 ms",
+        "b": "wcet: 2 ms, bcet: 1 ms",
+        "c": "wcet: 3 ms, bcet: 3 ms",
+        "d": "wcet: 4 ms, bcet: 4 ms",
+        "lone": "wcet: 1 ms",
+    },
+    "a>b a>c b>d c>d a>d b>c",
+)
+
+
+@pytest.mark.parametrize(
+    ("aim", "limit", "lines"),
+    [
+        ("bound", 9, ["a b c d 85", "a c d 83", "a b d 79", "a d 77"]),
+        ("bound", 2, ["a b c d 85", "a c d 83"]),
+        ("best", 2, ["a d 5", "a b d 6"]),
+    ],
+)
+def test_ways_from_one_element_to_another(aim: PathAim, limit: int, lines: list[str]) -> None:
+    """60 + 1, then 2 (b), 2 x 3 (c is fired by a and b), 4 x 4 (d by each of the four ways): 60 + 1 + 2 + 6 + 16."""
+    analysis = analyse_architecture(WAYS)
+    network = CostNetwork.of_analysis(analysis)
+    paths = find_paths_between(network, WAYS, Waypoint("node", "a"), Waypoint("node", "d"), aim)
+    assert paths is not None
+    assert paths.path_count == 4
+    found = [
+        f"{' '.join(path.through)} {float((path.bound.value or 0) / MS):g}"
+        for path in list_bounded_paths(network, paths, limit)
+    ]
+    assert found == lines
+    nowhere = find_paths_between(network, WAYS, Waypoint("node", "a"), Waypoint("node", "lone"))
+    assert nowhere is not None
+    assert nowhere.path_count == 0
+    assert find_paths_between(network, WAYS, Waypoint("node", "a"), Waypoint("node", "gone")) is None
+    assert find_paths_between(network, WAYS, Waypoint("node", "gone"), Waypoint("node", "a")) is None
+
+
+def _exact(number: int | None, *assumptions: str) -> TimingValue:
+    return TimingValue(None if number is None else Fraction(number), assumptions=assumptions)
+
+
+@pytest.mark.parametrize(
+    ("bound", "deadline", "verdict"),
+    [
+        (_exact(5), _exact(5), "met"),
+        (_exact(6), _exact(5), "missed"),
+        (_exact(6), None, "open"),
+        (_exact(6), _exact(None), "open"),
+        (_exact(None, "overload"), _exact(5), "missed"),
+        (_exact(None, "diverged"), _exact(5), "open"),
+        (TimingValue(Fraction(5), complete=False, side="at least"), _exact(5), "open"),
+        (TimingValue(Fraction(6), complete=False, side="at least"), _exact(5), "missed"),
+        (TimingValue(Fraction(5), side="at most"), _exact(5), "met"),
+    ],
+)
+def test_what_is_known_may_exceed_a_deadline(bound: TimingValue, deadline: TimingValue | None, verdict: str) -> None:
+    assert judge_deadline(bound, deadline) == verdict
+
+
+LATE = """
+chains:
+  late: {through: [a, b], deadline: 12 ms}
+  fine: {through: [a, b], deadline: 13 ms}
+  free: {through: [a, b]}
+  event: {through: [b, c], deadline: 1 ms}
+  lost: {through: [c, a], deadline: 1 ms}
+"""
+
+
+def test_missed_chains_and_the_age_of_data() -> None:
+    """10 + 1 + 2; of an event 2 + 3, and its data is older by the gap of b."""
+    nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": "wcet: 2 ms, bcet: 2 ms", "c": "wcet: 3 ms"}
+    model = read_sketch(nodes, "a>b b>c", LATE)
+    analysis = analyse_architecture(model)
+    assert [
+        (late.chain.id, late.bound.value, len(late.terms)) for late in find_missed_chains(analysis, model, Fraction(0))
+    ] == [
+        ("late", 13 * MS, 2),
+        ("event", 5 * MS, 2),
+    ]
+    network, chains = CostNetwork.of_analysis(analysis), bound_all_chains(analysis, model)
+    assert find_data_age(network, chains["fine"]).value == 13 * MS
+    assert find_data_age(network, chains["event"]).value == (2 + 3 + 10) * MS
+    assert find_data_age(network, chains["lost"]) is chains["lost"].bound
+    wrong = replace(model, chains={"late": replace(model.chains["late"], unresolved=("x",))})
+    assert list(find_missed_chains(analysis, wrong, Fraction(0))) == []
+    assert show_ms(bound_all_chains(analysis, wrong)["late"].bound) == "none ?x [`x` is not resolved]"
+
+
+def _ring(count: int) -> str:
+    return " ".join(f"c{first}>c{second}" for first in range(count) for second in range(count) if first != second)
+
+
+@pytest.mark.parametrize(
+    ("count", "text"),
+    [
+        (3, "the loops are large: ways that go back along c2 > c1 are left out"),
+        (4, "the loops are large: ways that go back along c2 > c1, c3 > c1, c3 > c2 are left out"),
+        (5, "the loops are large: ways that go back along c2 > c1, c3 > c1, c3 > c2 and 3 more are left out"),
+    ],
+)
+def test_loops_that_are_too_large_are_cut_and_named(monkeypatch: pytest.MonkeyPatch, count: int, text: str) -> None:
+    monkeypatch.setattr(path_states, "MAX_STATES", 2)
+    nodes = {f"c{index}": "period: 10 ms, wcet: 1 ms" for index in range(count)} | {"end": "period: 10 ms, wcet: 1 ms"}
+    wires = f"{_ring(count)} c{count - 1}>end"
+    model = read_sketch(nodes, wires, "chains: {way: {through: [c0, end]}}")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert [assumption for assumption in chain.bound.assumptions if "loops" in assumption] == [text]
+
+
+POINTS = architecture("""
+groups:
+  g:
+    components:
+      eye: {outputs: {left: std_msgs/msg/Empty, right: std_msgs/msg/Empty}}
+      ear: {outputs: {out: std_msgs/msg/Empty}}
+      mind: {inputs: {l: eye.left, r: eye.right, e: ear.out}}
+nodes:
+  head: {implements: [g.eye, g.ear]}
+  brain: {implements: g.mind}
+  spare: {implements: g.eye}
+""")
+
+
+@pytest.mark.parametrize(
+    ("kind", "id_", "activities", "output"),
+    [
+        ("node", "head", ("head.eye", "head.ear"), None),
+        ("node", "head.ear", ("head.ear",), None),
+        ("node", "brain", ("brain",), None),
+        ("node", "gone", (), None),
+        ("component", "g.eye", ("head.eye", "spare"), None),
+        ("component", "g.gone", (), None),
+        ("output", "g.eye.left", ("head.eye", "spare"), "g.eye.left"),
+        ("output", "g.gone.out", (), "g.gone.out"),
+    ],
+)
+def test_an_element_stands_for_activities(kind: str, id_: str, activities: tuple[str, ...], output: str | None) -> None:
+    system = analyse_architecture(POINTS).system
+    (point,) = resolve_points(system, POINTS, (Waypoint(kind, id_),))  # type: ignore[arg-type]
+    assert (point.activities, point.output) == (activities, output)

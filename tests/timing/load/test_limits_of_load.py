@@ -1,0 +1,107 @@
+"""Where a load becomes too much: exactly full cores, bounds of Liu and Layland, rounded ticks, the jobs of a round."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from archgen.timing.load import response_times
+from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
+from archgen.timing.load.link_queueing import longest_queueing, settle_links
+from archgen.timing.system.system_builder import build_system
+from tests.timing.printed import show_ms
+from tests.timing.sketches import analyse_sketch, read_sketch
+
+
+def test_the_rate_monotonic_bound_is_rounded_down_to_nine_decimals() -> None:
+    """N (2^(1/n) - 1), C. Liu and J. Layland 1973: 1, 0.8284, 0.7798, 0.7568 ... ln 2."""
+    assert [rate_monotonic_bound(count) for count in (0, 1)] == [1, 1]
+    assert rate_monotonic_bound(2) == Fraction(828_427_124, 10**9)
+    assert rate_monotonic_bound(3) == Fraction(779_763_147, 10**9)
+    assert rate_monotonic_bound(4) == Fraction(4 * 189_207_115, 10**9)
+    assert rate_monotonic_bound(64) == Fraction(64 * 10_889_286, 10**9)
+    assert rate_monotonic_bound(65) == Fraction(693_147_180, 10**9)
+
+
+def test_the_exact_bound_needs_no_root() -> None:
+    assert is_below_rate_bound(Fraction(1), 1)
+    assert not is_below_rate_bound(Fraction(1_000_001, 10**6), 1)
+    assert is_below_rate_bound(Fraction(828_427_124, 10**9), 2)
+    assert not is_below_rate_bound(Fraction(828_427_125, 10**9), 2)
+    assert is_below_rate_bound(Fraction(5), 0)
+    assert is_below_rate_bound(Fraction(64 * 10_889_286, 10**9), 64)
+    assert is_below_rate_bound(Fraction(693_147_180, 10**9), 65)
+    assert not is_below_rate_bound(Fraction(693_147_181, 10**9), 65)
+
+
+@pytest.mark.parametrize(
+    ("cores", "shares", "responses"),
+    [
+        # 0.8 + 0.4 / 2 = 1. The others have no bound beside what has none.
+        (2, (8, 2, 2), ["none [unbounded]"] * 3),
+        # 7 + 3 (2 + 2) / 2: two jobs of each come within 13, and one is carried in. The others: 2 + (3 x 7 + 4 x 2) / 2.
+        (2, (7, 2, 2), ["13", "33/2", "33/2"]),
+        # 0.8 + 0.6 / 3 = 1.
+        (3, (8, 2, 2, 2), ["none [unbounded]"] * 4),
+        # 6 + 2 (2 + 2 + 2) / 3; 2 + (2 x 6 + 2 x 2 + 2 x 2) / 3.
+        (3, (6, 2, 2, 2), ["10", "26/3", "26/3", "26/3"]),
+    ],
+)
+def test_a_thread_and_its_part_of_the_others_fill_a_core(
+    cores: int, shares: tuple[int, ...], responses: list[str]
+) -> None:
+    nodes = {f"c{index} @pc": f"period: 10 ms, wcet: {share} ms" for index, share in enumerate(shares)}
+    analysis = analyse_sketch(nodes, "", f"hosts: {{pc: {{cores: {cores}}}}}")
+    assert [show_ms(time.worst) for time in analysis.responses.values()] == responses
+
+
+@pytest.mark.parametrize(
+    ("shares", "others", "responses"),
+    [
+        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (18 x 5 + 23 x 2) / 2 + 16 x 3 / 3 = 89: with responses of 89, 138 and
+        # 211/3, so many came within 89 and the response before it.
+        ((5, 5, 2), 3, ["89", "89", "138", "211/3"]),
+        # 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
+        ((5, 5, 3), 3, ["none [unbounded]"] * 4),
+        # 0.5 + (0.5 + 0.2) / 2 + 0.6 / 3 = 1.05.
+        ((5, 5, 2), 6, ["none [unbounded]"] * 4),
+    ],
+)
+def test_threads_of_one_container_share_its_threads(shares: tuple[int, ...], others: int, responses: list[str]) -> None:
+    nodes = {f"c{index} +box": f"period: 10 ms, wcet: {share} ms" for index, share in enumerate(shares)}
+    nodes["other @pc"] = f"period: 10 ms, wcet: {others} ms"
+    rest = "hosts: {pc: {cores: 3}}\ncontainers: {box: {threads: 2, host: pc}}"
+    analysis = analyse_sketch(nodes, "", rest)
+    assert [show_ms(time.worst) for time in analysis.responses.values()] == responses
+
+
+@pytest.mark.parametrize(("jobs", "settles"), [(5, True), (4, False)])
+def test_a_full_core_settles_within_so_many_jobs(monkeypatch: pytest.MonkeyPatch, jobs: int, settles: object) -> None:
+    """5 each 10, 10 each 20 and nothing each 40: 4 + 2 = 6 jobs of work in 40 ms, but the hyperperiod of work is 20: 2 + 1."""
+    monkeypatch.setattr(response_times, "_MAX_JOBS_IN_ROUND", jobs - 2)
+    nodes = {
+        "a @pc": "period: 10 ms, wcet: 5 ms, priority: 3",
+        "b @pc": "period: 20 ms, wcet: 10 ms, priority: 2",
+        "c @pc": "period: 40 ms, wcet: 0 ms, priority: 1",
+    }
+    worst = analyse_sketch(nodes, "", "hosts: {pc: {cores: 1}}").responses["b"].worst
+    assert show_ms(worst) == ("20" if settles else "none [overload]")
+
+
+def test_bytes_take_whole_ticks_rounded_up() -> None:
+    """1 kB at 1 MB/s takes 1 ms: in ticks of 3/7 ms 2.33, so 3."""
+    rest = "hosts: {p: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q], bandwidth: 8 Mbit/s, latency: 5 ms}}"
+    system, _ = build_system(read_sketch({"a @p": "period: 10 ms, wcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest))
+    settled, _, state = settle_links(replace(system, tick=Fraction(3 * 10**6, 7)))
+    assert longest_queueing(state, "lan", settled.arcs) == 3
+
+
+@pytest.mark.parametrize(("bandwidth", "response"), [("400 bit/s", "20000"), ("399 bit/s", None)])
+def test_a_wait_of_more_than_twenty_seconds_is_not_given(bandwidth: str, response: str | None) -> None:
+    """1 kB at 50 B/s takes 20 s: the answer's gap of 100 s grows by it; a little slower, and the link counts as unknown."""
+    rest = f"hosts: {{p: {{cores: 1}}, q: {{cores: 1}}}}\nlinks: {{lan: {{connects: [p, q], bandwidth: {bandwidth}}}}}"
+    analysis = analyse_sketch({"a @p": "period: 100 s, wcet: 0 ms, bcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest)
+    jitter = analysis.paces["b"].jitter
+    assert show_ms(jitter) == (response or "none ?lan")

@@ -1,0 +1,179 @@
+"""The parts of a busy window, by hand: demand, what is carried in, lower bounds, budgets, and where searches begin."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.timing.load.busy_windows import (
+    NO_DEMAND,
+    ActivityWork,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    add_demands,
+    divide_demand,
+    longest_busy_period,
+    make_work,
+    subtract_demand,
+    worst_response,
+)
+from archgen.timing.load.event_streams import EventStream
+
+WHOLE = 2**64
+PLAIN, LATE = EventStream(10), EventStream(10, 25)
+APART = EventStream(10, 25, 4)
+MANY = EventStream(10, 5, 0, 3, 2)
+
+
+@pytest.mark.parametrize(
+    ("streams", "response", "kept"),
+    [
+        ((PLAIN,), 10, 0),  # done when the next one comes
+        ((PLAIN,), 11, 11),
+        ((APART,), 4, 0),
+        ((APART,), 5, 5),
+        ((MANY,), 3, 0),  # three in ten: one each 3
+        ((MANY,), 4, 4),
+        ((PLAIN, PLAIN), 1, 1),
+        ((), 1, 1),
+    ],
+)
+def test_a_response_is_kept_only_where_it_matters(streams: tuple[EventStream, ...], response: int, kept: int) -> None:
+    assert make_work(2, streams, response) == ActivityWork(2, streams, kept)
+
+
+@pytest.mark.parametrize(
+    ("works", "window", "demand", "term_count"),
+    [
+        ([], 5, 0, 1),
+        ([ActivityWork(3, (PLAIN,))], 10, 3, 2),
+        ([ActivityWork(3, (PLAIN,))], 11, 6, 2),
+        ([ActivityWork(3, (PLAIN,)), ActivityWork(4, (PLAIN,))], 11, 14, 2),  # equal streams are one term
+        ([ActivityWork(3, (PLAIN, LATE))], 1, 3 + 9, 3),
+        ([ActivityWork(3, (APART,))], 5, 6, 3),
+        ([ActivityWork(3, (APART,)), ActivityWork(1, (APART,))], 5, 8, 3),
+        ([ActivityWork(3, (MANY,))], 1, 3 * 2 * 2, 3),  # ceil(6 * 3 / 10) pairs
+        ([ActivityWork(3, (EventStream(10, 0, 0, 1, 2),))], 11, 12, 2),
+        ([ActivityWork(0, (PLAIN,))], 100, 0, 1),
+    ],
+)
+def test_demand_is_the_sum_of_all_events_in_a_window(
+    works: list[ActivityWork], window: int, demand: int, term_count: int
+) -> None:
+    function = GrowingLoad(works).demand_function()
+    assert (function.within(window), function.term_count) == (demand, term_count)
+
+
+@pytest.mark.parametrize(
+    ("work", "window", "demand", "term_count"),
+    [
+        (ActivityWork(3, (PLAIN,), 10), 1, 6, 2),  # one that comes, one that is carried in
+        (ActivityWork(3, (EventStream(10, 0, 0, 1, 2),), 10), 1, 12, 2),
+        (ActivityWork(3, (PLAIN,), 11), 1, 6, 13),  # what came within 11 is 2, as one carried in and one that comes
+        (ActivityWork(3, (PLAIN,), 35), 1, 12, 13),  # ceil(36 / 10)
+        (ActivityWork(3, (PLAIN, EventStream(10, 0, 0, 1, 4)), 1), 1, 3 * (5 + 4), 25),
+        (ActivityWork(0, (PLAIN,), 35), 1, 0, 1),
+        (ActivityWork(3, (), 35), 1, 0, 1),
+    ],
+)
+def test_carried_work_came_before_the_window(work: ActivityWork, window: int, demand: int, term_count: int) -> None:
+    load = GrowingLoad()
+    load.add_carried_work([work])
+    function = load.demand_function()
+    assert (function.within(window), function.term_count) == (demand, term_count)
+    # The lower bound lies below the demand at every window.
+    for length in range(1, 80):
+        assert function.scaled_rate * length + function.scaled_offset <= function.within(length) * WHOLE
+
+
+@pytest.mark.parametrize(
+    ("stream", "rate", "offset"),
+    [
+        (EventStream(8), 3 * WHOLE // 8, 0),
+        (EventStream(8, 4), 3 * WHOLE // 8, 3 * WHOLE // 2),
+        (EventStream(8, 4, 2), 3 * WHOLE // 8, 0),  # a distance takes the offset, not the rate
+        (EventStream(8, 4, 16), 3 * WHOLE // 16, 0),
+        (EventStream(8, 4, 0, 2, 2), 3 * WHOLE // 2, 6 * WHOLE),
+    ],
+)
+def test_the_lower_bound_is_the_average(stream: EventStream, rate: int, offset: int) -> None:
+    function = GrowingLoad([ActivityWork(3, (stream,))]).demand_function()
+    assert (function.scaled_rate, function.scaled_offset) == (rate, offset)
+    load = GrowingLoad([ActivityWork(3, (stream,))])
+    load.add_carried_work([ActivityWork(5, (EventStream(4),))])
+    both = load.demand_function()
+    assert (both.scaled_rate, both.scaled_offset) == (rate + 5 * WHOLE // 4, offset + 5 * WHOLE)
+
+
+def test_demands_are_added_subtracted_and_divided() -> None:
+    seven, three = DemandFunction(lambda t: 7 * t, 2, 70, 700), DemandFunction(lambda t: 3 * t, 1, 30, 300)
+    total, rest = add_demands(seven, three), subtract_demand(seven, three)
+    assert (total.within(2), *total[1:]) == (20, 3, 100, 1000)
+    assert (rest.within(2), *rest[1:]) == (8, 3, 40, 400)
+    half = divide_demand([(seven, 2)])
+    assert (half.within(3), *half[1:]) == (11, 2, 35, 350)  # 21 / 2, rounded up
+    several = divide_demand([(seven, 2), (three, 4)])
+    assert (several.within(3), *several[1:]) == (11 + 3, 3, 35 + 7, 350 + 75)  # each rounded by itself
+    assert (NO_DEMAND.within(9), NO_DEMAND[1:]) == (0, (0, 0, 0))
+
+
+def test_a_search_spends_its_own_part_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    from archgen.timing.load import busy_windows
+
+    monkeypatch.setattr(busy_windows, "_MAX_TERMS_PER_SEARCH", 10)
+    budget = SearchBudget(25)
+    spend = budget.start_search()
+    spend(10)
+    with pytest.raises(DivergedError):
+        spend(1)
+    second = budget.start_search()  # 14 are left, of which it may spend 10
+    second(10)
+    third = budget.start_search()
+    third(4)
+    with pytest.raises(DivergedError):
+        third(1)
+    with pytest.raises(DivergedError):
+        budget.start_search()(1)
+
+
+def test_a_step_costs_its_terms_and_an_activation_eight() -> None:
+    """Two looks (at 1, then at 1 + 2) of two terms and one for the sum each, and eight for the activation."""
+    work = ActivityWork(1, (EventStream(100),))
+    interference = GrowingLoad([ActivityWork(2, (EventStream(50),))]).demand_function()
+    for term_count, ends in ((2 * 3 + 8, True), (2 * 3 + 8 - 1, False)):
+        budget = SearchBudget(term_count)
+        if ends:
+            assert worst_response(work, interference, budget) == 3
+        else:
+            with pytest.raises(DivergedError):
+                worst_response(work, interference, budget)
+
+
+def test_the_busy_period_is_the_first_moment_without_work() -> None:
+    """3 each 10 and 4 each 6: 7, then 3 + 8 = 11, then 6 + 8 = 14, then 6 + 12 = 18 and nothing more comes before 18."""
+    load = GrowingLoad([ActivityWork(3, (EventStream(10),)), ActivityWork(4, (EventStream(6),))]).demand_function()
+    assert longest_busy_period(load, SearchBudget()) == 18
+    assert longest_busy_period(load, SearchBudget(), 18) == 18
+    assert longest_busy_period(load._replace(scaled_rate=0, scaled_offset=0), SearchBudget()) == 18
+    assert longest_busy_period(load, SearchBudget(), 30) == 30
+    assert longest_busy_period(NO_DEMAND, SearchBudget()) == 0
+    assert longest_busy_period(GrowingLoad([ActivityWork(1, (PLAIN,))]).demand_function(), SearchBudget()) == 1
+    assert longest_busy_period(GrowingLoad([ActivityWork(2, (PLAIN,))]).demand_function(), SearchBudget()) == 2
+
+
+def test_a_response_counts_from_the_activation() -> None:
+    """25 late: three come at once and the fourth at 5; of the first three the last is done at 12 when the fourth came."""
+    assert worst_response(ActivityWork(4, (LATE,)), NO_DEMAND, SearchBudget()) == 12
+    assert worst_response(ActivityWork(1, (LATE,)), NO_DEMAND, SearchBudget()) == 3
+    assert worst_response(ActivityWork(10, (PLAIN,)), NO_DEMAND, SearchBudget()) == 10  # just done when the next comes
+    assert worst_response(ActivityWork(7, ()), NO_DEMAND, SearchBudget()) == 7
+    assert worst_response(ActivityWork(0, (PLAIN,)), NO_DEMAND, SearchBudget()) == 0
+
+
+def test_the_worst_activation_is_not_the_first() -> None:
+    """J. Lehoczky, RTSS 1990: C = 26 each 70 above C = 62 each 100: the jobs end at 114, 202, 316, 404, 518, 606 and 694,
+    and come each 100: 114, 102, 116, 104, 118, 106, 94.
+    """
+    interference = GrowingLoad([ActivityWork(26, (EventStream(70),))]).demand_function()
+    assert worst_response(ActivityWork(62, (EventStream(100),)), interference, SearchBudget()) == 118

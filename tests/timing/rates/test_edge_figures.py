@@ -1,0 +1,45 @@
+"""Producers and consumers: loss, rereads, beat and queue of each kind of reader."""
+
+from __future__ import annotations
+
+from tests.timing.sketches import analyse_sketch, list_edges
+
+
+def test_readers_that_poll() -> None:
+    """Reads / sent: 10 of 100 Hz lose 9 in 10, 100 of 40 Hz read 2.5 times. The beat is 1 / |fast - n slow|: 30 and 101 Hz slip by
+    |101 - 3 x 30| = 11 Hz. A queue holds what comes in a gap and a response.
+    """
+    analysis = analyse_sketch(
+        {
+            "fast": "rate: 101 Hz, wcet: 0 ms, bcet: 0 ms",
+            "thirty": "rate: 30 Hz, wcet: 0 ms, bcet: 0 ms",
+            "same": "period: 10 ms, wcet: 1 ms",
+            "ten": "period: 100 ms, wcet: 3 ms",
+            "hundred": "period: 10 ms, wcet: 0 ms, bcet: 0 ms",
+            "forty": "period: 25 ms, wcet: 0 ms, bcet: 0 ms",
+            "dark": "",
+            "start": "behaviour: once",
+            "sometimes": "period: 10 ms, wcet: 0 ms, outputs: {out: {conditional: true}}",
+            "rare": "period: 40 ms, wcet: 1 ms",
+            "never": "trigger: {all: [never]}, wcet: 1 ms",
+            "heavy @pc": "period: 10 ms, wcet: 11 ms",
+        },
+        "fast>thirty thirty>fast hundred>same hundred>ten forty>hundred dark>ten start>ten sometimes>rare never>ten never>never hundred>dark hundred>start heavy>ten hundred>heavy",
+        "hosts: {pc: {cores: 1}}",
+    )
+    assert list_edges(analysis) == [
+        "fast>thirty: loss 71/101, rereads 1, beat 1000/11, queue 4",
+        "thirty>fast: loss 0, rereads 101/30, beat 1000/11, queue 1",
+        "hundred>same: loss 0, rereads 1, beat 0, queue 2",
+        "hundred>ten: loss 9/10, rereads 1, beat 0, queue 11",
+        "hundred>dark: loss 0, rereads 1, beat 0, queue none ?dark",
+        "hundred>start: loss 1, rereads 1, beat 0, queue none ?start [unbounded]",
+        "hundred>heavy: loss 0, rereads 1, beat 0, queue none ?hundred,heavy [no link joins their hosts]",
+        "dark>ten: loss 9/10, rereads 1, beat 0, queue none ?dark",
+        "start>ten: loss 0, rereads 1, beat 0, queue 1",
+        "never>ten: loss 0 [never fires], rereads 1 [never fires], beat 0, queue 0",
+        "never>never: loss 0, rereads 1, beat 0, queue 0",
+        "heavy>ten: loss 9/10, rereads 1, beat 0, queue none [unbounded]",
+        "forty>hundred: loss 0, rereads 5/2, beat 50, queue 1",
+        "sometimes>rare: loss 3/4 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue 5",
+    ]
