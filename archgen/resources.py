@@ -1,9 +1,12 @@
-"""Find the files that ship with archgen beside its code: schemas, backends, the type mapper, examples."""
+"""What archgen has beside its code: files that ship with it (schemas, backends, examples), and what workers may see."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+_WORKER_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH", "SYSTEMROOT")
+"""What an interpreter needs to start and to find its libraries as this one did."""
 _PACKAGE_FOLDER = Path(__file__).resolve().parent
 
 
@@ -19,3 +22,11 @@ def resource_root() -> Path:
 def resource_path(*path_parts: str) -> Path:
     """Return the path of a shipped file or folder."""
     return resource_root().joinpath(*path_parts)
+
+
+def worker_environment(*further_variables: str) -> dict[str, str]:
+    """Return the environment of a worker process: what its interpreter needs, and the variables that are named here.
+
+    A job's environment holds secrets, and a worker reads what strangers wrote.
+    """
+    return {name: os.environ[name] for name in (*_WORKER_VARIABLES, *further_variables) if name in os.environ}

@@ -206,12 +206,13 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 def _print_measured(request: TimingRequest, file: Path) -> None:
     from archgen.emit.terminal import timing_answers
     from archgen.project import observation_reading as reading
+    from archgen.syntax.folder_files import read_named_file
     from archgen.timing.chains import measured_comparison
     from archgen.timing.run_analysis import analyse_architecture
 
     with command_support.explain_write_errors():
         try:
-            text = file.read_bytes().decode("utf-8-sig")
+            text = read_named_file(file).decode("utf-8-sig")
         except UnicodeDecodeError:
             _raise_usage_error(f"{file} is not UTF-8 text")
     # So that excerpts below can show the lines of this file too.

@@ -76,6 +76,7 @@ def find_backends(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, 
     diagnostics: list[Diagnostic] = []
     for folder in _list_backend_folders(project / "backends"):
         try:
+            _refuse_links(project / "backends", folder)
             backend = _read_own_backend(folder, backends)
             backends[backend.id] = backend
         except ManifestError as error:
@@ -89,11 +90,23 @@ def _list_backend_folders(parent: Path) -> list[Path]:
     return sorted(path for path in parent.iterdir() if path.is_dir() and (path / BACKEND_MANIFEST).exists())
 
 
+def _refuse_links(parent: Path, folder: Path) -> None:
+    """Refuse a backend that is reached by a link, or whose manifest, templates or assets are links.
+
+    A link could lead out of the project (`templates -> /proc/self`), past what the reviewer of a change sees.
+    """
+    name = f"backends/{folder.name}"
+    for path, path_name in (
+        (parent, "backends"),
+        (folder, name),
+        *((folder / part, f"{name}/{part}") for part in (BACKEND_MANIFEST, "templates", "assets")),
+    ):
+        if path.is_symlink():
+            refuse_manifest(name, f"`{path_name}` is a link; a backend's folder stands in the project")
+
+
 def _read_own_backend(folder: Path, known_backends: Mapping[str, Backend]) -> Backend:
     name = f"backends/{folder.name}"
-    # A link could lead out of the project, past what the reviewer of a change sees.
-    if folder.is_symlink():
-        refuse_manifest(name, f"`{name}` is a link; a backend's folder stands in the project")
     backend = _read_manifest(folder, name)
     if backend.emitter != "text":
         refuse_manifest(name, f"a project's own backend has the emitter `text`, not `{backend.emitter}`")

@@ -21,6 +21,7 @@ from archgen.history.history_points import count_point, point_from_data, point_t
 from archgen.history.project_commits import ProjectCommit
 from archgen.model.project_history import HistoryPoint
 from archgen.pipeline import VersionCache
+from archgen.resources import worker_environment
 
 WorkerProgress = Callable[[int, int], None]
 _COMMITS_PER_PROCESS = 8
@@ -104,7 +105,11 @@ def _count_elsewhere(
         "path": None if path is None else str(path),
         "commits": [[item.id, item.day, item.tree_id] for item in commits],
     }
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - ourselves
+    # git needs a path, and the user's settings, which say which repositories are safe.
+    environment = worker_environment("PATH", "HOME", "USERPROFILE", "XDG_CONFIG_HOME")
+    with subprocess.Popen(  # noqa: S603 - ourselves
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
+    ) as process:
         if process.stdin and process.stdout:
             process.stdin.write(json.dumps(request).encode())
             process.stdin.close()

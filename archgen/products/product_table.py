@@ -8,7 +8,11 @@ from archgen.emit import file_tree, picture_files
 from archgen.emit.picture import Picture
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
+from archgen.syntax.folder_files import read_named_file
 from archgen.views.pages import report_outline
+
+MAX_TEMPLATE_BYTES = 200_000_000
+"""The largest Word template that is read: as much as one may unpack to."""
 
 
 class _RecordingReader:
@@ -26,7 +30,7 @@ class _RecordingReader:
 
 def _start_report(inputs: ProductInputs) -> FinishProduct:
     outline = inputs.outline
-    template = inputs.template.read_bytes() if inputs.template else None
+    template = read_named_file(inputs.template, MAX_TEMPLATE_BYTES) if inputs.template else None
 
     # Called on a miss only. The cache hands in a reader that records which chapter pictures the writer asks for.
     def write_anew(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -80,6 +81,7 @@ def write_started(
     inputs: ProductInputs, started_products: StartedProducts, product: Product, target: Path
 ) -> MadeProduct:
     """Finish a product and write it: completely, or not at all. Return it as it was written."""
+    refuse_leaving_links(inputs.checked_project, target)
     made_product = started_products.finishers[product.name](started_products.drawn.pictures)
     for warning in made_product.warnings:
         inputs.options.warn(warning)
@@ -95,8 +97,22 @@ def write_product(inputs: ProductInputs, product: Product, target: Path) -> Made
     return write_started(inputs, start_products(inputs, (product,)), product, target)
 
 
+def refuse_leaving_links(checked_project: CheckedProject, target: Path) -> None:
+    """Refuse a place in the project's own output folder that a link leads out of the project.
+
+    A stranger's branch can hold a link called `archgen-out`. A folder that somebody names with `-o` is where he wants it.
+    """
+    own_folder = Path(os.path.normpath(checked_project.output_folder.absolute()))
+    # The last name as well, where it is a link: what is written would go through it.
+    leads_out = not Path(os.path.realpath(target)).is_relative_to(os.path.realpath(checked_project.root))
+    if leads_out and Path(os.path.normpath(target.absolute())).is_relative_to(own_folder):
+        msg = f"{target} is reached by a link that leads out of the project"
+        raise file_tree.OutputError(msg, "take the link away, or name the folder with `-o`")
+
+
 def write_product_file(checked_project: CheckedProject, target: Path, content: bytes) -> None:
     """Write a single file, unless the project reads another one in its place."""
+    refuse_leaving_links(checked_project, target)
     if target.is_file() and _is_read_by_project(checked_project, target) and target.read_bytes() != content:
         msg = f"{target} is a file of the project itself"
         raise file_tree.OutputError(msg, "give the name of another file with `-o`")

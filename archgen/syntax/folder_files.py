@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Iterator
@@ -51,7 +52,19 @@ class FolderFiles:
             return FileRefusal(_describe_read_error(full_path, error))
 
 
-def _read_regular_file(path: Path) -> bytes | FileRefusal:
+def read_named_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
+    """Return the bytes of a file that a user names on the command line, wherever it lies.
+
+    Raise OSError for what is no regular file (a device or pipe would never end) and for what is too large.
+    """
+    data = _read_regular_file(path, max_bytes)
+    if isinstance(data, FileRefusal):
+        message = data.message if data is not TOO_LARGE else f"it has more than {max_bytes:,} bytes"
+        raise OSError(errno.EINVAL, message, str(path))
+    return data
+
+
+def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes | FileRefusal:
     # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
     # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -60,8 +73,8 @@ def _read_regular_file(path: Path) -> bytes | FileRefusal:
         if not stat.S_ISREG(mode):
             return FileRefusal(_describe_file_kind(mode))
         # One byte more than allowed tells "too large" without trusting st_size, which may grow while it is read.
-        data = stream.read(MAX_BYTES + 1)
-        return data if len(data) <= MAX_BYTES else TOO_LARGE
+        data = stream.read(max_bytes + 1)
+        return data if len(data) <= max_bytes else TOO_LARGE
 
 
 def _describe_file_kind(mode: int) -> str:

@@ -20,6 +20,7 @@ from archgen.emit.file_tree import FileTree, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.text.template_limits import TemplateLimits
+from archgen.resources import worker_environment
 from archgen.views.shapes import shape_to_plain
 
 DEFAULT_LIMITS = TemplateLimits()
@@ -66,7 +67,13 @@ def _run_worker(request: Mapping[str, Any], limits: TemplateLimits) -> Mapping[s
     command = [sys.executable, "-I", "-B", "-c", _WORKER_CODE, str(_PACKAGE_ROOT)]
     try:
         process = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
-            command, input=json.dumps(request).encode(), capture_output=True, timeout=limits.waiting, check=False
+            command,
+            input=json.dumps(request).encode(),
+            # A template that finds a way to read its process's environment must not find secrets there.
+            env=worker_environment(),
+            capture_output=True,
+            timeout=limits.waiting,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return {"error": f"it takes more than {limits.waiting:g} s", "template": None, "line": None}

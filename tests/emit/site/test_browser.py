@@ -213,6 +213,8 @@ def test_a_picture_can_be_looked_at_closely(visit: Open) -> None:
     assert after is not None
     assert after["width"] == pytest.approx(before["width"] * 1.25)
     page.keyboard.press("Escape")
+    # The page takes the dialog away when the browser has told it of the closing.
+    page.locator("dialog").wait_for(state="detached")
     assert page.locator("dialog").count() == 0
     page.get_by_role("button", name="Look closer").click()
     page.locator("dialog a").nth(2).click()
