@@ -64,7 +64,7 @@ def command(  # noqa: PLR0913 - one for each option
                 "--update-baseline takes in all findings of now and says what it wrote: no --format, no --changed-since"
             )
             raise click.UsageError(msg)
-        _update_baseline(command_support.check_project(project), baseline)
+        _update_baseline(command_support.check_or_exit(project), baseline)
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
         raise click.UsageError(msg)
@@ -72,7 +72,7 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import check_findings
 
     version_cache = VersionCache()
-    checked_project = command_support.check_project(project, version_cache)
+    checked_project = command_support.check_or_exit(project, version_cache)
     earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject, VersionCache
 
 
-def check_project(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
+def check_or_exit(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
     """Check a project. It is wrong usage if there is none."""
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
@@ -82,7 +82,7 @@ def exit_status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:
 
 def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedProject:
     """Check a project before something is written. Errors are printed and, without --keep-going, end the run."""
-    checked_project = check_project(project)
+    checked_project = check_or_exit(project)
     print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     if exit_status(checked_project.findings) and not keep_going:
         click.echo("Nothing was written. With --keep-going outputs are made of what is sound.", err=True)
@@ -90,7 +90,7 @@ def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedPr
     return checked_project
 
 
-def evaluate_selector(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
+def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
     """Evaluate a selector from the command line. What names nothing is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.products import project_views

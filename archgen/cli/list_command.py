@@ -46,7 +46,7 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
     """
     from archgen.emit.terminal import list_formats
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join(selector)
     if sort == "backends":
@@ -73,7 +73,7 @@ def _list_elements(
     from archgen.products.output_options import OutputOptions
     from archgen.views.tables import element_rows
 
-    selection = command_support.evaluate_selector(checked_project, selector_text or None)
+    selection = command_support.select_or_exit(checked_project, selector_text or None)
     lookup = project_views.make_scoped_lookup(checked_project, OutputOptions(selection, selector_text))
     return element_rows.list_element_rows(lookup, kind)
 

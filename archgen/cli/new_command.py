@@ -50,7 +50,7 @@ def add_group(name: str, title: str | None, owner: str | None, project: Path | N
     from archgen.edit.new_element import NewElement
     from archgen.model.path_resolver import title_from_id
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     _require_free_id(name, "group", {key: value.at for key, value in checked_project.architecture.groups.items()})
     body = _drop_missing(title=title or title_from_id(name), owner=owner) | {"description": None, "components": None}
     hints = {"description": "what the group is for", "components": "`archgen new component` adds one"}
@@ -80,7 +80,7 @@ def add_component(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.edit.new_element import NewElement
     from archgen.model.path_resolver import title_from_id
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     group_id, dot, component_id = name.rpartition(".")
     if dot and group_ not in {None, group_id}:
         msg = f"'{name}' is in the group '{group_id}', and --group says '{group_}'"
@@ -134,7 +134,7 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.edit import element_place
     from archgen.edit.new_element import NewElement
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     _require_free_id(
         name, "node", {key: value.at for key, value in checked_project.architecture.nodes.items() if value.written}
     )

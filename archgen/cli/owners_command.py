@@ -37,7 +37,7 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
             command_support.print_warning(warning)
         text = codeowners_file.text
     else:
-        checked_project = command_support.check_project(project)
+        checked_project = command_support.check_or_exit(project)
         command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
         text = _format_ownership(code_ownership.find_ownership(checked_project))
     if output is None:

@@ -36,7 +36,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
         if resolved:
             project_outputs.write_resolved(
                 checked_project,
-                OutputOptions(command_support.evaluate_selector(checked_project, select), select or ""),
+                OutputOptions(command_support.select_or_exit(checked_project, select), select or ""),
                 target,
             )
         else:

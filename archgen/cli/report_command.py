@@ -45,7 +45,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     del form  # one for now; the option is there so that scripts say what they want
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    selection = command_support.evaluate_selector(checked_project, select)
+    selection = command_support.select_or_exit(checked_project, select)
     output_options = OutputOptions(
         selection,
         select or "",

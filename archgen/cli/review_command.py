@@ -77,7 +77,7 @@ def command(  # noqa: PLR0913 - one for each option
     """
     from archgen.products import check_findings
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     target = output or checked_project.root / REVIEW_FOLDER
     merge_target = _find_merge_target(base)
     allowed_backends = command_support.read_allowed_backends(project, merge_target)

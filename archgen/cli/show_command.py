@@ -27,7 +27,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     from archgen.views.elements import element_card
     from archgen.views.lookup import make_lookup
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
     any_missing = False
     for word in words:

@@ -32,7 +32,7 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.run_analysis import analyse_architecture
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     architecture = checked_project.architecture
     _require_chains(asked, tuple(architecture.chains))

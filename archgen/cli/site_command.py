@@ -37,7 +37,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     output_options = OutputOptions(
-        command_support.evaluate_selector(checked_project, select),
+        command_support.select_or_exit(checked_project, select),
         select or "",
         level,
         revision,

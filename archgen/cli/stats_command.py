@@ -48,7 +48,7 @@ def _print_current(project: Path | None, form: str) -> None:
     from archgen.diagnostics.diagnostic import Severity
     from archgen.diagnostics.safe_text import format_json
 
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     project_size, rows = measure_size(checked_project.architecture), measure_progress(checked_project.architecture)
     if form == "json":

@@ -81,7 +81,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if len(questions) > 1:
         msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
         raise click.UsageError(msg)
-    checked_project = command_support.check_project(project)
+    checked_project = command_support.check_or_exit(project)
     from archgen.diagnostics.diagnostic import Severity
 
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)

@@ -18,7 +18,7 @@ from archgen.compare.finding_changes import judge_findings
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import analyse_timing
+from archgen.compare.timing_pair import analyse_timing_pair
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.architecture import Architecture
@@ -45,7 +45,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
     judged_findings = judge_findings(before, after, matched_ids)
-    timing_pair = analyse_timing(before, after, changes)
+    timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
     breaking_severity = stricter_policy(before.architecture.review, after.architecture.review)

@@ -26,11 +26,11 @@ def shown_id(kind: str, name: str, versions: VersionPair) -> str:
     return element.own_id if element else name
 
 
-def tick_names(names: Iterable[str]) -> str:
+def tick_names(names: Iterable[str], max_names: int = _MAX_NAMES) -> str:
     """Return element names in backticks, the surplus counted."""
     ticked_names = [f"`{shorten_text(name)}`" for name in names]
     return (
         join_words(ticked_names)
-        if len(ticked_names) <= _MAX_NAMES
-        else join_words([*ticked_names[: _MAX_NAMES - 1], f"{len(ticked_names) - _MAX_NAMES + 1} more"])
+        if len(ticked_names) <= max_names
+        else join_words([*ticked_names[: max_names - 1], f"{len(ticked_names) - max_names + 1} more"])
     )

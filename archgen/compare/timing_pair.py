@@ -20,7 +20,7 @@ class TimingPair:
     after: Analysis
 
 
-def analyse_timing(
+def analyse_timing_pair(
     old_version: ArchitectureVersion, new_version: ArchitectureVersion, changes: Sequence[Change]
 ) -> TimingPair | None:
     """Analyse both versions if there are chains to compare, or an overloaded host or link; else return None."""

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.link.svg_cleaning import clean_svg, is_svg
+from archgen.link.svg_cleaning import clean_project_svg, is_svg
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -76,7 +76,7 @@ class ReportChapters:
         normal_path = posixpath.normpath(path)
         if normal_path not in self.picture_cache:
             data = self._load_picture(normal_path)
-            self.picture_cache[normal_path] = clean_svg(data) if data is not None and is_svg(data) else data
+            self.picture_cache[normal_path] = clean_project_svg(data) if data is not None and is_svg(data) else data
         return self.picture_cache[normal_path]
 
     def _load_picture(self, normal_path: str) -> bytes | None:

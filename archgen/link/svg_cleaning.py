@@ -17,7 +17,7 @@ def is_svg(data: bytes) -> bool:
     return data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
-def clean_svg(data: bytes) -> bytes | None:
+def clean_project_svg(data: bytes) -> bytes | None:
     """Return the picture without scripts, handlers, foreign objects and outside addresses; None if it is no sound SVG."""
     # Imported here: only projects that show an SVG need it. It knows the elements and attributes of SVG that are harmless.
     from py_svg_hush import filter_svg

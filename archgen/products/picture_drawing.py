@@ -23,7 +23,7 @@ class DrawnPictures:
     warnings: tuple[str, ...] = ()
 
 
-def draw_pictures(
+def draw_started_pictures(
     drawings: Sequence[Drawing],
     formats: Sequence[str],
     progress: DrawingProgress | None = None,
@@ -53,7 +53,7 @@ def draw_pictures(
 
 def draw_or_warn(drawings: Sequence[Drawing], formats: Sequence[str], options: OutputOptions) -> Mapping[str, Picture]:
     """Draw graphs and charts, and pass on the warnings."""
-    drawn = draw_pictures(drawings, formats, options.progress)
+    drawn = draw_started_pictures(drawings, formats, options.progress)
     for warning in drawn.warnings:
         options.warn(warning)
     return drawn.pictures

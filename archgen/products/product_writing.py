@@ -12,7 +12,7 @@ from pathlib import Path
 from archgen.emit import file_tree
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
-from archgen.products.picture_drawing import DrawnPictures, draw_pictures
+from archgen.products.picture_drawing import DrawnPictures, draw_started_pictures
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.chart_shapes import Drawing
 
@@ -44,7 +44,9 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     with graphviz.start_early_workers(report_cache.cache_folder()) as workers, ThreadPoolExecutor(1) as executor:
         drawings = _choose_drawings(inputs, shown_products)
         # Other processes draw, and the thread waits for them.
-        drawing_future = executor.submit(draw_pictures, drawings, tuple(formats), inputs.options.progress, workers)
+        drawing_future = executor.submit(
+            draw_started_pictures, drawings, tuple(formats), inputs.options.progress, workers
+        )
         finishers = {product.name: product.start(inputs) for product in products}
         drawn = drawing_future.result()
     for warning in drawn.warnings:

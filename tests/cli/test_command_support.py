@@ -49,14 +49,14 @@ def test_nothing_is_written_from_a_project_with_errors(broken: Path, capsys: pyt
 
 def test_without_a_project_it_is_wrong_usage(tmp_path: Path) -> None:
     with pytest.raises(click.UsageError, match=r"holds no archgen\.yaml"):
-        command_support.check_project(tmp_path)
+        command_support.check_or_exit(tmp_path)
 
 
 def test_a_selector_that_names_nothing_is_wrong_usage(first: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    checked = command_support.check_project(first)
-    assert command_support.evaluate_selector(checked, None) is None
+    checked = command_support.check_or_exit(first)
+    assert command_support.select_or_exit(checked, None) is None
     with pytest.raises(click.UsageError, match="the selector 'x␛y' cannot be used"):
-        command_support.evaluate_selector(checked, "x\x1by")
+        command_support.select_or_exit(checked, "x\x1by")
     assert "\x1b" not in capsys.readouterr().err
 
 

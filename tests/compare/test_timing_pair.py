@@ -12,7 +12,7 @@ from archgen.compare import Change
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.timing_pair import analyse_timing, can_affect_timing
+from archgen.compare.timing_pair import analyse_timing_pair, can_affect_timing
 from archgen.model.quantity import Quantity
 from tests.compare.conftest import Checked
 from tests.compare.elements import by_key, pair, with_values
@@ -58,7 +58,7 @@ def test_what_can_affect_timing(kind: ChangeKind, element_kind: str, key: str | 
 def test_timing_is_analysed_only_for_chains_and_overloads(checked: Checked) -> None:
     def analysed(before: str, after: str, *changes: Change) -> bool:
         return (
-            analyse_timing(ArchitectureVersion(checked(before)), ArchitectureVersion(checked(after)), changes)
+            analyse_timing_pair(ArchitectureVersion(checked(before)), ArchitectureVersion(checked(after)), changes)
             is not None
         )
 
@@ -81,8 +81,8 @@ def test_timing_is_analysed_only_for_chains_and_overloads(checked: Checked) -> N
 def test_what_could_not_be_read_is_not_analysed(checked: Checked) -> None:
     whole = ArchitectureVersion(checked(CHAIN))
     part = ArchitectureVersion(replace(whole.architecture, unread_keys=frozenset({"x"})))
-    assert analyse_timing(part, whole, [RATE]) is None
-    assert analyse_timing(whole, part, [RATE]) is None
+    assert analyse_timing_pair(part, whole, [RATE]) is None
+    assert analyse_timing_pair(whole, part, [RATE]) is None
 
 
 def quantity(text: str) -> Quantity:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.svg_cleaning import clean_svg, is_svg
+from archgen.link.svg_cleaning import clean_project_svg, is_svg
 from archgen.pipeline import check_project
 
 SVG = (
@@ -37,7 +37,7 @@ SVG = (
     ],
 )
 def test_nothing_runs_and_nothing_is_loaded(attributes: str, content: str) -> None:
-    cleaned = clean_svg(SVG.format(attributes, content).encode())
+    cleaned = clean_project_svg(SVG.format(attributes, content).encode())
     assert cleaned is not None
     text = cleaned.decode()
     for word in (
@@ -62,7 +62,7 @@ def test_a_drawing_stays_what_it_is() -> None:
         "<style>.a{fill:url(#g)}</style>"
         '<rect class="a" width="3" filter="url(#f)"/><use href="#g"/><image href="data:image/png;base64,AAAA"/>'
     )
-    cleaned = clean_svg(SVG.format("", content).encode())
+    cleaned = clean_project_svg(SVG.format("", content).encode())
     assert cleaned is not None
     for kept in (
         'viewBox="0 0 9 9"',
@@ -73,7 +73,7 @@ def test_a_drawing_stays_what_it_is() -> None:
         "stop-color:#fff",
     ):
         assert kept in cleaned.decode()
-    assert clean_svg(cleaned) == cleaned
+    assert clean_project_svg(cleaned) == cleaned
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_a_drawing_stays_what_it_is() -> None:
     ],
 )
 def test_what_is_no_sound_svg_is_refused(data: bytes) -> None:
-    assert clean_svg(data) is None
+    assert clean_project_svg(data) is None
 
 
 def test_pixels_are_not_touched(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
@@ -114,7 +115,9 @@ class ChangeContext:
                 for partner in sorted(parts_by_partner)
                 if partner not in self.owners_of_change(change_index)
             }
-            part_phrases = [f"{tick_names(part_names)} of {partner}" for partner, part_names in other_parts.items()]
+            part_phrases = [
+                f"{tick_sorted_names(part_names)} of {partner}" for partner, part_names in other_parts.items()
+            ]
             has_many = sum(map(len, other_parts.values())) != 1
             reason_text = reason_template.replace(
                 "{}", f"{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}"
@@ -186,14 +189,9 @@ def tick_name(name: object) -> str:
     return f"`{shorten_text(str(name))}`"
 
 
-def tick_names(names: Iterable[str]) -> str:
-    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`."""
-    ticked_names = [tick_name(name) for name in sorted(names)]
-    return join_words(
-        ticked_names
-        if len(ticked_names) <= _MAX_NAMES
-        else [*ticked_names[: _MAX_NAMES - 1], f"{len(ticked_names) - _MAX_NAMES + 1} more"]
-    )
+def tick_sorted_names(names: Iterable[str]) -> str:
+    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
+    return tick_names(sorted(names), _MAX_NAMES)
 
 
 def _plural_verb(verb: str, *, plural: bool) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable
@@ -40,7 +40,7 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         )
         for partner, inputs in sorted(lost_inputs.items()):
             name = context.old_id("output", output)
-            reason_text = f"gives {partner}, who reads `{name}` as {tick_names(inputs)}, {change}"
+            reason_text = f"gives {partner}, who reads `{name}` as {tick_sorted_names(inputs)}, {change}"
             yield from context.losses_of_partner(indices, partner, reason_text)
 
 
@@ -54,7 +54,7 @@ def _type_change(
     (old_type, new_type), (messages_before, messages_after) = type_pair, message_pair
     if old_type is not None and old_type != new_type:
         message_note = (
-            f" (the message stays {tick_names(messages_after)})"
+            f" (the message stays {tick_sorted_names(messages_after)})"
             if messages_before and messages_before == messages_after
             else ""
         )
@@ -64,7 +64,9 @@ def _type_change(
         return [], ""
     node_ids = [node for node, port in context.offered_endpoints[1] if port == output_id]
     indices = [place for node in node_ids for place in context.port_change_indices(node, output_id, "message")]
-    replacement = f"{tick_names(messages_after) or 'no message any more'} instead of {tick_names(messages_before)}"
+    replacement = (
+        f"{tick_sorted_names(messages_after) or 'no message any more'} instead of {tick_sorted_names(messages_before)}"
+    )
     return indices or (context.change_indices("type", str(new_type), "message") if new_type else []), replacement
 
 
@@ -161,9 +163,9 @@ def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> 
     if new_definition is None or old_definition is None:
         return f"takes the definition of {ticked_name} from {partner}, who uses it"
     removed, added, retyped_fields = _compare_fields(old_definition, new_definition)
-    clauses = [f"removes {tick_names(removed)}"] if removed else []
-    clauses += [f"changes the type of {tick_names(retyped_fields)}"] if retyped_fields else []
-    clauses += [f"adds {tick_names(added)}"] if added else []
+    clauses = [f"removes {tick_sorted_names(removed)}"] if removed else []
+    clauses += [f"changes the type of {tick_sorted_names(retyped_fields)}"] if retyped_fields else []
+    clauses += [f"adds {tick_sorted_names(added)}"] if added else []
     difference = " and ".join(clauses) or "puts fields in another order"
     # The wire format of ROS has no optional fields; ROS 1 compares checksums and ROS 2 type hashes
     # (docs/decisions/0007-breaking-changes.md).

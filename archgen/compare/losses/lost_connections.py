@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
 
 
 def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
@@ -45,7 +45,7 @@ def find_output_causes(context: ChangeContext, output_id: str) -> list[int]:
 
 
 def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], partner: str) -> str:
-    input_names = tick_names(input_ids)
+    input_names = tick_sorted_names(input_ids)
     old_name = f"`{context.old_id('output', output_id)}`"
     if ("output", output_id) in context.versions.elements_after:
         return f"takes {old_name} from {partner}, who still reads it under that name as {input_names}"
@@ -56,5 +56,5 @@ def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], p
     gained_sources = existing_sources - {
         source for name in input_ids for source in context.versions.connections_before.sources_by_input.get(name, ())
     }
-    instead_note = f" (and is to read {tick_names(gained_sources)} instead)" if gained_sources else ""
+    instead_note = f" (and is to read {tick_sorted_names(gained_sources)} instead)" if gained_sources else ""
     return f"takes {old_name} from {partner}, who reads it as {input_names}{instead_note}"

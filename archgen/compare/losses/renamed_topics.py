@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.model.node import Endpoint, FlowKind
 
 TopicKey = tuple[str, FlowKind]
@@ -94,6 +94,6 @@ def _loss_reason(topic_key: TopicKey, partner: str, node_ids: Iterable[str], rep
     name, flow = topic_key
     verb = "subscribes to" if flow == "topic" else "calls"
     new_name_note = (
-        f"it is {tick_names(replacements)} now" if replacements else "nobody offers it under that name any more"
+        f"it is {tick_sorted_names(replacements)} now" if replacements else "nobody offers it under that name any more"
     )
-    return f"takes the {flow} {tick_name(name)} from {partner}, whose {tick_names(node_ids)} {verb} it; {new_name_note}"
+    return f"takes the {flow} {tick_name(name)} from {partner}, whose {tick_sorted_names(node_ids)} {verb} it; {new_name_note}"

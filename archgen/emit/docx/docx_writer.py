@@ -16,7 +16,7 @@ from archgen.emit.docx.link_addresses import quote_address
 from archgen.emit.docx.list_numbering import ListNumbering
 from archgen.emit.docx.paper_sheets import PaperSet
 from archgen.emit.docx.style_table import StyleTable
-from archgen.emit.docx.word_xml import clean_text, name_bookmark
+from archgen.emit.docx.word_xml import clean_word_text, name_bookmark
 from archgen.emit.picture import Picture
 
 _IMAGE_TYPES = {
@@ -110,7 +110,7 @@ class DocxWriter:
 
     def warn(self, text: str) -> None:
         """Say something about the report to who writes it, once."""
-        text = clean_text(text)
+        text = clean_word_text(text)
         if text not in self.warnings:
             self.warnings.append(text)
 

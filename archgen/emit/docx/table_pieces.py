@@ -8,7 +8,7 @@ from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.column_widths import CELL_MARGINS, USUAL_STYLES, TableContent, choose_table_sheet, share_width
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
-from archgen.emit.docx.table_rows import TableCell, TableFrame, write_table_rows
+from archgen.emit.docx.table_rows import TableFrame, WordCell, write_table_rows
 from archgen.emit.docx.text_metrics import measure_word
 from archgen.emit.docx.text_runs import MUTED_COLOUR, format_runs, join_text
 from archgen.emit.docx.word_xml import format_run
@@ -35,14 +35,14 @@ def write_table(writer: DocxWriter, shape: Table) -> Iterator[FlowPiece]:
     row_anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     for row, row_anchor in zip(shape.rows, row_anchors, strict=False):
         cells = _write_cells(writer, row, aligns)
-        cells += [TableCell("", "")] * (len(shape.columns) - len(cells))
+        cells += [WordCell("", "")] * (len(shape.columns) - len(cells))
         bookmark += writer.format_bookmark(row_anchor)
         if bookmark:
-            cells[0] = TableCell(bookmark + cells[0].runs, cells[0].text, cells[0].align)
+            cells[0] = WordCell(bookmark + cells[0].runs, cells[0].text, cells[0].align)
             bookmark = ""
         body.append(cells)
     header = [
-        TableCell(format_run(column.title), column.title, align)
+        WordCell(format_run(column.title), column.title, align)
         for column, align in zip(shape.columns, aligns, strict=True)
     ]
     total = (sheet or writer.paper.base).text_width
@@ -59,7 +59,7 @@ def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
     )
     left = min(max(longest, width * _NAME_SHARE), width / 2)
     body = [
-        [TableCell(format_run(name, MUTED_COLOUR), name), TableCell(format_runs(writer, value), join_text(value))]
+        [WordCell(format_run(name, MUTED_COLOUR), name), WordCell(format_runs(writer, value), join_text(value))]
         for name, value in shape.rows
     ]
     if body:
@@ -77,7 +77,7 @@ def write_chapter_table(writer: DocxWriter, rows: Sequence[Sequence[Inlines]], a
     return write_table_rows(writer, cells[0], cells[1:], TableFrame(widths))
 
 
-def _write_cells(writer: DocxWriter, row: Sequence[Inlines], aligns: Sequence[str]) -> list[TableCell]:
+def _write_cells(writer: DocxWriter, row: Sequence[Inlines], aligns: Sequence[str]) -> list[WordCell]:
     return [
-        TableCell(format_runs(writer, cell), join_text(cell), align) for cell, align in zip(row, aligns, strict=False)
+        WordCell(format_runs(writer, cell), join_text(cell), align) for cell, align in zip(row, aligns, strict=False)
     ]

@@ -31,7 +31,7 @@ _HEADER_SHADE = '<w:shd w:val="clear" w:color="auto" w:fill="EDF1F4"/>'
 
 
 @dataclass(frozen=True, slots=True)
-class TableCell:
+class WordCell:
     """A cell before it is written: its runs, their plain text, its alignment as properties of its paragraph."""
 
     runs: str
@@ -51,7 +51,7 @@ class TableFrame:
 
 
 def write_table_rows(
-    writer: DocxWriter, header: Sequence[TableCell], body: Sequence[Sequence[TableCell]], frame: TableFrame
+    writer: DocxWriter, header: Sequence[WordCell], body: Sequence[Sequence[WordCell]], frame: TableFrame
 ) -> FlowPiece:
     """Write a table (without header row if that is empty), with the small empty paragraph behind it.
 
@@ -103,7 +103,7 @@ def _format_description(description: str) -> str:
     return f'<w:tblCaption w:val="{text}"/><w:tblDescription w:val="{text}"/>'
 
 
-def _format_row(starts: Sequence[str], cells: Sequence[TableCell], paragraph_style: str, row_properties: str) -> str:
+def _format_row(starts: Sequence[str], cells: Sequence[WordCell], paragraph_style: str, row_properties: str) -> str:
     inner = "".join(
         [
             f"{start}</w:tcPr><w:p><w:pPr>{paragraph_style}{cell.align}</w:pPr>{cell.runs}</w:p></w:tc>"
@@ -120,7 +120,7 @@ def _format_spacer(writer: DocxWriter) -> str:
     return format_paragraph(writer.styles.find_style_id("Normal"), "", spacing)
 
 
-def _measure_row(cells: Sequence[TableCell], widths: Sequence[float], face: TextFace) -> float:
+def _measure_row(cells: Sequence[WordCell], widths: Sequence[float], face: TextFace) -> float:
     most = 1
     for cell, width in zip(cells, widths, strict=True):
         if cell.text:

@@ -11,7 +11,7 @@ from docx.oxml.ns import qn
 from lxml import etree
 
 from archgen.emit.docx.report_template import ReportTemplate
-from archgen.emit.docx.word_xml import clean_text
+from archgen.emit.docx.word_xml import clean_word_text
 
 _PLACEHOLDER = re.compile(r"\{\{\s*([^{}]{1,80}?)\s*\}\}")
 _XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
@@ -64,7 +64,7 @@ def _fill_paragraph(paragraph: etree._Element, values: Mapping[str, str], unknow
 
 
 def _replace_names(text: str, values: Mapping[str, str]) -> str:
-    return _PLACEHOLDER.sub(lambda match: clean_text(values.get(match[1].casefold(), "")), text)
+    return _PLACEHOLDER.sub(lambda match: clean_word_text(values.get(match[1].casefold(), "")), text)
 
 
 def _write_text(item: etree._Element, text: str) -> None:

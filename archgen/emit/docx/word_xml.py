@@ -32,19 +32,19 @@ _LINE_ENDS = str.maketrans("\n\r", "  ")
 _NEEDS_CARE = re.compile('[&<>"\n\r\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]')
 
 
-def clean_text(text: str) -> str:
+def clean_word_text(text: str) -> str:
     """Return text with a visible sign for each character that XML cannot hold: python-docx and lxml raise ValueError for them."""
     return _FORBIDDEN.sub("\ufffd", text)
 
 
 def clean_line(text: str) -> str:
     """Return clean text on one line, for attributes and properties."""
-    return clean_text(text).translate(_LINE_ENDS)
+    return clean_word_text(text).translate(_LINE_ENDS)
 
 
 def escape_text(text: str) -> str:
     """Return text as it may stand in an element or between double quotes."""
-    return clean_text(text).translate(_ESCAPES) if _NEEDS_CARE.search(text) else text
+    return clean_word_text(text).translate(_ESCAPES) if _NEEDS_CARE.search(text) else text
 
 
 def name_bookmark(anchor: str) -> str:

@@ -24,7 +24,7 @@ _BREAKS = (re.compile(r"(?=/)"), re.compile(r"(?<=[-_.:,;])"))
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\\": "&#92;"})
 
 
-def clean_text(text: str, max_length: int = MAX_TEXT_LENGTH) -> str:
+def clean_label_text(text: str, max_length: int = MAX_TEXT_LENGTH) -> str:
     """Return the text on one line, without characters that no picture can hold, cut at `max_length`."""
     text = _BLANKS.sub(" ", text)
     if not text.isprintable():
@@ -36,12 +36,12 @@ def clean_text(text: str, max_length: int = MAX_TEXT_LENGTH) -> str:
 
 def escape_label(text: str) -> str:
     """Escape one line of text for an html-like label."""
-    return clean_text(text).translate(_ESCAPES) or "\u00a0"
+    return clean_label_text(text).translate(_ESCAPES) or "\u00a0"
 
 
 def quote_value(text: str) -> str:
     """Quote a value for DOT. Line feeds stay line feeds."""
-    lines = (clean_text(line, 4000) for line in text.split("\n"))
+    lines = (clean_label_text(line, 4000) for line in text.split("\n"))
     # Graphviz reads `&lt;` in a quoted string as a character reference, so `&` is escaped here too.
     escaped = (line.replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"') for line in lines)
     return '"' + "\\n".join(escaped) + '"'
@@ -59,7 +59,7 @@ def safe_address(href: str) -> str:
 
 def wrap_text(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
     """Wrap a text into lines of about `width` characters, wider only where it would take more than `lines` lines."""
-    text = clean_text(text)
+    text = clean_label_text(text)
     width = max(width, -(-len(text) // lines))
     rows = [""]
     for piece in _split_pieces(text, width):

@@ -11,7 +11,7 @@ from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
-from archgen.emit.graphviz.svg_cleanup import clean_svg, find_drawn_edges, number_surfaces
+from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, find_drawn_edges, number_surfaces
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
 from archgen.views.shapes import Graph
@@ -97,7 +97,7 @@ def render_picture(
         drawing.id,
         right - left,
         top - bottom,
-        svg=clean_svg(text, drawing) if "svg" in formats else None,
+        svg=clean_graphviz_svg(text, drawing) if "svg" in formats else None,
         png=render_png(scene, drawing.id, _GRAPH_ATTRIBUTES, quick=quick) if "png" in formats else None,
         dot=dot,
         warning=warning,

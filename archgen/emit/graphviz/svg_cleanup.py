@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from html import escape
 
-from archgen.emit.graphviz.dot_text import clean_text
+from archgen.emit.graphviz.dot_text import clean_label_text
 from archgen.views.chart_shapes import Drawing
 
 _HEAD = re.compile(r"^.*?<svg ([^>]*)>", re.DOTALL)
@@ -37,7 +37,7 @@ def number_surfaces(outlines: bytes) -> bytes:
     return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
 
 
-def clean_svg(svg: str, drawing: Drawing) -> bytes:
+def clean_graphviz_svg(svg: str, drawing: Drawing) -> bytes:
     """Return the svg as a single element, without prologue and comments."""
     head = _HEAD.match(svg)
     if head is None:
@@ -47,8 +47,8 @@ def clean_svg(svg: str, drawing: Drawing) -> bytes:
     body = _LINK.sub(_write_title, _GROUP.sub(r"\1", body))
     body = re.sub(r"(<g id=\"graph0\"[^>]*>\n)<title>.*?</title>\n", r"\1", body, count=1)
     body = _ID.sub(lambda found: f"{found[1]}{prefix}-{found[2]}{found[3]}", body)
-    name = f"<title>{escape(clean_text(drawing.title))}</title>\n"
-    description = f"<desc>{escape(clean_text(drawing.alt, 4000))}</desc>\n" if drawing.alt else ""
+    name = f"<title>{escape(clean_label_text(drawing.title))}</title>\n"
+    description = f"<desc>{escape(clean_label_text(drawing.alt, 4000))}</desc>\n" if drawing.alt else ""
     return f'<svg class="archgen" role="group" {head[1]}>\n{name}{description}{body.lstrip()}'.encode()
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
 from archgen.compare.losses.overloaded_resources import _has_grown as has_grown
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -137,8 +137,8 @@ def test_nobody_breaks_itself() -> None:
 
 def test_names_in_ticks_are_sorted_and_limited() -> None:
     assert tick_name("a`b") == "`a'b`"
-    assert tick_names("dcba") == "`a`, `b`, `c` and `d`"
-    assert tick_names("edcba") == "`a`, `b`, `c` and 2 more"
+    assert tick_sorted_names("dcba") == "`a`, `b`, `c` and `d`"
+    assert tick_sorted_names("edcba") == "`a`, `b`, `c` and 2 more"
 
 
 def test_requirements_that_a_change_drops() -> None:

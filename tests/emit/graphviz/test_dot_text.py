@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.emit.graphviz.dot_text import clean_text, escape_label, quote_value, safe_address, wrap_text
+from archgen.emit.graphviz.dot_text import clean_label_text, escape_label, quote_value, safe_address, wrap_text
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ from archgen.emit.graphviz.dot_text import clean_text, escape_label, quote_value
     ],
 )
 def test_clean(text: str, expected: str) -> None:
-    assert clean_text(text) == expected
+    assert clean_label_text(text) == expected
 
 
 @pytest.mark.parametrize(
