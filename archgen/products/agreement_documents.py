@@ -18,8 +18,9 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.picture_drawing import draw_or_warn
 from archgen.views import inline_text
 from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
+from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Graph, Paragraph, Section
+from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.architecture_tables import describe_severities
 from archgen.views.timing.timing_lookup import analyse_with_chains
 

@@ -13,7 +13,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.products.product_table import PRODUCTS
 from archgen.views import resolved_record
-from archgen.views.shapes import Graph
+from archgen.views.graph_shapes import Graph
 from archgen.views.tables import statistics_tables
 
 BackendTarget = Literal["documents", "workspace", "file"]

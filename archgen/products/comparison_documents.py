@@ -17,7 +17,7 @@ from archgen.views.changes.reading_errors import ReadingErrors
 if TYPE_CHECKING:
     from archgen.emit.picture import Picture
     from archgen.products.output_options import OutputOptions
-    from archgen.views.shapes import Graph
+    from archgen.views.graph_shapes import Graph
 
 
 def describe_versions(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from archgen.views.shapes import Graph
+from archgen.views.graph_shapes import Graph
 
 SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "open", "best"]
 

@@ -7,8 +7,8 @@ from typing import Literal
 from archgen.model.selector_evaluation import Selection
 from archgen.views import graphs
 from archgen.views.chart_shapes import Drawing
+from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Graph
 from archgen.views.timing import chain_charts
 
 

@@ -1,4 +1,4 @@
-"""The four plain shapes that emitters draw: Graph, Table, Outline and Record (for Chart see `chart_shapes`).
+"""The plain shapes that emitters draw: Table, Outline and Record here, Graph in `graph_shapes`, Chart in `chart_shapes`.
 
 Views make them from the model and its analyses. Emitters know nothing else, so a new format costs one template.
 Everything here is plain data (tuples, strings, numbers), and `shape_to_plain` turns it into dicts and lists. Class and
@@ -38,8 +38,6 @@ class Text:
 
 
 Inlines = tuple[Text, ...]
-ElementChange = Literal["added", "removed", "changed", "renamed"]
-"""What happened to an element of a picture that shows two versions; its text and its line style show it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,145 +75,6 @@ def drop_empty_columns(table: Table) -> Table:
         columns=tuple(table.columns[index] for index in kept_columns),
         rows=tuple(tuple(row[index] for index in kept_columns) for row in table.rows),
     )
-
-
-PeriodStep = Literal[
-    "to_10_ms", "to_30_ms", "to_100_ms", "to_300_ms", "to_1_s", "slower", "unknown", "event", "on_demand", "once"
-]
-"""Steps of the period scale, or why something has no period."""
-
-
-@dataclass(frozen=True, slots=True)
-class Box:
-    """A box of a graph.
-
-    `style` says what it is; `emphasis` is `subject` (thick frame), `normal` or `neighbour` (grey). `colour` is an index
-    into the palette of group hues, None for no hue. `lines` follow the title in small type. `ports_in` and `ports_out`
-    are rows (name, text) at its sides. `side` puts neighbours at the outer ranks.
-    """
-
-    id: str
-    title: str
-    lines: tuple[str, ...] = ()
-    style: Literal[
-        "component",
-        "source",
-        "sink",
-        "reactive",
-        "group",
-        "node",
-        "topic",
-        "service",
-        "action",
-        "external",
-        "physical",
-        "host",
-        "container",
-        "partner",
-        "fold",
-        "link",
-    ] = "component"
-    emphasis: Literal["subject", "normal", "neighbour"] = "normal"
-    status: Literal["existing", "adapted", "planned"] | None = None
-    colour: int | None = None
-    cluster: str | None = None
-    side: Literal["left", "right"] | None = None
-    ports_in: tuple[tuple[str, str], ...] = ()
-    ports_out: tuple[tuple[str, str], ...] = ()
-    ref: str | None = None
-    tooltip: str = ""
-    badge: Literal["error", "warning", "note"] | None = None
-    fill: PeriodStep | None = None
-    """Fills the box by the period scale; frame and text distinguish what has no period."""
-    change: ElementChange | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Arrow:
-    """An edge of a graph, from box `tail` to box `head`; `id` is unique in the graph.
-
-    `flows` says what runs along it, one sentence each (for the tooltip, and for a table beside the picture). `count` is
-    how many flows a merged arrow represents; overviews show it as the label.
-    """
-
-    id: str
-    tail: str
-    head: str
-    label: str = ""
-    tail_port: str | None = None
-    head_port: str | None = None
-    style: Literal["data", "physical", "service", "action", "internal", "link"] = "data"
-    count: int = 1
-    colour: int | None = None
-    optional: bool = False
-    faded: bool = False
-    flows: tuple[str, ...] = ()
-    ref: str | None = None
-    change: ElementChange | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Cluster:
-    """A frame around boxes: a group, a host, a container; `parent` nests it in another cluster."""
-
-    id: str
-    title: str
-    lines: tuple[str, ...] = ()
-    colour: int | None = None
-    emphasis: Literal["subject", "normal", "neighbour"] = "normal"
-    parent: str | None = None
-    ref: str | None = None
-    tooltip: str = ""
-
-
-GraphKind = Literal[
-    "overview",
-    "components",
-    "group",
-    "component",
-    "implementation",
-    "ros",
-    "hosts",
-    "timing",
-    "group-timing",
-    "view",
-    "agreement",
-    "component-changes",
-    "node-changes",
-]
-"""What a graph shows. docs/backends.md describes each."""
-
-
-@dataclass(frozen=True, slots=True)
-class Graph:
-    """A picture; `id` is its file name without extension, where a slash makes a folder (`groups/environment_state`).
-
-    `kind` says what it shows, so that templates need not take the id apart.
-
-    `layout` names the recipe: `flow` (one run of dot), `group` (one cluster with neighbours at both sides), `two-step`
-    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one run of dot
-    with frames around the boxes, for small graphs; labels are placed on the arrows afterwards). `asked` is the number
-    of flows that the picture must account for: the arrows' counts add up to it.
-    """
-
-    id: str
-    title: str
-    layout: Literal["flow", "group", "two-step", "overview", "framed"]
-    boxes: tuple[Box, ...]
-    arrows: tuple[Arrow, ...]
-    clusters: tuple[Cluster, ...] = ()
-    direction: Literal["left-right", "top-bottom"] = "left-right"
-    legend: tuple[str, ...] = ()
-    """Which keys of the legend apply: names of styles, `width`, `colour`, `neighbour`, ..."""
-    legend_colours: tuple[tuple[int, str], ...] = ()
-    """Palette index and its meaning, where colour stands for something other than the group."""
-    notes: tuple[str, ...] = ()
-    """What the picture leaves out or folds; shown below it."""
-    alt: str = ""
-    """What the picture shows, for readers who cannot see it."""
-    asked: int = 0
-    # By keyword and without a default: a new picture must say what it shows.
-    kind: GraphKind = dataclasses.field(kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes
-from archgen.views.shapes import Arrow
+from archgen.views.graph_shapes import Arrow
 
 PEN_WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))
 """The pen width by the least number of flows, the largest first."""

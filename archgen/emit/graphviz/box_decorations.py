@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from archgen.emit.graphviz import box_styles, palette
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
-from archgen.views.shapes import Box
+from archgen.views.graph_shapes import Box
 
 _BAR_WIDTH = 3.5
 _BADGE_DIAMETER = 10.0

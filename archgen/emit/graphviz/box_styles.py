@@ -24,7 +24,7 @@ from collections.abc import Callable
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes
-from archgen.views.shapes import Box
+from archgen.views.graph_shapes import Box
 
 LinkResolver = Callable[[str], str | None]
 

@@ -1,9 +1,7 @@
 """Lay out charts: bars along one scale, at places that are computed here; Graphviz only renders them.
 
-A chart is as wide as the text of a report. From left to right: titles, the scale with its bars, figures. Each kind of
-stretch has a form beside its colour: waiting is pale with a dotted frame, response solid, a link striped, the unknown
-hatched with a question mark. Grid and limit are thin boxes below and above the bars. docs/decisions/0003-charts.md
-says why a chart is not a graph.
+A chart is as wide as the text of a report. From left to right: titles, the scale with its bars, figures. Grid and limit
+are thin boxes below and above the bars. docs/decisions/0003-charts.md says why a chart is not a graph.
 """
 
 from __future__ import annotations
@@ -13,10 +11,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.graphviz import palette
-from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
-from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
+from archgen.emit.graphviz.box_styles import LinkResolver
+from archgen.emit.graphviz.chart_styles import (
+    BAR_HEIGHT,
+    STRETCH_FORMS,
+    fix_node_size,
+    make_thin_box,
+    style_chart_text,
+    style_small_text,
+    style_stretch,
+    style_stretch_form,
+    wrap_bar_title,
+)
+from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_legend
-from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, ScenePart
+from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 
@@ -26,27 +35,11 @@ _MIN_SCALE_WIDTH = 150.0
 """The least width of the scale."""
 _COLUMN_GAP = 8.0
 _ROW_HEIGHT = 21.0
-_BAR_HEIGHT = 14.0
 _HAIRLINE = 0.8
 """The least width of a stretch that is longer than zero."""
 _UNKNOWN_WIDTH = 22.0
-_TITLE_CHARACTERS = 26
-"""Characters in a line of a title."""
 _FAR_LIMIT_FACTOR = 4
 """A limit more than this many times beyond the bars is named at the edge instead of drawn."""
-_STRETCH_FORMS: dict[str, tuple[str, str, str]] = {
-    "sampling": ("filled,dotted", "#deebf7", "waits for the next activation"),
-    "response": ("filled", "#2171b5", "responds"),
-    "link": ("striped", "#f7cf9c:#fdf0de", "on the network"),
-    "load": ("filled", "#2171b5", ""),
-    "other_load": ("filled,dotted", "#9ecae1", ""),
-    "met": ("filled", palette.OK, ""),
-    "missed": ("filled", palette.ERROR, ""),
-    "open": ("filled", palette.NEIGHBOUR_FRAME, ""),
-    "best": ("filled", "#e3e6e9", ""),
-    "unknown": ("striped,dashed", "#fefefe:#e3e6e9", "unknown"),
-}
-"""By kind of stretch: Graphviz's style, the fill (two colours make stripes), and the words of the legend."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +65,15 @@ def lay_out_chart(chart: Chart, resolve_link: LinkResolver) -> Scene:
     """Lay out a chart as a scene. y grows upwards: rows go down from 0."""
     text_colours = [palette.MUTED if bar.is_outside else palette.TEXT for bar in chart.bars]
     row_texts = [
-        (_wrap_title(bar.title, strong=bar.strong), _wrap_title(bar.value, strong=bar.strong)) for bar in chart.bars
+        (wrap_bar_title(bar.title, strong=bar.strong), wrap_bar_title(bar.value, strong=bar.strong))
+        for bar in chart.bars
     ]
     title_attributes = [
-        _text_attributes(name, "left", resolve_link, bar.ref, bar.title, ink=ink)
+        style_chart_text(name, "left", resolve_link, bar.ref, bar.title, ink=ink)
         for (name, _), bar, ink in zip(row_texts, chart.bars, text_colours, strict=True)
     ]
     value_attributes = [
-        _text_attributes(value, "right", resolve_link, ink=ink)
+        style_chart_text(value, "right", resolve_link, ink=ink)
         for (_, value), ink in zip(row_texts, text_colours, strict=True)
     ]
     # Both columns at once: measuring runs a layout.
@@ -97,7 +91,9 @@ def lay_out_chart(chart: Chart, resolve_link: LinkResolver) -> Scene:
     for index, (bar, height) in enumerate(zip(chart.bars, heights, strict=True)):
         if bar.strong:
             parts.append(
-                _thin_box(f"r{index}", right_edge / 2, y, width=right_edge, height=0.6, colour=palette.NEIGHBOUR_FRAME)
+                make_thin_box(
+                    f"r{index}", right_edge / 2, y, width=right_edge, height=0.6, colour=palette.NEIGHBOUR_FRAME
+                )
             )
         middle = y - height / 2
         wide, high = title_sizes[index]
@@ -137,9 +133,7 @@ def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> I
         zip(known_stretches, _stretch_widths(known_stretches, scale.factor), strict=True)
     ):
         if width:
-            yield ScenePart(
-                f"b{index}.{number}", _style_stretch(each, width), x + width / 2, middle, width, _BAR_HEIGHT
-            )
+            yield ScenePart(f"b{index}.{number}", style_stretch(each, width), x + width / 2, middle, width, BAR_HEIGHT)
             x += width
     if unknown_stretches:
         question_mark = BarSegment(
@@ -147,14 +141,16 @@ def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> I
         )
         yield ScenePart(
             f"b{index}.q",
-            _style_stretch(question_mark, _UNKNOWN_WIDTH),
+            style_stretch(question_mark, _UNKNOWN_WIDTH),
             x + _UNKNOWN_WIDTH / 2,
             middle,
             _UNKNOWN_WIDTH,
-            _BAR_HEIGHT,
+            BAR_HEIGHT,
         )
     if bar.mark is not None:
-        yield _thin_box(f"m{index}", scale.x(bar.mark), middle, width=1.6, height=_ROW_HEIGHT - 1, colour=palette.TEXT)
+        yield make_thin_box(
+            f"m{index}", scale.x(bar.mark), middle, width=1.6, height=_ROW_HEIGHT - 1, colour=palette.TEXT
+        )
 
 
 def _stretch_widths(stretches: Sequence[BarSegment], factor: float) -> list[float]:
@@ -171,109 +167,14 @@ def _stretch_widths(stretches: Sequence[BarSegment], factor: float) -> list[floa
     ]
 
 
-def _style_stretch(stretch: BarSegment, width: float) -> DotAttributes:
-    """Return the attributes of a stretch. Its label is inside where it fits."""
-    form = "unknown" if stretch.length is None else stretch.kind
-    fill = _STRETCH_FORMS[form][1]
-    ink = palette.PAPER if ":" not in fill and palette.text_colour_on(fill) == palette.PAPER else palette.INK
-    text = escape_label(stretch.label) if form != "unknown" else f"<B>{escape_label(stretch.label)}</B>"
-    label = f'<<FONT POINT-SIZE="{9 if form == "unknown" else 7.5}" COLOR="{ink}">{text}</FONT>>'
-    label_fits = (
-        stretch.label and form != "link" and measure_nodes([{**_PLAIN_NODE, "label": label}])[0][0] + 3 <= width
-    )
-    return {
-        **_form_attributes(form, width),
-        "label": label if label_fits else '""',
-        "tooltip": quote_value(stretch.tooltip or stretch.label),
-    }
-
-
-def _form_attributes(form: str, width: float) -> DotAttributes:
-    style, fill, _ = _STRETCH_FORMS[form]
-    rim = palette.RIM if ":" in fill else palette.rim_colour_on(fill)
-    return {
-        **_fixed_size(width, _BAR_HEIGHT),
-        "shape": '"box"',
-        "class": f'"bar {form}"',
-        "style": f'"{style}"',
-        "color": f'"{rim}"',
-        "fillcolor": f'"{_repeat_stripes(fill, width) if ":" in fill else fill}"',
-        "penwidth": "0.6" if width > 2 else "0.2",  # noqa: PLR2004 - a hairline keeps its own width
-        "label": '""',
-    }
-
-
-def _repeat_stripes(fill: str, width: float) -> str:
-    """Repeat two colours, one pair for every five points."""
-    return ":".join([fill] * max(1, round(width / 5)))
-
-
-_PLAIN_NODE = {"shape": '"plain"'}
-
-
-def _fixed_size(width: float, height: float) -> DotAttributes:
-    return {
-        "fixedsize": '"true"',
-        "width": f"{width / 72:.4f}",
-        "height": f"{height / 72:.4f}",
-        "margin": '"0"',
-    }
-
-
-def _thin_box(  # noqa: PLR0913 - a place, a size and a colour
-    name: str, x: float, middle: float, *, width: float, height: float, colour: str, tooltip: str = " "
-) -> ScenePart:
-    attributes = {
-        **_fixed_size(width, height),
-        "shape": '"box"',
-        "style": '"filled"',
-        "class": '"bar"',
-        "penwidth": "0",
-        "color": f'"{colour}"',
-        "fillcolor": f'"{colour}"',
-        "label": '""',
-        "tooltip": quote_value(tooltip),
-    }
-    return ScenePart(name, attributes, x, middle, width, height, "mark")
-
-
-def _wrap_title(text: str, *, strong: bool) -> str:
-    rows = [escape_label(row) for row in wrap_text(text, _TITLE_CHARACTERS, 3)]
-    return "\n".join(f"<B>{row}</B>" if strong else row for row in rows)
-
-
-def _text_attributes(  # noqa: PLR0913 - a text, and how it stands
-    rows: str,
-    side: str,
-    resolve_link: LinkResolver,
-    ref: str | None = None,
-    tooltip: str = " ",
-    *,
-    ink: str = palette.TEXT,
-) -> DotAttributes:
-    line_break = f'<BR ALIGN="{side.upper()}"/>'
-    text = line_break.join(rows.split("\n")) + (line_break if "\n" in rows else "")
-    return {
-        **_PLAIN_NODE,
-        "class": '"label"',
-        "label": f'<<FONT POINT-SIZE="8" COLOR="{ink}">{text}</FONT>>',
-        **link_attributes(ref, tooltip, resolve_link),
-    }
-
-
-def _small_text(text: str, colour: str = palette.MUTED) -> DotAttributes:
-    label = f'<<FONT POINT-SIZE="7.5" COLOR="{colour}">{escape_label(text)}</FONT>>'
-    return {**_PLAIN_NODE, "class": '"label"', "tooltip": '" "', "label": label}
-
-
 def _draw_grid(chart: Chart, scale: _ChartScale, bottom: float) -> Iterator[ScenePart]:
     """Draw thin lines at round figures, and the figures below them."""
-    tick_labels = [_small_text(text) for text, _ in _choose_ticks(scale, chart.unit)]
+    tick_labels = [style_small_text(text) for text, _ in _choose_ticks(scale, chart.unit)]
     for at, ((_, value), size) in enumerate(
         zip(_choose_ticks(scale, chart.unit), measure_nodes(tick_labels), strict=True)
     ):
         x = scale.x(value)
-        yield _thin_box(f"g{at}", x, bottom / 2, width=0.8, height=-bottom, colour=palette.NEIGHBOUR_FILL)
+        yield make_thin_box(f"g{at}", x, bottom / 2, width=0.8, height=-bottom, colour=palette.NEIGHBOUR_FILL)
         yield ScenePart(f"a{at}", tick_labels[at], x, bottom - 7, *size, "label")
 
 
@@ -293,12 +194,14 @@ def _draw_limit(chart: Chart, scale: _ChartScale, bottom: float) -> Iterator[Sce
         return
     limit_value, text = chart.limit
     is_far = limit_value > scale.maximum
-    attributes = _small_text(f"{text} →" if is_far else text, palette.ERROR)
+    attributes = style_small_text(f"{text} →" if is_far else text, palette.ERROR)
     ((wide, high),) = measure_nodes([attributes])
     x = scale.right if is_far else scale.x(limit_value)
     middle = min(max(x, scale.left + wide / 2), scale.right - wide / 2) if wide < scale.width else scale.left + wide / 2
     if not is_far:
-        yield _thin_box("limit", x, (bottom + 4) / 2, width=1.4, height=4 - bottom, colour=palette.ERROR, tooltip=text)
+        yield make_thin_box(
+            "limit", x, (bottom + 4) / 2, width=1.4, height=4 - bottom, colour=palette.ERROR, tooltip=text
+        )
     yield ScenePart("limits", attributes, middle, 5 + high / 2, wide, high, "label")
 
 
@@ -309,7 +212,7 @@ def _add_headline(chart: Chart, body: Scene) -> Scene:
     left, _, right, top = body.bounds()
     rows = [escape_label(row) for row in wrap_text(chart.conclusion, max(40, int((right - left) / 5)), 6)]
     text = "\n".join(f"<B>{row}</B>" for row in rows)
-    attributes = _text_attributes(text, "left", lambda _: None)
+    attributes = style_chart_text(text, "left", lambda _: None)
     ((wide, high),) = measure_nodes([attributes])
     part = ScenePart("said", attributes, left + wide / 2, top + 5 + high / 2, wide, high, "label")
     # Joined after the body, since the legend goes below the bounds of both.
@@ -320,8 +223,8 @@ def _legend_samples(chart: Chart) -> Iterator[tuple[Scene, str]]:
     for key in chart.legend:
         kind, _, words = key.partition(": ")
         if kind == "mark":
-            sample = _thin_box("s", 12, 0, width=1.6, height=11, colour=palette.TEXT)
+            sample = make_thin_box("s", 12, 0, width=1.6, height=11, colour=palette.TEXT)
         else:
-            attributes = _form_attributes(kind, 24)
-            sample = ScenePart("s", {**attributes, **_fixed_size(24, 11), "tooltip": '" "'}, 12, 0, 24, 11)
-        yield Scene(parts=(sample,)), words or _STRETCH_FORMS[kind][2]
+            attributes = style_stretch_form(kind, 24)
+            sample = ScenePart("s", {**attributes, **fix_node_size(24, 11), "tooltip": '" "'}, 12, 0, 24, 11)
+        yield Scene(parts=(sample,)), words or STRETCH_FORMS[kind][2]

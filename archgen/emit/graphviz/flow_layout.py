@@ -17,7 +17,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
-from archgen.views.shapes import Box, Cluster
+from archgen.views.graph_shapes import Box, Cluster
 
 _FRAME_MARGIN = 12.0
 

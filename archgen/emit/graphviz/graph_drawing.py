@@ -14,7 +14,7 @@ from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
 from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, find_drawn_edges, number_surfaces
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
-from archgen.views.shapes import Graph
+from archgen.views.graph_shapes import Graph
 
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,

@@ -15,7 +15,7 @@ from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.label_places import sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
 from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, DotAttributes, Scene, ScenePart, read_scene
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 
 @dataclass(frozen=True, slots=True)

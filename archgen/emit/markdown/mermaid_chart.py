@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 
 from archgen.emit.safe_names import make_identifier
-from archgen.views.shapes import Arrow, Box, ElementChange, Graph
+from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph
 
 _MAX_LABEL_LENGTH = 60
 _BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])"}

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph)
 

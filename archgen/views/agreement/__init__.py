@@ -15,8 +15,9 @@ from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
 from archgen.views.agreement.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.views.agreement.plain_terms import list_plain_terms
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
+from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Graph, Outline, Paragraph
+from archgen.views.shapes import Outline, Paragraph
 
 __all__ = ["PartnerAgreement", "find_interfaces_between", "make_agreement"]
 

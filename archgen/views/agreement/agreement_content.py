@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
+from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Graph, Paragraph
+from archgen.views.shapes import Paragraph
 
 
 @dataclass(frozen=True, slots=True)

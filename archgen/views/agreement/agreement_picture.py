@@ -8,13 +8,13 @@ from typing import Literal
 
 from archgen.views.agreement.interface_terms import interface_title, partner_titles
 from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.component_flows import FlowStyle
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
 
 PictureSide = Literal["left", "right"]
 _PARTNER_HUES = (1, 4)

@@ -16,8 +16,8 @@ from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
-from archgen.views.shapes import Graph
 
 BREAKING_HEADING = "Breaking changes"
 CHAINS_HEADING = "Latency of chains"

@@ -21,6 +21,7 @@ from collections.abc import Iterable, Iterator
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection, SelectorEvaluator
+from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.component_graph import draw_component
 from archgen.views.graphs.graph_folding import fold_graph
@@ -30,7 +31,6 @@ from archgen.views.graphs.implementation_graph import draw_implementation
 from archgen.views.graphs.overview_graphs import draw_components, draw_overview
 from archgen.views.graphs.ros_graph import draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.shapes import Graph
 from archgen.views.timing.timing_lookup import TimingLookup
 
 __all__ = [

@@ -13,7 +13,7 @@ from typing import Literal
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection
 from archgen.model.message_types import flow_of
-from archgen.views.shapes import Arrow
+from archgen.views.graph_shapes import Arrow
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
 

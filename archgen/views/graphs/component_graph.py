@@ -10,12 +10,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from archgen.model.component import Component, Connection, Input, Output
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import flow_style
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Graph
 
 DrawnNeighbour = tuple[Box, Arrow]
 MAX_NEIGHBOURS = 40

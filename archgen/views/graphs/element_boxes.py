@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Literal, cast
 
 from archgen.model.component import Component
+from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Box, Cluster
 
 BadgeSeverity = Literal["error", "warning", "note"]
 

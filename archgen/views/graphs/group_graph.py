@@ -11,12 +11,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Literal
 
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Graph
 
 MAX_FLOWS = 45
 """With more flows the neighbours are folded by group."""

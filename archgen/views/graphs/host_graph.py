@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from archgen.model.deployment import Container, Host, Link
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import node_boxes
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
 
 _MAX_LISTED_NODES = 12
 

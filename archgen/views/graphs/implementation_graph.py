@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from archgen.model.node import Endpoint, Topic
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import node_boxes
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Graph
 
 _MIN_STARRED = 3
 """From this many topics on, if all are taken, an asterisk stands for them."""

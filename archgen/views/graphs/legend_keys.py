@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import get_args
 
-from archgen.views.shapes import Arrow, Box, ElementChange, Graph, PeriodStep
+from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
 _BOX_KEYS = ("source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_KEY_OF_FLOW = {"service": "service-box", "action": "action-box"}

@@ -8,10 +8,10 @@ from typing import Literal
 
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
+from archgen.views.graph_shapes import Box
 from archgen.views.graphs import element_boxes
 from archgen.views.inline_text import format_short_timing
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Box
 
 BoxSide = Literal["left", "right"]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from archgen.views.graph_shapes import Arrow, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import ComponentFlow, list_flows, merge_flows
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Graph
 
 
 def draw_overview(lookup: Lookup) -> Graph:

@@ -9,13 +9,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from archgen.model.node import Node
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.graphs.node_boxes import NodeFlow
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
 
 
 def draw_ros_graph(lookup: Lookup) -> Graph:

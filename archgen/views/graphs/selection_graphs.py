@@ -11,13 +11,13 @@ from dataclasses import replace
 from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.selector_evaluation import Selection
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes, node_boxes, ros_graph
 from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Graph
 
 _SMALL_PICTURE = (26, 45)
 """The most boxes and arrows of a small picture."""

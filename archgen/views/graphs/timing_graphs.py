@@ -6,49 +6,32 @@ The period is in every box as text. Boxes without one (unknown, on an event, on 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
-from archgen.timing.system.timing_system import Activity, Arc
+from archgen.timing.system.timing_system import Arc
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
+from archgen.views.graphs.activity_flows import (
+    ActivityFlow,
+    TimingGraphData,
+    bundle_arcs,
+    describe_arc,
+    describe_periods,
+    find_activity_home,
+    make_activity_box,
+    note_bounds,
+)
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.graphs.ros_graph import draw_home_frame, find_home_frame
-from archgen.views.inline_text import count_noun
+from archgen.views.graphs.ros_graph import draw_home_frame
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Arrow, Box, Graph
-from archgen.views.timing import rate_phrases, value_format
+from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _MAX_ARCS = 45
 _MAX_NAMED = 3
 """This many neighbours are named in a grey box."""
-_BOUNDS_NOTE = "<= at most, >= at least: a bound, where no exact figure follows from what is written."
-
-
-@dataclass(frozen=True, slots=True)
-class _ActivityFlow:
-    """All that runs from one activity to another, in the direction of drawing; requests from client to server."""
-
-    tail: str
-    head: str
-    style: Literal["data", "service", "action"]
-    arcs: tuple[Arc, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _TimingGraphData:
-    """The data of all timing pictures: activities by frame, and what runs among them, found once."""
-
-    lookup: Lookup
-    timed: TimingLookup
-    home_frames: Mapping[str, str]
-    flows: Sequence[_ActivityFlow]
-
-    def activities_in(self, frame: str) -> dict[str, Activity]:
-        """Return the activities of a frame, by id."""
-        activities = self.timed.analysis.system.activities
-        return {name: activities[name] for name, home in self.home_frames.items() if home == frame}
 
 
 def draw_timing_graphs(
@@ -56,11 +39,11 @@ def draw_timing_graphs(
 ) -> Iterator[Graph]:
     """Draw all activities, or those of selected nodes with their neighbours in grey; then some groups."""
     system = timed.analysis.system
-    home_frames = {name: _find_home(lookup, activity) for name, activity in system.activities.items()}
-    graph_data = _TimingGraphData(lookup, timed, home_frames, _bundle_arcs(system.arcs))
+    home_frames = {name: find_activity_home(lookup, activity) for name, activity in system.activities.items()}
+    graph_data = TimingGraphData(lookup, timed, home_frames, bundle_arcs(system.arcs))
     yield _draw_all_activities(graph_data) if node_ids is None else _draw_selected_nodes(graph_data, node_ids)
     # Flows are assigned to groups in one pass: searching all of them for each group is quadratic.
-    touching_flows: dict[str, list[_ActivityFlow]] = {}
+    touching_flows: dict[str, list[ActivityFlow]] = {}
     for run in graph_data.flows:
         for group in dict.fromkeys((home_frames[run.tail], home_frames[run.head])):
             touching_flows.setdefault(group, []).append(run)
@@ -68,7 +51,7 @@ def draw_timing_graphs(
         yield _draw_group(replace(graph_data, flows=touching_flows.get(name, [])), name)
 
 
-def _draw_all_activities(graph_data: _TimingGraphData) -> Graph:
+def _draw_all_activities(graph_data: TimingGraphData) -> Graph:
     """Draw all activities, framed by group."""
     lookup, timed = graph_data.lookup, graph_data.timed
     activities = timed.analysis.system.activities
@@ -77,20 +60,21 @@ def _draw_all_activities(graph_data: _TimingGraphData) -> Graph:
         f"{lookup.architecture.project.title}: how often everything happens",
         "two-step",
         tuple(
-            replace(_activity_box(timed, each), cluster=graph_data.home_frames[each.id]) for each in activities.values()
+            replace(make_activity_box(timed, each), cluster=graph_data.home_frames[each.id])
+            for each in activities.values()
         ),
         _merge_flows(lookup, graph_data.flows, graph_data.home_frames),
         tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(graph_data.home_frames.values())),
         direction=lookup.architecture.layout.direction or "left-right",
-        notes=_bound_notes(timed, activities),
-        alt=_describe_periods(timed, list(activities), "All activities"),
+        notes=note_bounds(timed, activities),
+        alt=describe_periods(timed, list(activities), "All activities"),
         asked=sum(len(run.arcs) for run in graph_data.flows),
         kind="timing",
     )
     return fold_graph(add_legend_keys(graph))
 
 
-def _draw_selected_nodes(graph_data: _TimingGraphData, node_ids: Collection[str]) -> Graph:
+def _draw_selected_nodes(graph_data: TimingGraphData, node_ids: Collection[str]) -> Graph:
     """Draw the activities of some nodes, framed by group. What feeds and reads them is a grey box for each group."""
     lookup, timed = graph_data.lookup, graph_data.timed
     activities = timed.analysis.system.activities
@@ -110,15 +94,18 @@ def _draw_selected_nodes(graph_data: _TimingGraphData, node_ids: Collection[str]
         "The selected part: how often everything happens",
         "two-step",
         (
-            *(replace(_activity_box(timed, each), cluster=home_frames[each.id]) for each in own_activities.values()),
+            *(
+                replace(make_activity_box(timed, each), cluster=home_frames[each.id])
+                for each in own_activities.values()
+            ),
             *(_frame_of_neighbours(lookup, frame, names) for frame, names in neighbours_by_frame.items()),
         ),
         # Only arrows that come from a frame of the selection have a hue; all others are drawn pale.
         tuple(replace(each, faded=each.colour is None) for each in _merge_flows(lookup, touching_flows, home_frames)),
         tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames[name] for name in own_activities)),
         direction=lookup.architecture.layout.direction or "left-right",
-        notes=_bound_notes(timed, own_activities),
-        alt=_describe_periods(timed, tuple(own_activities), "The selected part"),
+        notes=note_bounds(timed, own_activities),
+        alt=describe_periods(timed, tuple(own_activities), "The selected part"),
         asked=sum(len(run.arcs) for run in touching_flows),
         kind="timing",
     )
@@ -144,7 +131,7 @@ def _frame_of_neighbours(lookup: Lookup, frame: str, activity_ids: Sequence[str]
     )
 
 
-def _draw_group(graph_data: _TimingGraphData, group_id: str) -> Graph:
+def _draw_group(graph_data: TimingGraphData, group_id: str) -> Graph:
     """Draw the activities of one group; neighbours that feed it are at the left, those that read it at the right."""
     lookup, timed = graph_data.lookup, graph_data.timed
     group, own_activities = lookup.architecture.groups[group_id], graph_data.activities_in(group_id)
@@ -155,69 +142,22 @@ def _draw_group(graph_data: _TimingGraphData, group_id: str) -> Graph:
         f"{group.title}: how often everything happens",
         "group",
         (
-            *(replace(_activity_box(timed, each), cluster=group_id) for each in own_activities.values()),
+            *(replace(make_activity_box(timed, each), cluster=group_id) for each in own_activities.values()),
             *_draw_neighbours(graph_data, own_activities, is_folded=is_folded).values(),
         ),
         _draw_arrows(graph_data, own_activities, is_folded=is_folded),
         (element_boxes.group_frame(lookup, group_id),),
         direction=group.layout.direction or lookup.architecture.layout.direction or "left-right",
-        notes=_bound_notes(timed, own_activities)
+        notes=note_bounds(timed, own_activities)
         + (("Neighbours are folded: a box for each group.",) if is_folded else ()),
-        alt=_describe_periods(timed, tuple(own_activities), group.title),
+        alt=describe_periods(timed, tuple(own_activities), group.title),
         asked=count,
         kind="group-timing",
     )
     return add_legend_keys(graph)
 
 
-def _find_home(lookup: Lookup, activity: Activity) -> str:
-    component = lookup.architecture.components.get(activity.component or "")
-    if component is None:  # an activity may know its component by the last part of the id
-        names = [
-            each
-            for each in lookup.architecture.nodes[activity.node].implements
-            if each.endswith(f".{activity.component}")
-        ]
-        component = lookup.architecture.components.get(names[0]) if names else None
-    return component.group if component else find_home_frame(lookup, lookup.architecture.nodes[activity.node])
-
-
-def _activity_box(timed: TimingLookup, activity: Activity) -> Box:
-    pace = timed.analysis.paces.get(activity.id)
-    response = timed.analysis.responses.get(activity.id)
-    tooltip = [activity.id, rate_phrases.format_rate_words(pace)]
-    tooltip += [f"longest gap {value_format.display_duration(pace.gap)}"] if pace and pace.gap.value is not None else []
-    tooltip += (
-        [f"responds within {value_format.display_duration(response.worst)}"]
-        if response and response.worst.value
-        else []
-    )
-    tooltip += [reason.text for reason in pace.reasons[:6]] if pace else []
-    return Box(
-        activity.id,
-        activity.id,
-        rate_phrases.format_box_lines(pace),
-        ref=f"node:{activity.node}",
-        tooltip="\n".join(tooltip),
-        fill=rate_phrases.find_period_step(pace),
-    )
-
-
-def _bundle_arcs(arcs: Iterable[Arc]) -> list[_ActivityFlow]:
-    """Bundle what runs between two activities. Answers run back along their requests and are not drawn."""
-    bundles: dict[tuple[str, str, Literal["data", "service", "action"]], list[Arc]] = {}
-    for arc in arcs:
-        if arc.role != "answer" and arc.source != arc.target:
-            style: Literal["data", "service", "action"] = "data" if arc.flow == "topic" else arc.flow
-            bundles.setdefault((arc.source, arc.target, style), []).append(arc)
-    return [_ActivityFlow(*ends, tuple(bundle)) for ends, bundle in bundles.items()]
-
-
-def _describe_arc(arc: Arc) -> str:
-    return f"{arc.source} → {arc.topic} → {arc.target}"
-
-
-def _merge_flows(lookup: Lookup, flows: Sequence[_ActivityFlow], home_frames: Mapping[str, str]) -> tuple[Arrow, ...]:
+def _merge_flows(lookup: Lookup, flows: Sequence[ActivityFlow], home_frames: Mapping[str, str]) -> tuple[Arrow, ...]:
     """Merge flows: an arrow for each pair inside a frame, and one counted arrow from frame to frame."""
     bundles: dict[tuple[str, str, str], list[Arc]] = {}
     for run in flows:
@@ -234,14 +174,14 @@ def _merge_flows(lookup: Lookup, flows: Sequence[_ActivityFlow], home_frames: Ma
             colour=element_boxes.group_hue(lookup, tail)
             if tail in lookup.group_hues and tail not in home_frames
             else None,
-            flows=tuple(_describe_arc(arc) for arc in arcs),
+            flows=tuple(describe_arc(arc) for arc in arcs),
         )
         for (tail, head, style), arcs in bundles.items()
     )
 
 
 def _find_ends(
-    graph_data: _TimingGraphData, flow: _ActivityFlow, own_ids: Collection[str], *, is_folded: bool
+    graph_data: TimingGraphData, flow: ActivityFlow, own_ids: Collection[str], *, is_folded: bool
 ) -> tuple[str, str]:
     """Return the ids of the boxes that a flow joins: neighbours are at the left where they feed, at the right where
     they read.
@@ -254,7 +194,7 @@ def _find_ends(
     return tail, flow.head if flow.head in own_ids else neighbour_id(flow.head, ">")
 
 
-def _draw_neighbours(graph_data: _TimingGraphData, own_ids: Collection[str], *, is_folded: bool) -> dict[str, Box]:
+def _draw_neighbours(graph_data: TimingGraphData, own_ids: Collection[str], *, is_folded: bool) -> dict[str, Box]:
     """Return the neighbours in grey, a box each or one for each of their groups, at the side where they belong."""
     boxes_by_id: dict[str, Box] = {}
     for run in graph_data.flows:
@@ -266,17 +206,17 @@ def _draw_neighbours(graph_data: _TimingGraphData, own_ids: Collection[str], *, 
     return boxes_by_id
 
 
-def _neighbour_box(graph_data: _TimingGraphData, activity_id: str, box_id: str, *, is_folded: bool) -> Box:
+def _neighbour_box(graph_data: TimingGraphData, activity_id: str, box_id: str, *, is_folded: bool) -> Box:
     side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
     if is_folded:
         frame = draw_home_frame(graph_data.lookup, graph_data.home_frames[activity_id])
         return Box(box_id, frame.title, style="group", emphasis="neighbour", side=side, ref=frame.ref)
-    box = _activity_box(graph_data.timed, graph_data.timed.analysis.system.activities[activity_id])
+    box = make_activity_box(graph_data.timed, graph_data.timed.analysis.system.activities[activity_id])
     # Without the fill: neighbours are grey in every picture; the period is in their text.
     return replace(box, id=box_id, emphasis="neighbour", side=side, fill=None)
 
 
-def _draw_arrows(graph_data: _TimingGraphData, own_ids: Collection[str], *, is_folded: bool) -> tuple[Arrow, ...]:
+def _draw_arrows(graph_data: TimingGraphData, own_ids: Collection[str], *, is_folded: bool) -> tuple[Arrow, ...]:
     """Draw an arrow for each pair of boxes. A rate that differs from the producer's is written beside it."""
     bundles: dict[tuple[str, str, str], list[Arc]] = {}
     for run in graph_data.flows:
@@ -290,7 +230,7 @@ def _draw_arrows(graph_data: _TimingGraphData, own_ids: Collection[str], *, is_f
             label=_rate_label(graph_data.timed, arcs) if not is_folded else str(len(arcs)) if len(arcs) > 1 else "",
             style=style,  # type: ignore[arg-type]
             count=len(arcs),
-            flows=tuple(_describe_arc(arc) for arc in arcs),
+            flows=tuple(describe_arc(arc) for arc in arcs),
         )
         for (tail, head, style), arcs in bundles.items()
     )
@@ -311,24 +251,3 @@ def _rate_label(timed: TimingLookup, arcs: Sequence[Arc]) -> str:
         ):
             words.append(value_format.display_rate(output.rate))
     return "\n".join(list(dict.fromkeys(words))[:2])
-
-
-def _bound_notes(timed: TimingLookup, activity_ids: Iterable[str]) -> tuple[str, ...]:
-    activity_rates = [timed.analysis.paces.get(name) for name in activity_ids]
-    return (
-        (_BOUNDS_NOTE,)
-        if any(pace and value_format.bound_sign(pace.rate) for pace in activity_rates if pace and pace.rate.value)
-        else ()
-    )
-
-
-def _describe_periods(timed: TimingLookup, activity_ids: Sequence[str], subject: str) -> str:
-    """Describe how many activities have which period."""
-    steps = [rate_phrases.find_period_step(timed.analysis.paces.get(name)) for name in activity_ids]
-    counts = [(name, steps.count(step)) for step, name in rate_phrases.PERIOD_STEP_WORDS.items() if step in steps]
-    period_words = ", ".join(f"{count} {name}" for name, count in counts)
-    return (
-        f"{subject}: {count_noun(len(activity_ids), 'activity')} by period: {period_words}."
-        if period_words
-        else f"{subject}: no activities."
-    )

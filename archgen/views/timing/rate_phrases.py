@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.timing import analysis
-from archgen.views.shapes import PeriodStep
+from archgen.views.graph_shapes import PeriodStep
 from archgen.views.timing import value_format
 
 _PERIOD_STEPS: tuple[tuple[int, PeriodStep], ...] = (

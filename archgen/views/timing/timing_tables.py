@@ -6,9 +6,9 @@ from archgen.diagnostics.source_span import Span
 from archgen.timing.analysis import EventPace
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
+from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
-from archgen.views.shapes import PeriodStep as Step
 from archgen.views.timing import load_charts, rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 

@@ -24,9 +24,9 @@ from archgen.emit.graphviz import (
 )
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.png_writer import snap_palette
+from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import draw_component, draw_group, draw_overview
 from archgen.views.lookup import make_lookup
-from archgen.views.shapes import Arrow, Box, Graph
 from tests.architectures import robot
 
 VIEW = make_lookup(robot(1))

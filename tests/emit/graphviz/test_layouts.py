@@ -15,9 +15,9 @@ from archgen.emit.graphviz.framed_layout import lay_out_framed
 from archgen.emit.graphviz.placed_scene import Scene, overlapping_parts, rectangles_meet
 from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import draw_group, make_all_graphs
 from archgen.views.lookup import make_lookup
-from archgen.views.shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
 from tests.timings import timed
 

@@ -9,18 +9,7 @@ import pytest
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site import build_site
-from archgen.views.shapes import (
-    Bullets,
-    Column,
-    Facts,
-    Figure,
-    Markdown,
-    Page,
-    Paragraph,
-    Section,
-    Table,
-    Text,
-)
+from archgen.views.shapes import Bullets, Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text
 
 HOME = ("Overview", "page:index")
 GROUPS = (

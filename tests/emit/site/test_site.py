@@ -13,19 +13,7 @@ import pytest
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site import build_site
-from archgen.views.shapes import (
-    Block,
-    Bullets,
-    Column,
-    Facts,
-    Figure,
-    Markdown,
-    Page,
-    Paragraph,
-    Section,
-    Table,
-    Text,
-)
+from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text
 
 Draw = Callable[[str, dict[str, str]], Picture]
 

@@ -9,7 +9,8 @@ from typing import get_args
 from archgen.emit import text
 from archgen.emit.backend_manifests import find_backends
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS
-from archgen.views.shapes import GraphKind, Page, Section
+from archgen.views.graph_shapes import GraphKind
+from archgen.views.shapes import Page, Section
 
 DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
 

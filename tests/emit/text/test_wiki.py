@@ -15,21 +15,8 @@ from archgen.emit.text.template_filters import (
     make_code_span,
     safe_commonmark,
 )
-from archgen.views.shapes import (
-    Arrow,
-    Box,
-    Cluster,
-    Column,
-    Facts,
-    Figure,
-    Graph,
-    Markdown,
-    Page,
-    Section,
-    Table,
-    Text,
-    shape_to_plain,
-)
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Section, Table, Text, shape_to_plain
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
 HOME = ("Overview", "page:index")

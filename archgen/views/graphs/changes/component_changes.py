@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from archgen.compare import Comparison
 from archgen.views.changes.change_wording import CHANGE_SIGNS
+from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.group_folding import fold_to_budget
@@ -21,7 +22,6 @@ from archgen.views.graphs.changes.picture_budget import PictureBudget
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.shapes import Box, Cluster, ElementChange, Graph
 
 GRAPH_ID = "changes/components"
 _MAX_NAMES = 12

@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import get_args
 
 from archgen.views.changes.change_wording import CHANGE_SIGNS
+from archgen.views.graph_shapes import Arrow, Box, Cluster, ElementChange, Graph
 from archgen.views.graphs.changes.picture_budget import PictureBudget
 from archgen.views.inline_text import count_noun
-from archgen.views.shapes import Arrow, Box, Cluster, ElementChange, Graph
 
 _CHANGE_KINDS: tuple[ElementChange, ...] = get_args(ElementChange)
 
