@@ -53,7 +53,7 @@ def make_record(lookup: Lookup) -> Record:
         "nodes": {node.id: _record_node(lookup, node) for node in lookup.shown_nodes()},
         "topics": _record_topics(lookup),
         "types": {t.name: _record_type(t) for t in architecture.types.values()},
-        "hosts": {h.id: _pick_fields(h, "title", "cores", "tags") for h in architecture.hosts.values()},
+        "hosts": {h.id: _pick_fields(h, "title", "description", "cores", "tags") for h in architecture.hosts.values()},
         "containers": {c.id: _pick_fields(c, "title", "host", "threads") for c in architecture.containers.values()},
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
@@ -67,13 +67,15 @@ def _pick_fields(element: object, *keys: str) -> dict[str, object]:
 
 
 def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, object]:
-    served_by = {"served_by": [component.id for component in lookup.components_for_requirement.get(requirement.id, ())]}
-    return _pick_fields(requirement, "title", "description", "use_cases", "tags") | _drop_unknown(dict(served_by))
+    served_by = [component.id for component in lookup.components_for_requirement.get(requirement.id, ())]
+    fields = _pick_fields(requirement, "title", "description", "use_cases", "tags")
+    return fields | _drop_unknown({"served_by": served_by, "urls": dict(requirement.urls)})
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
-    components = {"components": [component.id for component in lookup.shown_components(group.id)]}
-    return _pick_fields(group, "title", "description", "owner", "co_owners", "tags") | _drop_unknown(dict(components))
+    component_ids = [component.id for component in lookup.shown_components(group.id)]
+    fields = _pick_fields(group, "title", "description", "owner", "co_owners", "tags")
+    return fields | _drop_unknown({"components": component_ids, "urls": dict(group.urls)})
 
 
 def _record_type(conceptual_type: ConceptualType) -> dict[str, object]:

@@ -133,7 +133,6 @@ RECORD_ONLY = {
 }
 NOT_IN_RECORD = {
     **dict.fromkeys(("group layout", "component layout", "project layout"), "only for pictures"),
-    **dict.fromkeys(("requirement urls", "group urls", "host description"), "not part of version 1 of the record"),
     "component mapped": "follows from the nodes",
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules")},
