@@ -27,6 +27,7 @@ VERBS = {
     "init": "Start a project, or take one over from a spreadsheet.",
     "new": "Add a group, a component or a node.",
     "review": "Make all that the review of a change needs, in one folder.",
+    "merge-driver": "Merge two versions of a file by what they say; for git.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
@@ -45,7 +46,7 @@ class VerbGroup(click.Group):
         if cmd_name not in VERBS:
             return None
         # By name, so nothing else refers to these modules: renaming one or its `command` is noticed here only.
-        module = importlib.import_module(f"archgen.cli.{cmd_name}_command")
+        module = importlib.import_module(f"archgen.cli.{cmd_name.replace('-', '_')}_command")
         command: click.Command = module.command
         return command
 

@@ -9,12 +9,14 @@ from archgen.git.commit_log import find_object_ids, list_first_parents
 from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
 from archgen.git.object_reader import GitObjects, TreeEntry
 from archgen.git.repository_lookup import GitRepository, find_repository, list_cut_commits, resolve_revision
+from archgen.git.text_merge import LineMerge, merge_lines
 
 __all__ = [
     "BaseCommit",
     "GitError",
     "GitObjects",
     "GitRepository",
+    "LineMerge",
     "NoCommitsError",
     "NoRepositoryError",
     "ShallowError",
@@ -26,5 +28,6 @@ __all__ = [
     "find_repository",
     "list_cut_commits",
     "list_first_parents",
+    "merge_lines",
     "resolve_revision",
 ]

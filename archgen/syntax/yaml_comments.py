@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 # These patterns run over whole files, and none of them crosses the end of a line.
 _IGNORE_COMMENT = re.compile(r"#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)")
+_COMMENT = re.compile(r"(?:\A|(?<=[ \t\r\n]))#[^\r\n]*")
 _CONFLICT_MARKER = re.compile(r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]+([^\r\n]*?))?[ \t]*\r?$", re.MULTILINE)
 _HASH_BEFORE_TEXT = re.compile(r"#(?<=[ \t]#)[^\s]")
 _SWALLOWED_TEXT = re.compile(r"[ \t]+#(?!\s*archgen:)[^\s][^\r\n]*")
@@ -58,6 +59,19 @@ def read_ignore_comments(file: str, text: str, quoted_ranges: Sequence[tuple[int
         rule_names = tuple(name.strip() for name in (match[1] or "").split(",") if name.strip())
         end = match.end() - (len(match[2]) - len(match[2].rstrip()))
         yield IgnoreComment(rule_names, match[2].strip(), line_starts.span_between(file, match.start(), end))
+
+
+def read_comments(text: str, quoted_ranges: Sequence[tuple[int, int]]) -> Iterator[str]:
+    """Yield all comments, without the blanks at their ends; `quoted_ranges` are as for `read_ignore_comments`."""
+    quoted_starts = [start for start, _ in quoted_ranges]
+    position = 0
+    while match := _COMMENT.search(text, position):
+        preceding = bisect_right(quoted_starts, match.start()) - 1
+        is_quoted = preceding >= 0 and match.start() < quoted_ranges[preceding][1]
+        # Behind a quoted `#` there may be a comment on the same line.
+        position = max(match.start() + 1, quoted_ranges[preceding][1]) if is_quoted else match.end()
+        if not is_quoted:
+            yield match[0].rstrip()
 
 
 def may_hold_ignore_comments(text: str) -> bool:

@@ -76,6 +76,15 @@ def parse_yaml(file: str, text: str) -> tuple[YamlDocument | None, tuple[Diagnos
     return (YamlDocument(file, root, ignores) if root is not None else None), tuple(walk.diagnostics)
 
 
+def list_comments(text: str) -> tuple[str, ...]:
+    """Return the comments of a text, each from its `#` to the end of the line, in order."""
+    hidden_breaks = _hide_line_breaks(text)
+    walk = _TreeWalk("", hidden_breaks[0])
+    # A broken text has the quoted ranges up to where it breaks.
+    _run_walk(walk, hidden_breaks[1])
+    return tuple(yaml_comments.read_comments(text, walk.quoted_ranges))
+
+
 def _check_root(walk: _TreeWalk) -> MappingNode | None:
     root = walk.root
     if isinstance(root, MappingNode):

@@ -1,0 +1,40 @@
+"""Merge three versions of a file as git's merge drivers do: by what the slices say, else by lines with git's markers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from archgen.git import merge_lines
+from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
+
+
+@dataclass(frozen=True, slots=True)
+class FileMerge:
+    """The merged content. `problem` says what a person has to settle in it, None for nothing."""
+
+    content: bytes
+    problem: str | None = None
+
+
+def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7) -> FileMerge:
+    """Merge three contents of a file. Raise `git.GitError` for binary files."""
+    try:
+        merged_slice = merge_slices(SliceVersions(base.decode(), ours.decode(), theirs.decode()))
+    except UnicodeDecodeError:
+        merged_slice = UnmergedSlice()
+    if isinstance(merged_slice, str):
+        return FileMerge(merged_slice.encode())
+    line_merge = merge_lines(base, ours, theirs, marker_size=marker_size)
+    if line_merge.conflict_count:
+        return FileMerge(line_merge.content, _describe_conflict(merged_slice))
+    # git merges lines that say different things of one element, such as two sentences of one description: as it would
+    # without this driver. But where both sides can be said together, lines that say anything else are wrong.
+    if merged_slice.is_settled:
+        return FileMerge(line_merge.content, "its lines merge, but the result does not say what both sides say")
+    return FileMerge(line_merge.content)
+
+
+def _describe_conflict(merged_slice: UnmergedSlice) -> str:
+    if merged_slice.conflict_path:
+        return f"both sides changed `{'.'.join(merged_slice.conflict_path)}`"
+    return "both sides changed the same lines"

@@ -1,0 +1,131 @@
+"""Merge what three versions of a slice say: mappings key by key, so that each element is merged by its id.
+
+Only meaning counts here: neither order of keys nor style of writing. The text is merged by `slice_merge`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from archgen.merge.sequence_merge import MergedRun, merge_sequences
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
+
+UNORDERED_KEYS = frozenset({"connects", "from", "implements", "requirements", "tags", "use_cases"})
+"""Keys whose lists say the same in any order: what both sides add to one is no conflict."""
+_MAX_COMPARED = 2_000
+"""Items of a list that is compared item by item: that takes time that grows with the square at worst."""
+_FREE_SECTION = "parameters"
+_PORT_SECTION = "inputs"
+"""Its keys are ids of inputs, and a list is the short form of `from`."""
+
+
+class ScalarValue(NamedTuple):
+    """A scalar by what it means: `1.10` and `1.1` are two versions, `"a"` and `a` are one text."""
+
+    kind: str
+    text: str
+
+
+class ItemSet(NamedTuple):
+    """A list whose order says nothing: its items, sorted by their form."""
+
+    items: tuple[MergedValue, ...]
+
+
+class ItemList(NamedTuple):
+    """A list in which order counts."""
+
+    items: tuple[MergedValue, ...]
+
+
+class MappingValue(NamedTuple):
+    """A mapping: its keys, sorted, and their values."""
+
+    items: tuple[tuple[str, MergedValue], ...]
+
+
+MergedValue = ScalarValue | ItemSet | ItemList | MappingValue
+"""What a node says, comparable and hashable."""
+EMPTY_MAPPING = MappingValue(())
+
+
+class MergeConflictError(Exception):
+    """Both sides changed one thing, each in its own way. `path` are the keys that lead to it."""
+
+    def __init__(self, path: tuple[str, ...]) -> None:
+        super().__init__(".".join(path))
+        self.path = path
+
+
+def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
+    """Return what a node says; `path` are the keys that lead to it."""
+    if isinstance(node, ScalarNode):
+        return ScalarValue(type(node.value).__name__, node.value if isinstance(node.value, str) else node.text)
+    if isinstance(node, MappingNode):
+        return MappingValue(tuple(sorted((entry.key, read_value(entry.value, (*path, entry.key))) for entry in node)))
+    items = tuple(read_value(item, path) for item in node.items)
+    return ItemSet(tuple(sorted(items, key=repr))) if _is_unordered(path) else ItemList(items)
+
+
+def _is_unordered(path: tuple[str, ...]) -> bool:
+    # What stands below `parameters` is the nodes' own data, whatever its keys are called.
+    is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
+    return is_named and _FREE_SECTION not in path
+
+
+def merge_values(
+    base: MergedValue | None, ours: MergedValue | None, theirs: MergedValue | None, path: tuple[str, ...] = ()
+) -> MergedValue | None:
+    """Return what both sides say together, None for nothing. Raise MergeConflictError where they contradict.
+
+    None stands for what a version does not have.
+    """
+    if theirs in (base, ours):
+        return ours
+    if ours == base:
+        return theirs
+    # What both sides add under one id is merged, too: a section, or a component that both begin to describe.
+    old_value = EMPTY_MAPPING if base is None and isinstance(ours, MappingValue) else base
+    if isinstance(old_value, MappingValue) and isinstance(ours, MappingValue) and isinstance(theirs, MappingValue):
+        return _merge_mappings(dict(old_value.items), dict(ours.items), dict(theirs.items), path)
+    if isinstance(base, ItemSet) and isinstance(ours, ItemSet) and isinstance(theirs, ItemSet):
+        return _merge_item_sets(base.items, ours.items, theirs.items)
+    if isinstance(base, ItemList) and isinstance(ours, ItemList) and isinstance(theirs, ItemList):
+        return _merge_lists(base.items, ours.items, theirs.items, path)
+    raise MergeConflictError(path)
+
+
+def _merge_mappings(
+    base: Mapping[str, MergedValue],
+    ours: Mapping[str, MergedValue],
+    theirs: Mapping[str, MergedValue],
+    path: tuple[str, ...],
+) -> MappingValue:
+    keys = sorted(base.keys() | ours.keys() | theirs.keys())
+    merged_values = ((key, merge_values(base.get(key), ours.get(key), theirs.get(key), (*path, key))) for key in keys)
+    return MappingValue(tuple((key, value) for key, value in merged_values if value is not None))
+
+
+def _merge_item_sets(
+    base: Sequence[MergedValue], ours: Sequence[MergedValue], theirs: Sequence[MergedValue]
+) -> ItemSet:
+    """Keep what neither side took away, and what a side added; an item that both added is there once."""
+    old_counts, our_counts, their_counts = Counter(base), Counter(ours), Counter(theirs)
+    added_items = (our_counts - old_counts) | (their_counts - old_counts)
+    kept_items = our_counts & their_counts & old_counts
+    return ItemSet(tuple(sorted((kept_items + added_items).elements(), key=repr)))
+
+
+def _merge_lists(
+    base: Sequence[MergedValue], ours: Sequence[MergedValue], theirs: Sequence[MergedValue], path: tuple[str, ...]
+) -> ItemList:
+    if max(len(base), len(ours), len(theirs)) > _MAX_COMPARED:
+        raise MergeConflictError(path)
+    merged_items: list[MergedValue] = []
+    for run in merge_sequences(base, ours, theirs):
+        if not isinstance(run, MergedRun):
+            raise MergeConflictError(path)
+        merged_items += run.items
+    return ItemList(tuple(merged_items))

@@ -1,0 +1,224 @@
+"""Slices merged by what they say: where lines conflict, where both sides contradict, and what a merge must not lose."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from archgen.git import merge_lines
+from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
+from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_value
+from archgen.syntax import yaml_parser
+from archgen.syntax.yaml_writer import format_flow, write_yaml
+from tests.property_sizes import count_examples
+
+GROUP = """\
+groups:
+  g:
+    components:
+      a: {outputs: {o: T}}
+"""
+
+
+def merge(base: str, ours: str, theirs: str) -> str | UnmergedSlice:
+    return merge_slices(SliceVersions(*(textwrap.dedent(text) for text in (base, ours, theirs))))
+
+
+@pytest.mark.parametrize(
+    ("base", "ours", "theirs", "merged"),
+    [
+        pytest.param(
+            GROUP,
+            GROUP + "      b: {outputs: {p: T}}\n",
+            GROUP + "      # The new one.\n      c:\n        outputs: {q: T}\n",
+            GROUP + "      b: {outputs: {p: T}}\n      # The new one.\n      c:\n        outputs: {q: T}\n",
+            id="both append a component",
+        ),
+        pytest.param(
+            "nodes:\n  n: {rate: 10 Hz, wcet: 5 ms}\n",
+            "nodes:\n  n: {rate: 20 Hz, wcet: 5 ms}\n",
+            "nodes:\n  n: {rate: 10 Hz, wcet: 6 ms}\n",
+            "nodes:\n  n: {rate: 20 Hz, wcet: 6 ms}\n",
+            id="two keys of one line",
+        ),
+        pytest.param(
+            "nodes:\n  n: {rate: 10 Hz}\n",
+            "nodes:\n  n: {rate: 10 Hz, host: pc}\n",
+            "nodes:\n  n: {rate: 10 Hz, wcet: 6 ms}\n",
+            "nodes:\n  n: {rate: 10 Hz, host: pc, wcet: 6 ms}\n",
+            id="both add a key in braces",
+        ),
+        pytest.param("n: {}\n", "n: {a: 1}\n", "n: {b: 2}\n", "n: {a: 1, b: 2}\n", id="both fill empty braces"),
+        pytest.param(
+            "a: {tags: [x, y]}\n", "a: {tags: [x, z]}\n", "a: {tags: [w, x, y]}\n", "a: {tags: [w, x, z]}\n", id="tags"
+        ),
+        pytest.param("", "a: 1\n", "b: 2\n", "a: 1\nb: 2\n", id="both begin a file"),
+        pytest.param("g: 1", "g: 1\nb: 2", "g: 1\nc: 3", "g: 1\nb: 2\nc: 3\n", id="no line end at the end"),
+        pytest.param(
+            "a: 1\n", "a: 1\nh: {p: 1}\n", "a: 1\nh:\n  q: 2\n", "a: 1\nh:\n  q: 2\n  p: 1\n", id="one new id"
+        ),
+        pytest.param(
+            "a:\n  p: 1\n  q: 2\n", "a:\n  q: 2\n", "a:\n  p: 1\n  q: 3\n", "a:\n  q: 3\n", id="removed beside changed"
+        ),
+        pytest.param(
+            "a: 1  # why\n", "a: 2  # why\n", "a: 1  # because\n", "a: 2  # because\n", id="a comment changed"
+        ),
+    ],
+)
+def test_what_both_sides_say_is_merged_where_lines_conflict(base: str, ours: str, theirs: str, merged: str) -> None:
+    assert merge_lines(base.encode(), ours.encode(), theirs.encode()).conflict_count
+    assert merge(base, ours, theirs) == merged
+
+
+REFORMATTED = """\
+g:
+  b:
+    rate: 3 Hz
+  # The camera.
+  a:
+    rate: 1 Hz
+    wcet: 2 ms
+"""
+
+
+@pytest.mark.parametrize(
+    ("edited", "merged"),
+    [
+        pytest.param(
+            "g:\n  # The camera.\n  a: {rate: 1 Hz, wcet: 4 ms}\n  b: {rate: 3 Hz}\n",
+            REFORMATTED.replace("2 ms", "4 ms"),
+            id="a value",
+        ),
+        pytest.param(
+            "g:\n  # The camera.\n  a: {rate: 1 Hz, wcet: 2 ms}\n  b: {rate: 3 Hz, host: pc}\n",
+            REFORMATTED.replace("3 Hz\n", "3 Hz\n    host: pc\n"),
+            id="a new key",
+        ),
+        pytest.param(
+            "g:\n  # The camera.\n  a: {rate: 1 Hz}\n  b: {rate: 3 Hz}\n",
+            REFORMATTED.replace("    wcet: 2 ms\n", ""),
+            id="a key removed",
+        ),
+        pytest.param(
+            "g:\n  b: {rate: 3 Hz}\n",
+            "g:\n  b:\n    rate: 3 Hz\n",
+            id="an element removed with its comment",
+        ),
+        pytest.param(
+            "g:\n  # The camera.\n  a: {rate: 1 Hz, wcet: 2 ms}\n  b: {rate: 3 Hz}\n  # New.\n  c:\n    o: [x]\n",
+            REFORMATTED.replace("3 Hz\n", "3 Hz\n  # New.\n  c:\n    o: [x]\n"),
+            id="an element added with its comment",
+        ),
+    ],
+)
+@pytest.mark.parametrize("is_ours_reformatted", [True, False])
+def test_a_small_change_is_carried_into_a_reformatted_text(
+    edited: str, merged: str, *, is_ours_reformatted: bool
+) -> None:
+    base = "g:\n  # The camera.\n  a: {rate: 1 Hz, wcet: 2 ms}\n  b: {rate: 3 Hz}\n"
+    sides = (REFORMATTED, edited) if is_ours_reformatted else (edited, REFORMATTED)
+    assert merge(base, *sides) == merged
+
+
+@pytest.mark.parametrize(
+    ("base", "ours", "theirs", "path"),
+    [
+        ("a: {rate: 1 Hz}\n", "a: {rate: 2 Hz}\n", "a: {rate: 3 Hz}\n", ("a", "rate")),
+        ("a: {r: 1}\nb: 1\n", "b: 1\n", "a: {r: 2}\nb: 1\n", ("a",)),
+        ("a: 1\n", "a: 1\nn: {r: 1}\n", "a: 1\nn: {r: 2}\n", ("n", "r")),
+        ("c: {through: [a, b]}\n", "c: {through: [a, x, b]}\n", "c: {through: [a, y, b]}\n", ("c", "through")),
+        ("v: 1.1\n", "v: 1.10\n", "v: 1.2\n", ("v",)),
+        (
+            "parameters: {tags: [1]}\n",
+            "parameters: {tags: [1, 2]}\n",
+            "parameters: {tags: [1, 3]}\n",
+            ("parameters", "tags"),
+        ),
+    ],
+)
+def test_what_both_sides_changed_in_their_own_way_is_named(
+    base: str, ours: str, theirs: str, path: tuple[str, ...]
+) -> None:
+    assert merge(base, ours, theirs) == UnmergedSlice(path)
+
+
+@pytest.mark.parametrize("broken", ["a: [\n", "a: 1\na: 2\n", "<<<<<<< ours\n", "a: \t- x\n"])
+def test_what_cannot_be_read_as_a_whole_is_left_to_git(broken: str) -> None:
+    for versions in ((broken, "a: 1\n", "a: 1\n"), ("a: 1\n", broken, "a: 2\n"), ("a: 1\n", "a: 2\n", broken)):
+        assert merge(*versions) == UnmergedSlice()
+
+
+def test_lines_that_merge_into_something_else_are_refused() -> None:
+    # git puts the key twice: both sides added it, at two places.
+    base = "a:\n  p: 1\n  q: 2\n  r: 3\n  s: 4\n  t: 5\n"
+    ours, theirs = base.replace("  p", "  tags: [x]\n  p"), base + "  tags: [x]\n"
+    assert merge_lines(base.encode(), ours.encode(), theirs.encode()).content.count(b"tags") == 2
+    merged = merge(base, ours, theirs)
+    assert isinstance(merged, str)
+    assert merged.count("tags") == 1
+
+
+def test_a_comment_is_never_lost() -> None:
+    # The comment between the keys cannot stand within braces on one line, so nothing is proposed that drops it.
+    base = "a: {p: 1, q: 2}\n"
+    merged = merge(base, "a: {p: 1, q: 2, r: 3}\n", "a:\n  # Why.\n  p: 1\n  q: 2\n  s: 4\n")
+    assert isinstance(merged, str)
+    assert "# Why." in merged
+
+
+KEYS = st.sampled_from(["a", "b", "c", "tags", "from"])
+SCALARS = st.sampled_from([1, 2, "x", "y z", "10 Hz", True, None, "# no comment"])
+LISTS = st.lists(st.sampled_from(["x", "y", "z"]), max_size=3)
+TREES = st.recursive(SCALARS | LISTS, lambda inner: st.dictionaries(KEYS, inner, max_size=4), max_leaves=12)
+ROOTS = st.dictionaries(KEYS, TREES, max_size=4)
+
+
+@st.composite
+def edited_trees(draw: st.DrawFn, tree: object) -> object:
+    """Draw a tree that differs from another one here and there."""
+    if not isinstance(tree, dict) or draw(st.integers(0, 9)) == 0:
+        return draw(TREES) if draw(st.booleans()) else tree
+    edited = {key: draw(edited_trees(value)) if draw(st.booleans()) else value for key, value in tree.items()}
+    if edited and draw(st.integers(0, 3)) == 0:
+        edited.pop(draw(st.sampled_from(sorted(edited))))
+    return edited | draw(st.dictionaries(KEYS, TREES, max_size=1))
+
+
+def write(data: Mapping[str, object], *, in_braces: bool) -> str:
+    return f"{format_flow(data)}\n" if in_braces and data else write_yaml(data)
+
+
+@given(st.data())
+@settings(max_examples=count_examples(400), deadline=None)
+def test_whatever_is_merged_says_what_both_sides_say(data: st.DataObject) -> None:
+    base = data.draw(ROOTS)
+    ours, theirs = (
+        tree if isinstance(tree, dict) else {}
+        for tree in (data.draw(edited_trees(base)), data.draw(edited_trees(base)))
+    )
+    texts = [write(tree, in_braces=data.draw(st.booleans())) for tree in (base, ours, theirs)]
+    values = []
+    for text in texts:
+        document, _ = yaml_parser.parse_yaml("slice", text)
+        if document is None:  # an empty file
+            return
+        values.append(read_value(document.root))
+    merged = merge_slices(SliceVersions(*texts))
+    expected = _merge_or_conflict(*values)
+    if not isinstance(merged, str):
+        assert merged == (expected if isinstance(expected, UnmergedSlice) else UnmergedSlice(is_settled=True))
+        return
+    document, _ = yaml_parser.parse_yaml("slice", merged)
+    assert document is not None
+    assert read_value(document.root) == expected
+
+
+def _merge_or_conflict(base: MergedValue, ours: MergedValue, theirs: MergedValue) -> MergedValue | UnmergedSlice | None:
+    try:
+        return merge_values(base, ours, theirs)
+    except MergeConflictError as conflict:
+        return UnmergedSlice(conflict.path)
