@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 
@@ -24,7 +25,7 @@ def git(folder: Path, *words: str, stdin: bytes | None = None) -> str:
     return done.stdout.decode().strip()
 
 
-def repository(folder: Path, files: dict[str, str | bytes] | None = None, *options: str) -> Path:
+def repository(folder: Path, files: Mapping[str, str | bytes] | None = None, *options: str) -> Path:
     """Make a repository on branch `main`, with one commit if there are files."""
     folder.mkdir(parents=True, exist_ok=True)
     git(folder, "init", "-q", "-b", "main", *options)
@@ -33,7 +34,7 @@ def repository(folder: Path, files: dict[str, str | bytes] | None = None, *optio
     return folder
 
 
-def commit(folder: Path, files: dict[str, str | bytes]) -> str:
+def commit(folder: Path, files: Mapping[str, str | bytes]) -> str:
     """Write files, commit everything, and give the hash."""
     for name, content in files.items():
         path = folder / name

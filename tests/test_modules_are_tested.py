@@ -91,11 +91,11 @@ def _find_imports(module: str) -> frozenset[str]:
 @cache
 def _list_next(module: str) -> frozenset[str]:
     """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb."""
-    from archgen.cli import VERBS
+    from archgen.cli import VERBS, verb_module
 
     found = set(_find_imports(module))
     if module == "archgen.cli":
-        found |= {f"archgen.cli.{verb}_command" for verb in VERBS}
+        found |= {verb_module(verb) for verb in VERBS}
     if module == "tests.running":
         found.add("archgen.__main__")
     if _is_test(module):

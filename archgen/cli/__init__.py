@@ -27,11 +27,17 @@ VERBS = {
     "init": "Start a project, or take one over from a spreadsheet.",
     "new": "Add a group, a component or a node.",
     "review": "Make all that the review of a change needs, in one folder.",
+    "merge-check": "Say what would be wrong if open branches were merged.",
     "merge-driver": "Merge two versions of a file by what they say; for git.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
-"""Every verb with its line in the help. Each is a module of this package, `VERB_.py`, with a function `command`."""
+"""Every verb with its line in the help. Each is a module of this package (`verb_module`) with a function `command`."""
+
+
+def verb_module(verb: str) -> str:
+    """Return the name of the module that holds a verb."""
+    return f"archgen.cli.{verb.replace('-', '_')}_command"
 
 
 class VerbGroup(click.Group):
@@ -46,7 +52,7 @@ class VerbGroup(click.Group):
         if cmd_name not in VERBS:
             return None
         # By name, so nothing else refers to these modules: renaming one or its `command` is noticed here only.
-        module = importlib.import_module(f"archgen.cli.{cmd_name.replace('-', '_')}_command")
+        module = importlib.import_module(verb_module(cmd_name))
         command: click.Command = module.command
         return command
 

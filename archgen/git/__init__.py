@@ -10,6 +10,7 @@ from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, 
 from archgen.git.object_reader import GitObjects, TreeEntry
 from archgen.git.repository_lookup import GitRepository, find_repository, list_cut_commits, resolve_revision
 from archgen.git.text_merge import LineMerge, merge_lines
+from archgen.git.tree_merge import MergeFolder, PathConflict, TreeMerge, open_merge_folder
 
 __all__ = [
     "BaseCommit",
@@ -17,10 +18,13 @@ __all__ = [
     "GitObjects",
     "GitRepository",
     "LineMerge",
+    "MergeFolder",
     "NoCommitsError",
     "NoRepositoryError",
+    "PathConflict",
     "ShallowError",
     "TreeEntry",
+    "TreeMerge",
     "UnknownRevisionError",
     "find_branch_base",
     "find_common_commit",
@@ -29,5 +33,6 @@ __all__ = [
     "list_cut_commits",
     "list_first_parents",
     "merge_lines",
+    "open_merge_folder",
     "resolve_revision",
 ]

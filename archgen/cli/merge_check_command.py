@@ -1,0 +1,73 @@
+"""`archgen merge-check`: merge open branches as models, before git does."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+
+if TYPE_CHECKING:
+    from archgen.merge.branch_merge import BranchMerge
+
+
+@click.command("merge-check")
+@click.argument("main_line", metavar="MAIN")
+@click.argument("branches", metavar="OTHER...", nargs=-1, required=True)
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.strict_option
+@shared_options.project_option
+def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: bool, project: Path | None) -> None:
+    """Say what would be wrong if open branches were merged: each OTHER into MAIN, then all of them.
+
+    Git's objects are read and nothing is checked out. Findings are shown that neither MAIN nor the branch has, and
+    conflicts: of the models, and of git alone. The exit status is 1 for new errors (with --strict also new warnings)
+    for conflicts of the models, and where the project is gone.
+    """
+    from archgen.git import GitError
+    from archgen.merge.branch_merge import preview_merges
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        branch_merges = list(preview_merges(project, main_line, branches))
+    except (GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(make_visible(str(error))) from None
+    if form == "json":
+        from archgen.merge.branch_merge_json import format_merges_json
+
+        sys.stdout.write(format_merges_json(main_line, branch_merges))
+    else:
+        for branch_merge in branch_merges:
+            _print_merge(main_line, branch_merge)
+    sys.exit(
+        1
+        if any(
+            branch_merge.checked_project is None
+            or command_support.exit_status(branch_merge.new_findings, strict=strict)
+            for branch_merge in branch_merges
+        )
+        else 0
+    )
+
+
+def _print_merge(main_line: str, branch_merge: BranchMerge) -> None:
+    click.echo(make_visible(f"{' + '.join((main_line, *branch_merge.branches))}: {_describe_merge(branch_merge)}"))
+    for conflict in branch_merge.conflicts:
+        outcome = conflict.problem or "git conflicts, what both sides say does not: `archgen merge-driver` merges it"
+        click.echo(make_visible(f"  {conflict.file}: {outcome}"))
+    if branch_merge.new_findings and branch_merge.checked_project:
+        command_support.print_findings(branch_merge.new_findings, branch_merge.checked_project, sys.stdout)
+
+
+def _describe_merge(branch_merge: BranchMerge) -> str:
+    if branch_merge.is_blocked:
+        return "conflicts"
+    if branch_merge.new_findings:
+        return "merges, and then there are new findings"
+    if branch_merge.checked_project is None:
+        return "merges, but holds no project any more"
+    return "git conflicts needlessly" if branch_merge.conflicts else "merges"
