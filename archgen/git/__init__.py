@@ -8,7 +8,13 @@ from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_co
 from archgen.git.commit_log import find_object_ids, list_first_parents
 from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
 from archgen.git.object_reader import GitObjects, TreeEntry
-from archgen.git.repository_lookup import GitRepository, find_repository, list_cut_commits, resolve_revision
+from archgen.git.repository_lookup import (
+    GitRepository,
+    find_repository,
+    list_cut_commits,
+    look_up_tree,
+    resolve_revision,
+)
 from archgen.git.text_merge import LineMerge, merge_lines
 from archgen.git.tree_merge import MergeFolder, PathConflict, TreeMerge, open_merge_folder
 
@@ -32,6 +38,7 @@ __all__ = [
     "find_repository",
     "list_cut_commits",
     "list_first_parents",
+    "look_up_tree",
     "merge_lines",
     "open_merge_folder",
     "resolve_revision",

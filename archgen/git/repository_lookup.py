@@ -108,8 +108,17 @@ def resolve_revision(repository: GitRepository, revision: str) -> str:
 
 def look_up_commit(repository: GitRepository, revision: str) -> str:
     """Return the full hash of a commit, empty where there is none."""
-    if not revision or "\0" in revision:
+    return _look_up_object(repository, revision, "commit")
+
+
+def look_up_tree(repository: GitRepository, name: str) -> str:
+    """Return the full hash of a tree that is named by itself or by a commit, empty where there is none."""
+    return _look_up_object(repository, name, "tree")
+
+
+def _look_up_object(repository: GitRepository, name: str, kind: str) -> str:
+    if not name or "\0" in name:
         return ""
-    # `--end-of-options`: a revision that users type may begin with a hyphen.
-    result = run_git(repository.top, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    # `--end-of-options`: a name that users type may begin with a hyphen.
+    result = run_git(repository.top, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{name}^{{{kind}}}")
     return "" if result.status else result.text.strip()

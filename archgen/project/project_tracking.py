@@ -6,7 +6,14 @@ import posixpath
 from dataclasses import dataclass
 from pathlib import Path
 
-from archgen.git import GitObjects, NoRepositoryError, find_repository, resolve_revision
+from archgen.git import (
+    GitObjects,
+    NoRepositoryError,
+    UnknownRevisionError,
+    find_repository,
+    look_up_tree,
+    resolve_revision,
+)
 from archgen.project.project_loading import LoadedProject, load_from_files
 from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, find_project
 from archgen.project.slice_parsing import ParsedSlices
@@ -29,8 +36,15 @@ class TrackedProject:
     locations: tuple[tuple[str, str], ...]
 
     def resolve_commit(self, revision: str) -> str:
-        """Return the full hash of a revision's commit. Raises what `git.resolve` raises."""
-        return resolve_revision(self.objects.repository, revision)
+        """Return the full hash of a revision's commit, or of a tree. Raises what `git.resolve_revision` raises."""
+        try:
+            return resolve_revision(self.objects.repository, revision)
+        except UnknownRevisionError:
+            # Such as the tree that `git merge-tree` makes of two branches: files without a history.
+            tree = look_up_tree(self.objects.repository, revision)
+            if not tree:
+                raise
+            return tree
 
 
 def find_tracked_project(path: Path | None = None) -> TrackedProject:

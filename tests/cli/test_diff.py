@@ -221,3 +221,17 @@ def test_the_comment_names_the_command_that_shows_everything(run: Run, robot: Pa
     ran = run("diff", "main", "--format", "markdown")
     assert len(ran.out) <= 65_336
     assert " more: `archgen diff main`" in ran.out
+
+
+def test_a_tree_of_git_is_a_version(run: Run, tmp_path: Path) -> None:
+    """As `git merge-tree --write-tree main other` makes one."""
+    project = "archgen: 1\nproject: {id: robot}\ngroups: {g: {components: {a: {outputs: {o: T}}}}}\n"
+    folder = repository(tmp_path / "robot", {"archgen.yaml": project})
+    git_run(folder, "checkout", "-q", "-b", "other")
+    commit(folder, {"archgen.yaml": project.replace("o: T", "o: T, p: T")})
+    tree = git_run(folder, "merge-tree", "--write-tree", "main", "other")
+    ran = run("diff", "main", tree, "-C", folder)
+    assert "output `g.a.p` is added" in ran.out
+    assert run("diff", "main", f"main...{tree[:8]}", "-C", folder).status == 2
+    blob = git_run(folder, "rev-parse", "main:archgen.yaml")
+    assert "there is no revision" in run("diff", "main", blob, "-C", folder).err
