@@ -73,7 +73,7 @@ def _opposite_keys(
     match change.element_kind:
         case "connection":
             yield from (("output", name) for name in connections.sources_by_input.get(element.id, ()))
-        case "output" if change.key in {None, "type"}:
+        case "output" if change.key in {None, "type", "description"}:
             yield from (("input", name) for name in connections.readers_by_output.get(element.id, ()))
         case "port":
             yield from (
@@ -86,16 +86,12 @@ def _opposite_keys(
         case "host" | "container" | "link":
             yield from _nodes_at_place(element, elements)
         case "type" | "requirement":
-            for key in _users_of_element(element, elements):
-                yield from (key, *(("input", reader) for reader in connections.readers_by_output.get(key[1], ())))
+            yield from _users_and_readers(element, elements, connections)
         case "message":
             types = (candidate for candidate in elements.values() if candidate.kind == "type")
             for type_element in types:
-                yield from (
-                    _users_of_element(type_element, elements)
-                    if type_element.values.get("message") == element.id
-                    else ()
-                )
+                if type_element.values.get("message") == element.id:
+                    yield from _users_and_readers(type_element, elements, connections)
 
 
 def _chain_points(chain: ComparedElement) -> Iterator[ElementKey]:
@@ -121,6 +117,14 @@ def _nodes_at_place(place: ComparedElement, elements: Mapping[ElementKey, Compar
         in_container = key == "host" and candidate_node.values.get("container") in container_ids
         if candidate_key[0] == "node" and (candidate_node.values.get(key) in hosts or in_container):
             yield candidate_key
+
+
+def _users_and_readers(
+    element: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
+) -> Iterator[ElementKey]:
+    """Yield the users of an element, and who reads these."""
+    for key in _users_of_element(element, elements):
+        yield from (key, *(("input", reader) for reader in connections.readers_by_output.get(key[1], ())))
 
 
 def _users_of_element(element: ComparedElement, elements: Mapping[ElementKey, ComparedElement]) -> Iterator[ElementKey]:

@@ -10,6 +10,13 @@ from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.diagnostics.common_wording import join_words
 
 _MAX_LENGTH = 80
+_NAMED_SECTIONS = {
+    "parameters": "parameter",
+    "constants": "constant",
+    "defaults": "default of",
+    "comments": "what is said of",
+}
+"""What sentences call the keys of a section, by the section."""
 
 
 def describe_key_change(change: Change) -> str:
@@ -59,8 +66,9 @@ def _key_noun(key: str) -> str:
     if key.startswith("rules."):
         rule, _, option = key.removeprefix("rules.").partition(".")
         return f"`{option}` of the rule `{rule}`" if option else f"severity of the rule `{rule}`"
-    if key.startswith("parameters."):
-        return f"parameter `{shorten_text(key.removeprefix('parameters.'))}`"
+    section, _, name = key.partition(".")
+    if section in _NAMED_SECTIONS and name:
+        return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
     return _spell_out(key.removeprefix("timing.").replace(".", " "))
 
 

@@ -26,23 +26,53 @@ _GENERATED_SUFFIXES = {
 """Suffixes of the interfaces that ROS 2 generates from services and actions, and that exist as soon as these do."""
 
 
+PART_NAMES = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+"""The parts of an interface, by its kind."""
+
+
 @dataclass(frozen=True, slots=True)
 class InterfaceField:
     """A field of an interface. `type` is the full one: `float64`, `string<=10`, `geometry_msgs/msg/Pose`; `array` is
     empty, `[]`, `[9]` or `[<=9]`.
+
+    Only the project's own definitions give the default, as written, and the comment: that behind the field, with the
+    lines right above it in front.
     """
 
     name: str
     type: str
     array: str = ""
+    default: str = ""
+    comment: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceConstant:
+    """A constant of an interface; the value is as written, the comment as that of a field."""
+
+    name: str
+    type: str
+    value: str
+    comment: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """A message (one part), service (request, response) or action (goal, result, feedback) with its full name."""
+    """A message (one part), service (request, response) or action (goal, result, feedback) with its full name.
+
+    `constants` are those of each part; `comment` is what stands by itself, one line for each of its lines. Only the
+    project's own definitions give them.
+    """
 
     name: str
     parts: tuple[tuple[InterfaceField, ...], ...]
+    constants: tuple[tuple[InterfaceConstant, ...], ...] = ()
+    comment: str = ""
+
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """The names of the parts; that of a message's only part is empty."""
+        return PART_NAMES[self.name.split("/")[1]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import field
+from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
-from archgen.model.known_interfaces import Interface, InterfaceField
+from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.syntax.interface_literals import explain_bad_default, explain_bad_literal
 from archgen.syntax.interface_types import FieldType, TypeComplaint, list_literal_types, read_field_type
 
@@ -78,6 +79,15 @@ class InterfaceDefinition:
     diagnostics: tuple[Diagnostic, ...]
 
 
+class _DefinitionLine(NamedTuple):
+    """A line of a field or a constant: its text, the part without its comment, and the comment that belongs to it."""
+
+    number: int
+    text: str
+    code: str
+    comment: str
+
+
 @dataclass(slots=True)
 class _DefinitionReader:
     """The state of reading one definition: what was found up to the current line."""
@@ -86,6 +96,11 @@ class _DefinitionReader:
     package: str
     ros1: bool
     fields: list[InterfaceField] = field(default_factory=list)
+    constants: list[InterfaceConstant] = field(default_factory=list)
+    comment_lines: list[str] = field(default_factory=list)
+    """The comments that stand alone so far, those right above the current line last."""
+    own_comments: int = 0
+    """How many of these stand right above the current line, and belong to it if it is a field or a constant."""
     name_spans: dict[tuple[str, str], Span] = field(default_factory=dict)
     references: list[tuple[str, Span]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -93,12 +108,28 @@ class _DefinitionReader:
     def span_of(self, line_number: int, start: int, end: int) -> Span:
         return Span(self.file, line_number, start + 1, line_number, max(start, end) + 1)
 
-    def close_part(self) -> tuple[InterfaceField, ...]:
-        """Close a part of a service or an action and return its fields; the next part may use the same names again."""
-        part_fields = tuple(self.fields)
+    def close_part(self) -> tuple[tuple[InterfaceField, ...], tuple[InterfaceConstant, ...]]:
+        """Close a part of a service or an action; the next part may use the same names again."""
+        part = tuple(self.fields), tuple(self.constants)
         self.fields.clear()
+        self.constants.clear()
         self.name_spans.clear()
-        return part_fields
+        self.own_comments = 0
+        return part
+
+    def add_comment(self, comment: str) -> None:
+        """Remember a line that is nothing but a comment; an empty line ends what belongs to the next field."""
+        if comment:
+            self.comment_lines.append(comment)
+        self.own_comments = self.own_comments + 1 if comment else 0
+
+    def take_comment(self, comment: str) -> str:
+        """Return the comment of a field or constant: the lines right above it, and what stands behind it."""
+        start = len(self.comment_lines) - self.own_comments
+        lines = [*self.comment_lines[start:], comment]
+        del self.comment_lines[start:]
+        self.own_comments = 0
+        return " ".join(filter(None, lines))
 
     def check_name(self, kind: str, name: str, span: Span) -> bool:
         """Check the name of a field or a constant; False, and a diagnostic, if it is malformed or already taken."""
@@ -122,7 +153,7 @@ def parse_definition(text: str, name: str, file: str, *, ros1: bool) -> Interfac
     """Parse the definition of `package/msg/Name` (or srv, action). It never raises; unsound lines are left out."""
     package, kind = name.split("/")[:2]
     reader = _DefinitionReader(file, package, ros1)
-    parts, separators = list[tuple[InterfaceField, ...]](), list[Span]()
+    parts, separators = list[tuple[tuple[InterfaceField, ...], tuple[InterfaceConstant, ...]]](), list[Span]()
     for line_number, line in enumerate(_LINE_END.split(text), 1):
         # genmsg takes whatever follows the dashes as a comment, rosidl_adapter wants the bare line.
         if line.startswith("---") if ros1 else line == "---":
@@ -133,8 +164,14 @@ def parse_definition(text: str, name: str, file: str, *, ros1: bool) -> Interfac
     parts.append(reader.close_part())
     _check_separators(reader, kind, separators)
     # Always as many parts as the kind has, so that later stages need not check.
-    sound_parts = tuple(parts[: _PART_COUNTS[kind]]) + ((),) * (_PART_COUNTS[kind] - len(parts))
-    return InterfaceDefinition(Interface(name, sound_parts), tuple(reader.references), tuple(reader.diagnostics))
+    sound_parts = [*parts[: _PART_COUNTS[kind]], *[((), ())] * (_PART_COUNTS[kind] - len(parts))]
+    interface = Interface(
+        name,
+        tuple(fields for fields, _ in sound_parts),
+        tuple(constants for _, constants in sound_parts) if any(constants for _, constants in sound_parts) else (),
+        "\n".join(reader.comment_lines),
+    )
+    return InterfaceDefinition(interface, tuple(reader.references), tuple(reader.diagnostics))
 
 
 def _check_separators(reader: _DefinitionReader, kind: str, separators: list[Span]) -> None:
@@ -154,11 +191,13 @@ def _check_separators(reader: _DefinitionReader, kind: str, separators: list[Spa
 
 def _read_line(reader: _DefinitionReader, line_number: int, line: str) -> None:
     """Read one line: blank, a constant, or a field."""
-    code = line.split("#", 1)[0]
+    code, _, comment = line.partition("#")
+    comment = comment.strip()
     # rosidl_adapter turns tabs into blanks first, genmsg does not. One for one, so columns stay right.
     code = (code if reader.ros1 else code.replace("\t", " ")).rstrip()
     start = _find_next_word(code, 0)
     if start == len(code):
+        reader.add_comment(comment)
         return
     if not reader.ros1:
         if start:
@@ -168,14 +207,16 @@ def _read_line(reader: _DefinitionReader, line_number: int, line: str) -> None:
         optional = _OPTIONAL_ANNOTATION.match(code, start)
         start = optional.end() if optional else start
         if start == len(code):
+            reader.add_comment(comment)
             return
+    whole_line = _DefinitionLine(line_number, line, code, reader.take_comment(comment))
     end = code.find(" ", start)
     if end < 0:
         _report_incomplete_line(reader, code[start:], reader.span_of(line_number, start, len(code)))
     elif "=" in code[end:]:
-        _read_constant(reader, line_number, code, line, (start, end))
+        _read_constant(reader, whole_line, start, end)
     else:
-        _read_field(reader, line_number, code, (start, end))
+        _read_field(reader, whole_line, start, end)
 
 
 def _find_next_word(code: str, column: int) -> int:
@@ -196,34 +237,40 @@ def _report_incomplete_line(reader: _DefinitionReader, code: str, span: Span) ->
         )
 
 
-def _read_constant(reader: _DefinitionReader, line_number: int, code: str, line: str, columns: tuple[int, int]) -> None:
+def _read_constant(reader: _DefinitionReader, line: _DefinitionLine, start: int, end: int) -> None:
     """Read `uint8 LIMIT=3`. The value of a string constant in ROS 1 is the whole rest of the line, even with a `#`."""
-    start, end = columns
+    line_number, text, code, comment = line
     type_name, name_column = code[start:end], _find_next_word(code, end)
     equals_column = code.index("=", end)
     name = code[name_column:equals_column].rstrip()
-    reader.check_name("constant", name, reader.span_of(line_number, name_column, name_column + len(name)))
+    is_name_sound = reader.check_name(
+        "constant", name, reader.span_of(line_number, name_column, name_column + len(name))
+    )
     if type_name not in list_literal_types(ros1=reader.ros1):
         span = reader.span_of(line_number, start, end)
         reader.add_diagnostic(
             f"a constant has a builtin type, not `{type_name}`", span, _suggest_builtin_type(type_name, reader)
         )
         return
-    source = line.rstrip() if reader.ros1 and type_name == "string" else code
+    source = text.rstrip() if reader.ros1 and type_name == "string" else code
     value_column = _find_next_word(source, equals_column + 1)
     reason = explain_bad_literal(type_name, source[value_column:], None, ros1=reader.ros1)
     if reason:
         span = reader.span_of(line_number, value_column, max(len(source), value_column + 1))
         reader.add_diagnostic(f"`{source[value_column:]}` is no value of `{type_name}`", span, reason)
+    elif is_name_sound:
+        # In ROS 1 a text goes on to the end of the line, so that nothing behind it is a comment.
+        own_comment = "" if source is not code else comment
+        reader.constants.append(InterfaceConstant(name, type_name, source[value_column:].rstrip(), own_comment))
 
 
 def _suggest_builtin_type(type_name: str, reader: _DefinitionReader) -> str | None:
     return did_you_mean(type_name, list_literal_types(ros1=reader.ros1))
 
 
-def _read_field(reader: _DefinitionReader, line_number: int, code: str, columns: tuple[int, int]) -> None:
+def _read_field(reader: _DefinitionReader, line: _DefinitionLine, start: int, end: int) -> None:
     """Read `float64 width`, in ROS 2 perhaps with a default: `float64 width 0.1`."""
-    start, end = columns
+    line_number, _, code, comment = line
     type_span = reader.span_of(line_number, start, end)
     field_type = read_field_type(code[start:end], reader.package, ros1=reader.ros1)
     if isinstance(field_type, TypeComplaint):
@@ -240,7 +287,7 @@ def _read_field(reader: _DefinitionReader, line_number: int, code: str, columns:
             reader, field_type, code[default_column:], reader.span_of(line_number, default_column, len(code))
         )
     if is_name_sound and isinstance(field_type, FieldType):
-        reader.fields.append(InterfaceField(name, field_type.name, field_type.array))
+        reader.fields.append(InterfaceField(name, field_type.name, field_type.array, code[default_column:], comment))
 
 
 def _check_default(reader: _DefinitionReader, field_type: FieldType | TypeComplaint, value: str, span: Span) -> None:

@@ -16,7 +16,7 @@ from rosbags.typesys import get_types_from_msg
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.model.known_interfaces import InterfaceField
+from archgen.model.known_interfaces import InterfaceConstant, InterfaceField
 from archgen.syntax.interface_definitions import InterfaceDefinition, parse_definition
 
 JUDGES = Path(__file__).resolve().parents[1] / "judges" / "ros_definitions.py"
@@ -347,3 +347,36 @@ def test_no_text_raises(text: str, kind: str, ros1: bool) -> None:  # noqa: FBT0
 def test_no_likely_text_raises(pieces: list[str]) -> None:
     for ros1 in (False, True):
         read("".join(pieces), "srv", ros1=ros1)
+
+
+def test_comments_belong_to_what_they_stand_above_and_behind() -> None:
+    text = """\
+# How the arm stands.
+
+# In radians,
+# counted from the stretched arm.
+float64 elbow  # positive upwards
+float64 wrist
+uint8 LEFT=0   # seen from behind
+# The last word.
+"""
+    interface = parse_definition(text, "m/msg/Arm", "Arm.msg", ros1=False).interface
+    assert interface.parts == (
+        (
+            InterfaceField("elbow", "float64", "", "", "In radians, counted from the stretched arm. positive upwards"),
+            InterfaceField("wrist", "float64"),
+        ),
+    )
+    assert interface.constants == ((InterfaceConstant("LEFT", "uint8", "0", "seen from behind"),),)
+    assert interface.comment == "How the arm stands.\nThe last word."
+
+
+def test_constants_and_defaults_are_as_written() -> None:
+    text = 'uint8 A=1 # one\nstring B="x # y"\nint32[] c [1, 2]\n---\nuint8 A = 2\n'
+    interface = parse_definition(text, "m/srv/Do", "Do.srv", ros1=False).interface
+    assert [[(constant.name, constant.value) for constant in part] for part in interface.constants][1] == [("A", "2")]
+    assert interface.constants[0][0] == InterfaceConstant("A", "uint8", "1", "one")
+    assert interface.parts[0] == (InterfaceField("c", "int32", "[]", "[1, 2]"),)
+    # In ROS 1 a text goes on to the end of the line.
+    old = parse_definition("string B=x # y\n", "m/msg/Old", "Old.msg", ros1=True).interface
+    assert old.constants == ((InterfaceConstant("B", "string", "x # y"),),)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import Interface
+from archgen.model.ros_distro import is_ros_1
 
 _INNER_TYPE_KEYS = ("request", "response", "feedback")
 
@@ -104,7 +106,9 @@ def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
                 ]
             )
             for partner in sorted(partners):
-                yield from context.losses_of_partner([index], partner, _rebuild_reason(context, common_id, partner))
+                reason_text = _redefinition_reason(context, change, common_id, partner)
+                if reason_text:
+                    yield from context.losses_of_partner([index], partner, reason_text)
         elif change.element_kind == "type" and change.key in _INNER_TYPE_KEYS and change.before is not None:
             partners = _other_partners(users_by_element.get(("type", change.element_id), ()))
             for partner in sorted(partners):
@@ -153,6 +157,31 @@ def _messages_containing(context: ChangeContext, message_name: str) -> list[str]
     return list(find_reachable(containers_by_type, [message_name]))
 
 
+def _redefinition_reason(context: ChangeContext, change: Change, message_name: str, partner: str) -> str:
+    """Return what a partner loses by a changed key of a definition; empty if nothing: comments concern, constants that
+    are new break nobody.
+    """
+    section, _, name = (change.key or "fields").partition(".")
+    if section == "fields":
+        return _rebuild_reason(context, message_name, partner)
+    ticked_name = tick_name(message_name)
+    # ROS 1 takes constants into the checksum that two programs compare before they talk.
+    if section == "constants" and is_ros_1(context.after.distro):
+        return (
+            f"changes the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before "
+            "cannot talk to what is built after"
+        )
+    verb = "takes away" if change.after is None else "changes"
+    if section == "constants" and change.before is not None:
+        return (
+            f"{verb} the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before means "
+            "something else by the same bytes"
+        )
+    if section == "defaults" and change.before is not None:
+        return f"{verb} the default of {tick_name(name)} in {ticked_name}, which {partner} uses: what does not set it sends something else"
+    return ""
+
+
 def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> str:
     """Describe what is different for a partner that was built against a message definition."""
     old_definition = context.before.interfaces.definitions.get(
@@ -186,7 +215,8 @@ def _compare_fields(old_definition: Interface, new_definition: Interface) -> tup
     changed = {
         name
         for (part_number, name), field in old_fields.items()
-        if (part_number, name) in new_fields and field != new_fields[part_number, name]
+        if (part_number, name) in new_fields
+        and (field.type, field.array) != (new_fields[part_number, name].type, new_fields[part_number, name].array)
     }
     return (
         {name for _, name in old_fields.keys() - new_fields.keys()},
