@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline, resources
+from archgen.link.interface_sources import load_interfaces
 from archgen.views.agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.message_fields import field_table, list_field_rows
 from archgen.views.agreement.partner_interfaces import find_interfaces_between
 from archgen.views.shapes import Inlines, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
@@ -284,3 +286,32 @@ def test_the_case_study_s_pictures_account_for_all_that_flows(first: str, second
     assert {box.id for box in made_of.graph.boxes} >= {end for a in made_of.graph.arrows for end in (a.tail, a.head)}
     listed = [each for each in made_of.outline.sections if each.anchor.startswith("way:")]
     assert sum(len(each.sections) for each in listed) == made_of.interface_count > 0
+
+
+def test_what_fields_and_constants_mean_is_a_part_of_the_agreement() -> None:
+    rows = list_field_rows(
+        load_interfaces(
+            "jazzy",
+            [
+                ("m/own_msgs/srv/Measure.srv", "# In radians.\nfloat64 angle 0.5\n---\nState state\n"),
+                ("m/own_msgs/msg/State.msg", "uint8 LOST=0  # nothing was seen\nuint8 what\n"),
+            ],
+            {},
+        )[0],
+        "own_msgs/srv/Measure",
+    )
+    assert rows is not None
+    assert [f"{row.path}: {row.terms}" for row in rows] == [
+        "request.angle: float64 = 0.5: In radians.",
+        "answer.state: own_msgs/msg/State",
+        "answer.state.what: uint8",
+        "answer.state.LOST: uint8 = 0: nothing was seen",
+    ]
+    table = field_table("own_msgs/srv/Measure", rows)
+    assert [column.title for column in table.columns] == ["Part", "Field", "Type", "Meaning"]
+    assert [" | ".join("".join(run.text for run in cell) for cell in row) for row in table.rows] == [
+        "request | angle | float64 = 0.5 | In radians.",
+        "answer | state | own_msgs/msg/State | ",
+        "answer | state.what | uint8 | ",
+        "answer | state.LOST | uint8 = 0 | nothing was seen",
+    ]

@@ -41,7 +41,7 @@ def list_plain_terms(
     terms |= _fact_terms(lookup, interface_terms, matched_ids)
     terms |= dict(_end_term(lookup, end, matched_ids) for end in interface_terms.ends)
     for row in interface_terms.field_rows or ():
-        terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.type)
+        terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.terms)
     for chain in interface_terms.chains:
         title = lookup.architecture.chains[chain.id].title
         key = f"chain {matched_ids.common_id('chain', chain.id)}"
