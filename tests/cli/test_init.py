@@ -68,7 +68,15 @@ def test_groups_and_owners_of_ones_own(count: int, run: Run, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--partner", "A B=x"), "'A B' is no id: lower-case words joined by '_'; write 'a_b=x'"),
+        (("--map", "Baugruppe=group"), "--map says what the headings of a table mean: it needs --from"),
+        (
+            ("--from", "x.csv", "--map", "Baugruppe"),
+            "'Baugruppe' is no heading with its meaning: write \"Baugruppe=group\"",
+        ),
+        (
+            ("--from", "x.csv", "--map", "A=grop"),
+            "'grop' is nothing that a column can mean. did you mean group? Columns mean: kind, ",
+        ),
         (("--partner", "a @-x"), "'@-x' is no handle: write @user, @organisation/team or an e-mail address"),
         (("--partner", "a", "--partner", "A"), "two partners have the id 'a'"),
         (("--group", "g=a"), "'a' is no partner's id (none is named with --partner)"),
