@@ -10,6 +10,7 @@ from archgen.diagnostics.safe_text import make_visible
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from archgen.diagnostics.source_span import Span
     from archgen.importers import ImportResult
     from archgen.importers.column_headings import TableHeadings
     from archgen.importers.table_records import TableReport
@@ -24,7 +25,7 @@ def render_import_summary(imported: ImportResult) -> Iterator[str]:
         for cell in table.cells:
             reason = imported.ledger.listed.get(cell.span)
             if reason:
-                yield f"  not taken: {make_visible(f'{_place_of(table, cell.span)}  `{cell.one_line}`: {reason}')}"
+                yield f"  not taken: {make_visible(f'{_place_of(table, cell.span)} `{cell.one_line}`: {reason}')}"
 
 
 def _count_cells(imported: ImportResult, table: TableReport) -> str:
@@ -54,8 +55,7 @@ def _describe_headings(headings: TableHeadings) -> Iterator[str]:
             yield make_visible(f'{cell.one_line} is not taken (--map "{cell.one_line}=...")')
 
 
-def _place_of(table: TableReport, span: object) -> str:
+def _place_of(table: TableReport, span: Span) -> str:
     """Return a cell's line and column, or its address where it has one of its own."""
-    place = str(span)
     # The cells of a workbook or document are files of their own to a finding: `parts.xlsx [Sheet] B7`.
-    return place.removesuffix(":1:1") if not place.startswith(f"{table.name}:") else place
+    return f"{span.line}:{span.column}" if span.file == table.name else span.file.removeprefix(table.name).strip()

@@ -16,6 +16,7 @@ _PERCENT_IDS, _DATE_IDS = (
 )
 """The formats that every workbook knows without writing them down."""
 _LITERAL_PATTERN = re.compile(r'"([^"]*)"|\\(.)')
+_CURRENCY_PATTERN = re.compile(r"\[\$([^\]-]*)[^\]]*\]")
 _CONDITION_PATTERN = re.compile(r"\[[^\]]*\]")
 _DATE_LETTERS = re.compile(r"[ymdhs]", re.IGNORECASE)
 
@@ -65,12 +66,17 @@ def _shipped_code(name: str) -> str:
 
 def _read_literals(code: str) -> tuple[str, str]:
     """Return the text that a format shows before and behind the digits: ` Hz` of `0" Hz"`."""
-    digits = [match.start() for match in re.finditer(r"[0#?]", _LITERAL_PATTERN.sub(lambda m: " " * len(m[0]), code))]
+    visible_code = _CONDITION_PATTERN.sub("", _CURRENCY_PATTERN.sub(r'"\1"', code))
+    hidden_literals = _LITERAL_PATTERN.sub(lambda match: " " * len(match[0]), visible_code)
+    digits = [match.start() for match in re.finditer(r"[0#?]", hidden_literals)]
     if not digits:
         return "", ""
-    literals = [(match.start(), match[1] or match[2] or "") for match in _LITERAL_PATTERN.finditer(code)]
-    before = "".join(text for start, text in literals if start < digits[0])
-    return before, "".join(text for start, text in literals if start > digits[-1])
+    return _show_literals(visible_code[: digits[0]]), _show_literals(visible_code[digits[-1] + 1 :])
+
+
+def _show_literals(code: str) -> str:
+    """Return what a piece of a format shows: quoted and escaped text, without room and filling."""
+    return re.sub(r'"([^"]*)"|\\(.)|[_*].|([,.])', lambda match: match[1] or match[2] or "", code)
 
 
 def _format_date(number: float, *, begins_1904: bool) -> str:

@@ -58,7 +58,9 @@ def read_timing(project: ImportedProject, cell: TableCell, unit: str) -> dict[st
         key, dimension = ("rate", "frequency") if unit_name.endswith("Hz") else ("period", "duration")
         number = _read_number(match["number"])
         if number is None or (_AMBIGUOUS_NUMBER.match(match["number"]) and not cell.is_number):
-            message = f"`{cell.quotation}` has a thousands separator or a decimal one, and was not taken"
+            message = (
+                f"`{cell.quotation}` has a separator that may stand before thousands or decimals, and was not taken"
+            )
             help_line = "write the number without a thousands separator, and with a point"
         # 0 parses as a quantity, but is not a rate; and `every 10 Hz` means nothing.
         elif (

@@ -10,6 +10,7 @@ from archgen.diagnostics.suggestions import find_closest
 from archgen.importers.heading_words import KEY_BY_HEADING, TARGETS, fold_heading
 from archgen.importers.table_cells import TableCell, TableRow
 
+_MIN_GUESSED_LENGTH = 5
 HeadingMap = Mapping[str, str]
 """What the user says that headings mean: the key by folded heading."""
 _ANCHOR_KEYS = frozenset({"component", "title", "id", "from", "to", "node", "group", "input", "output"})
@@ -18,6 +19,7 @@ _UNIT_PATTERN = re.compile(
     r"(?:[(\[]\s*|\s+(?:in|en)\s+|\s*[/,]\s*|\s+)(?P<unit>k?hz|[m\u00b5\u03bcu]?s|fps|min|1/(?:s|min))\s*[)\]]?\s*\Z",
     re.IGNORECASE,
 )
+_KEYS_WITH_UNIT = frozenset({"rate", "period"})
 _BRACKET_PATTERN = re.compile(r"[(\[]\s*([A-Za-z\u00b5\u03bc/0-9]+)\s*[)\]]\s*\Z")
 _DETAIL_PATTERN = re.compile(r"[(\[].*\Z", re.DOTALL)
 
@@ -99,7 +101,9 @@ def read_headings(row: TableRow, heading_map: HeadingMap | None = None) -> Table
     if len(keys) < 2 or not _ANCHOR_KEYS & set(keys.values()) or 2 * len(keys) < len(row):  # noqa: PLR2004 - two make a table
         return None
     fixed_columns = {column for column in keys if _is_mapped(row[column], heading_map)}
-    units = {keys[column]: unit for column in keys if (unit := _unit_of_heading(row[column]))}
+    units = {
+        key: unit for column, key in keys.items() if key in _KEYS_WITH_UNIT and (unit := _unit_of_heading(row[column]))
+    }
     unknown_columns = {column: cell for column, cell in row.items() if column not in keys}
     column_by_key = {key: column for column, key in keys.items()}
     first_columns = {column: column_by_key[key] for column, key in all_keys.items() if column not in keys}
@@ -130,7 +134,9 @@ def list_spellings(text: str) -> tuple[str, ...]:
 
 def suggest_meaning(heading: str) -> str | None:
     """Return the key that an unknown heading most likely means."""
-    nearest = find_closest(fold_heading(_DETAIL_PATTERN.sub("", heading)), KEY_BY_HEADING)
+    folded = fold_heading(_DETAIL_PATTERN.sub("", heading))
+    # With one slip, a short word is close to some short word of one of the languages.
+    nearest = find_closest(folded, KEY_BY_HEADING) if len(folded) >= _MIN_GUESSED_LENGTH else None
     return KEY_BY_HEADING[nearest] if nearest else None
 
 

@@ -171,7 +171,8 @@ def _read_owners(
     project: ImportedProject, cell: TableCell, owned: ImportedComponent | ImportedGroup
 ) -> str | tuple[str, ...]:
     """Read one partner or several."""
-    names = [name.strip() for name in re.split(r"[,;/&+\n]| (?:and|und|et|y) ", cell.text) if name.strip()]
+    # Not at `&`: it stands in the names of companies.
+    names = [name.strip() for name in re.split(r"[,;/+\n]| (?:and|und|et|y) ", cell.text) if name.strip()]
     owners = tuple(dict.fromkeys(project.get_partner_id(name) for name in names or [cell.one_line]))
     if isinstance(owned, ImportedGroup):
         for owner in owners:

@@ -112,7 +112,10 @@ def _sort_diagnostics(
 ) -> tuple[Diagnostic, ...]:
     """Sort by file, table and place: the passes found them in another order."""
     # Each cell of a workbook is a place of its own, in the order in which it was read.
-    places = [*file_names, *(report.name for report in reports), *(span.file for span in project.ledger.cells)]
+    places = list(file_names)
+    for report in reports:
+        headings = [cell for known_headings in report.headings for cell in known_headings.cells.values()]
+        places += [report.name, *(cell.span.file for cell in (*headings, *report.cells))]
     number_by_place = {place: number for number, place in reversed(list(enumerate(dict.fromkeys(places))))}
     last = len(number_by_place)
     return tuple(

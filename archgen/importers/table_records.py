@@ -16,7 +16,7 @@ from archgen.importers.imported_project import ImportedProject
 from archgen.importers.row_records import TableRecord
 from archgen.importers.table_cells import TableCell, TableRow, TableSheet, make_error
 
-_NUMBER_PATTERN = re.compile(r"[-+]?[0-9][0-9 .,'\u2019]*%?\Z")
+_NUMBER_PATTERN = re.compile(r"[-+]?[0-9][0-9 .,'\u2019]*(?:[%\u20ac$\u00a3]|[A-Za-z]{1,3})?\Z")
 _SHOWN_ROWS, _SHOWN_CELLS = 3, 8
 
 
@@ -80,7 +80,9 @@ def _describe_unknown(sheet: TableSheet, heading_map: HeadingMap) -> tuple[str, 
         f'--map "{cell.quotation}={column_headings.suggest_meaning(cell.one_line) or "MEANING"}"'
         for cell in unknown[:_SHOWN_CELLS]
     ]
-    help_line = f"say what the columns mean: {' '.join(hints)}; a MEANING is one of: {', '.join(TARGETS)}"
+    help_line = (
+        f"say what the columns mean if they matter: {' '.join(hints)}; a MEANING is one of: {', '.join(TARGETS)}"
+    )
     return ", ".join(shown[:_SHOWN_ROWS]), help_line
 
 
@@ -151,16 +153,22 @@ def _skip_row(project: ImportedProject, headings: TableHeadings, row: TableRow) 
 
 def _is_total(headings: TableHeadings, row: TableRow) -> bool:
     """Return whether a row holds a word such as `Summe` and besides only numbers."""
-    words = {column: cell for column, cell in row.items() if not _NUMBER_PATTERN.match(cell.one_line)}
+    words = {
+        column: cell
+        for column, cell in row.items()
+        if not (_NUMBER_PATTERN.match(cell.one_line) or cell.text.startswith("="))
+    }
     if len(words) != 1:
         return False
     column, cell = next(iter(words.items()))
-    text = cell.one_line.rstrip(":= ")
-    if fold_heading(text) not in TOTAL_WORDS and text not in {"\u03a3", "\u2211"}:
+    text, mark, rest = cell.one_line.partition(":")
+    if fold_heading(text) not in TOTAL_WORDS and text.strip() not in {"\u03a3", "\u2211"}:
         return False
     # A component may be called `Sum`, and have a rate: a total is marked, or has numbers where no number belongs.
     number_keys = {headings.key_by_column.get(other) for other in row if other != column}
-    return text != cell.one_line or bool(number_keys - {"rate", "period", "requirement", "id"})
+    if mark:
+        return not rest or rest.strip()[0].isdigit()
+    return bool(number_keys - {"rate", "period", "requirement", "id"})
 
 
 def _read_row(

@@ -74,5 +74,9 @@ def _paragraph_texts(paragraph: etree._Element) -> Iterator[str]:
             # A tab stop's definition has the same name as a tab in the text.
             if next(element.iterancestors()).tag == f"{_WORD}r":
                 yield _LINE_BREAKS[element.tag]
-        elif next(element.iterancestors(f"{_WORD}p"), None) is paragraph:
+        # Text that was moved away stands here as well as in its new place.
+        elif (
+            next(element.iterancestors(f"{_WORD}p"), None) is paragraph
+            and next(element.iterancestors(f"{_WORD}moveFrom"), None) is None
+        ):
             yield element.text or ""

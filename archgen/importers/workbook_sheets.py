@@ -119,7 +119,8 @@ class _SheetReader:
         formula = cell.find(f"{_MAIN}f")
         if kind == "inlineStr":
             return clean_text(_text_of(cell))
-        if value is None:
+        # Programs that do not calculate write an empty value.
+        if not value:
             return clean_text(f"={formula.text or ''}") if formula is not None else ""
         if kind == "s":
             is_index = value.strip().isdecimal() and len(value) < 9  # noqa: PLR2004 - more strings than cells

@@ -97,7 +97,7 @@ CELLS = [
     "Group",
     "Component",
 ]
-FREE_TEXT = {"functionality", "description", "topic", "package"}
+FREE_TEXT = {"functionality", "description", "package"}
 
 
 def _write_table(rows: list[list[str]]) -> bytes:
