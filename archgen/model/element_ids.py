@@ -30,6 +30,7 @@ _LATIN_SPELLINGS = {
 # As in passports (ICAO 9303) and German: whoever reads `hohe` for `Höhe` reads another word. A name does not say its
 # language, so the few French and Spanish words with `ü`, and Swedish, Finnish and Turkish names, are spelled so, too.
 _UMLAUT_SPELLINGS = {"ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "œ": "oe", "Œ": "Oe", "ẞ": "Ss"}
+_CAPITAL_UMLAUT = re.compile(r"[ÄÖÜ](?![a-zäöüß])")
 _SPELLING_TABLE = str.maketrans(_LATIN_SPELLINGS | _UMLAUT_SPELLINGS)
 
 
@@ -46,6 +47,8 @@ def make_id(name: str, prefix: str) -> str:
     """
     # macOS writes an umlaut as a letter and a mark: composed first, both spellings make one id.
     composed_name = unicodedata.normalize("NFC", name)
+    # In a word of capitals both letters are: `AeOe` would be two words.
+    composed_name = _CAPITAL_UMLAUT.sub(lambda match: _UMLAUT_SPELLINGS[match[0]].upper(), composed_name)
     ascii_name = (
         unicodedata.normalize("NFKD", composed_name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
     )

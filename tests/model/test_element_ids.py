@@ -28,6 +28,8 @@ def test_all_else_is_none(text: str) -> None:
         ("Größe & Straße", "groesse_and_strasse"),
         ("Åse Łódź", "ase_lodz"),
         ("Höhe", "hoehe"),
+        ("ÄÖ ÜBERSICHT", "aeoe_uebersicht"),
+        ("RoterÖlfilter", "roter_oelfilter"),
         ("Ho\u0308he", "hoehe"),
         ("Entrée du nœud, señal", "entree_du_noeud_senal"),
         ("3D map", "group_3d_map"),
