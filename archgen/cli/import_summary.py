@@ -44,6 +44,8 @@ def _count_cells(imported: ImportResult, table: TableReport) -> str:
 
 def _describe_headings(headings: TableHeadings) -> Iterator[str]:
     """Yield each heading and what it was taken for."""
+    from archgen.importers.column_headings import write_map_option
+
     for column, cell in sorted(headings.cells.items()):
         key = headings.key_by_column.get(column)
         unit = headings.unit_by_key.get(key, "") if key else ""
@@ -52,7 +54,7 @@ def _describe_headings(headings: TableHeadings) -> Iterator[str]:
         elif headings.kind:
             yield make_visible(f"{cell.one_line} follows from the rest")
         else:
-            yield make_visible(f'{cell.one_line} is not taken (--map "{cell.one_line}=...")')
+            yield make_visible(f"{cell.one_line} is not taken ({write_map_option(cell.one_line, None)})")
 
 
 def _place_of(table: TableReport, span: Span) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -14,7 +15,7 @@ _MIN_GUESSED_LENGTH = 5
 HeadingMap = Mapping[str, str]
 """What the user says that headings mean: the key by folded heading."""
 _ANCHOR_KEYS = frozenset({"component", "title", "id", "from", "to", "node", "group", "input", "output"})
-"""A row of headings has one of these: without them nothing can be imported."""
+"""A row of headings has one of these, unless it heads a table of requirements or types."""
 _UNIT_PATTERN = re.compile(
     r"(?:[(\[]\s*|\s+(?:in|en)\s+|\s*[/,]\s*|\s+)(?P<unit>k?hz|[m\u00b5\u03bcu]?s|fps|min|1/(?:s|min))\s*[)\]]?\s*\Z",
     re.IGNORECASE,
@@ -98,7 +99,7 @@ def read_headings(row: TableRow, heading_map: HeadingMap | None = None) -> Table
     all_keys = _find_keys(row, heading_map)
     keys = _drop_repeated(row, all_keys, heading_map)
     # At least half of the cells must be headings: a row of data may hold a word like `input` or `output` by chance.
-    if len(keys) < 2 or not _ANCHOR_KEYS & set(keys.values()) or 2 * len(keys) < len(row):  # noqa: PLR2004 - two make a table
+    if len(keys) < 2 or not _has_anchor(set(keys.values())) or 2 * len(keys) < len(row):  # noqa: PLR2004 - two make a table
         return None
     fixed_columns = {column for column in keys if _is_mapped(row[column], heading_map)}
     units = {
@@ -140,6 +141,17 @@ def suggest_meaning(heading: str) -> str | None:
     return KEY_BY_HEADING[nearest] if nearest else None
 
 
+def write_map_option(heading: str, meaning: str | None) -> str:
+    """Return the option that maps a heading, as it is typed: a table of others must not put commands into a shell."""
+    text = f"{heading}={meaning or 'MEANING'}"
+    return f'--map "{text}"' if re.fullmatch(r"[\w .:,;/()=#%&+-]+", text) else f"--map {shlex.quote(text)}"
+
+
+def _has_anchor(keys: set[str]) -> bool:
+    """Return whether columns name elements: components, nodes, ports; or requirements or types with what they mean."""
+    return bool(_ANCHOR_KEYS & keys) or {"type", "message"} <= keys or {"requirement", "description"} <= keys
+
+
 def _find_keys(row: TableRow, heading_map: HeadingMap) -> dict[int, str]:
     keys = {column: key for column, cell in row.items() if (key := key_of_heading(cell.one_line, heading_map))}
     # A single letter heads a column (`De`, `A`) only opposite the other end: components are called A, too.
@@ -179,6 +191,8 @@ def _choose_component_column(keys: Mapping[int, str], fixed_columns: set[int]) -
     """Choose what names a component where no column is called so: a name, a title or an id."""
     present_keys = set(keys.values())
     connects = {"from", "to"} <= present_keys
+    if not _ANCHOR_KEYS & present_keys:
+        return dict(keys)
     # In a table of components a column `Description` usually says what each of them does.
     if "functionality" not in present_keys and not connects:
         keys = {

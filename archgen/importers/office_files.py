@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import lzma
+import struct
 import zipfile
 import zlib
 from posixpath import dirname, join, normpath
@@ -11,6 +13,8 @@ from lxml import etree
 
 from archgen.importers.table_cells import MAX_OFFICE_BYTES
 
+# What zipfile and its methods of compression raise for bytes that are not what they should be.
+_DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, RuntimeError, OSError, EOFError, ValueError, struct.error)
 _RELATION = "{http://schemas.openxmlformats.org/package/2006/relationships}Relationship"
 
 
@@ -28,9 +32,11 @@ class OfficeFile:
             raise UnreadableOfficeFileError(msg)
         try:
             self._archive = zipfile.ZipFile(io.BytesIO(data))
-        except (zipfile.BadZipFile, ValueError, NotImplementedError, OSError) as error:
+        except _DAMAGE as error:
             msg = f"the file is damaged ({error})"
             raise UnreadableOfficeFileError(msg) from None
+        # Together: many sheets, each within its limit, would take as long as one that is too large.
+        self._bytes_left = 2 * MAX_OFFICE_BYTES
         self.names = frozenset(self._archive.namelist())
 
     def read_part(self, name: str) -> etree._Element | None:
@@ -38,15 +44,17 @@ class OfficeFile:
         if name not in self.names:
             return None
         try:
+            limit = min(MAX_OFFICE_BYTES, self._bytes_left)
             with self._archive.open(name) as stream:
                 # One byte more, so that a part that is too large is seen; what its head says of its size may be a lie.
-                content = stream.read(MAX_OFFICE_BYTES + 1)
-            if len(content) > MAX_OFFICE_BYTES:
-                msg = f"its part {name} is larger than {MAX_OFFICE_BYTES // 1024 // 1024} MiB"
+                content = stream.read(limit + 1)
+            self._bytes_left -= len(content)
+            if len(content) > limit:
+                msg = f"its part {name} is too large: at most {MAX_OFFICE_BYTES // 1024 // 1024} MiB of a part are read"
                 raise UnreadableOfficeFileError(msg)
             parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
             return etree.fromstring(content, parser)
-        except (etree.XMLSyntaxError, zipfile.BadZipFile, zlib.error, RuntimeError, OSError, ValueError) as error:
+        except (etree.XMLSyntaxError, *_DAMAGE) as error:
             msg = f"its part {name} cannot be read ({error})"
             raise UnreadableOfficeFileError(msg) from None
 

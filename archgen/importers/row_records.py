@@ -12,7 +12,7 @@ from archgen.importers.imported_project import ImportedComponent, ImportedProjec
 from archgen.importers.table_cells import TableCell, TableRow
 
 _KIND_SPELLINGS = {
-    "connection": "connection; link; flow; edge; data flow; interface; arrow; Verbindung; Verknüpfung; Datenfluss; liaison; lien; "
+    "connection": "connection; signal; signal flow; link; flow; edge; data flow; interface; arrow; Verbindung; Verknüpfung; Datenfluss; liaison; lien; "
     "connexion; flux; conexión; enlace; flujo",
     "component": "function; Funktion; fonction; función",
 }

@@ -77,7 +77,7 @@ def _describe_unknown(sheet: TableSheet, heading_map: HeadingMap) -> tuple[str, 
     likely_row = max(rows, key=weigh_row)
     unknown = [cell for cell in likely_row.values() if not column_headings.key_of_heading(cell.one_line, heading_map)]
     hints = [
-        f'--map "{cell.quotation}={column_headings.suggest_meaning(cell.one_line) or "MEANING"}"'
+        column_headings.write_map_option(cell.one_line, column_headings.suggest_meaning(cell.one_line))
         for cell in unknown[:_SHOWN_CELLS]
     ]
     help_line = (
@@ -227,9 +227,8 @@ def _report_unknown_columns(project: ImportedProject, report: TableReport, headi
         else:
             message = f"the column `{heading.quotation}` is not known: {lost_phrase} not taken"
         guess = None if first_column is not None else column_headings.suggest_meaning(heading.one_line)
-        help_line = (
-            f'{f"did you mean {guess}? " if guess else ""}--map "{heading.one_line}={guess or "MEANING"}" takes it'
-        )
+        option = column_headings.write_map_option(heading.one_line, guess)
+        help_line = f"{f'did you mean {guess}? ' if guess else ''}{option} takes it"
         help_line += f"; a MEANING is one of: {', '.join(TARGETS)}"
         project.add_warning("unknown-key", message, heading.span, help_line)
 

@@ -11,7 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.importers.cell_formats import CellFormats
 from archgen.importers.office_files import OfficeFile, UnreadableOfficeFileError
-from archgen.importers.table_cells import TableCell, TableSheet, clean_text
+from archgen.importers.table_cells import MAX_CELLS, TableCell, TableSheet, clean_text
 
 _MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 _STRICT_MAIN = "http://purl.oclc.org/ooxml/spreadsheetml/main"
@@ -102,8 +102,7 @@ class _SheetReader:
     def _number_rows(self, root: etree._Element) -> Iterator[tuple[int, etree._Element]]:
         number = 0
         for row in root.iter(f"{_MAIN}row"):
-            written = row.get("r", "")
-            number = int(written) if written.isdecimal() and len(written) < 8 else number + 1  # noqa: PLR2004 - 1,048,576 rows
+            number = _read_number(row.get("r", "")) or number + 1
             yield number, row
 
     def _number_cells(self, row: etree._Element) -> Iterator[tuple[int, etree._Element]]:
@@ -133,12 +132,15 @@ class _SheetReader:
         """Return which cells below the first one of a merged range show it, by row and column."""
         # Only downwards: across, one heading or banner would become the value of every column.
         covered: dict[int, dict[int, tuple[int, int]]] = {}
+        room = MAX_CELLS
         for merged in root.iter(f"{_MAIN}mergeCell"):
             first, _, last = merged.get("ref", "").partition(":")
             begin, end = _split_address(first), _split_address(last)
             if begin and end:
-                # A hostile range may name all rows: no more than can have cells are covered.
-                for number in range(begin[0] + 1, min(end[0], begin[0] + 10_000) + 1):
+                # A hostile range may name all rows, and there may be many: no more than can have cells are covered.
+                last_row = min(end[0], begin[0] + room)
+                room -= max(0, last_row - begin[0])
+                for number in range(begin[0] + 1, last_row + 1):
                     covered.setdefault(number, {})[begin[1]] = begin
         return covered
 
@@ -146,10 +148,15 @@ class _SheetReader:
         filled = {column for row in self.sheet.rows for column in row}
         hidden = [column for column in root.iter(f"{_MAIN}col") if column.get("hidden") in {"1", "true"}]
         for element in hidden:
-            first, last = int(element.get("min", "1")) - 1, int(element.get("max", "1")) - 1
+            first, last = _read_number(element.get("min", "")) - 1, _read_number(element.get("max", "")) - 1
             for column in sorted(column for column in filled if first <= column <= last):
                 message = f"column {_column_letters(column)} is hidden, and read like the others"
                 _add_note(self._diagnostics, message, self.sheet.name)
+
+
+def _read_number(text: str) -> int:
+    """Return the number of a row or column; 0 where there is none."""
+    return int(text) if text.isascii() and text.isdecimal() and len(text) < 8 else 0  # noqa: PLR2004 - 1,048,576 rows
 
 
 def _split_address(address: str) -> tuple[int, int] | None:

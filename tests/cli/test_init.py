@@ -298,7 +298,7 @@ def test_a_table_in_a_partners_language_says_what_became_of_it(run: Run, tmp_pat
     assert ran.status == 0, ran.err
     assert ran.out.splitlines()[:6] == [
         f"{table}: 6 cells below headings: 2 taken, 4 not taken",
-        '  headings: Hauptgruppe = group, Komponente = component, Preis is not taken (--map "Preis=...")',
+        '  headings: Hauptgruppe = group, Komponente = component, Preis is not taken (--map "Preis=MEANING")',
         "  not taken: 2:13 `3 EUR`: its column `Preis` was not taken",
         "  not taken: 3:8 `1`: it stands in a row of totals",
         "  not taken: 3:10 `3 EUR`: it stands in a row of totals",

@@ -17,6 +17,7 @@ from archgen.importers.cell_ledger import CellLedger, CellUse
 from archgen.importers.table_cells import TableCell
 from archgen.start import start_answers, starter_slices
 from tests.property_sizes import count_examples
+from tests.workbooks import make_workbook
 
 HEADINGS = [
     "Group",
@@ -168,6 +169,25 @@ def test_each_cell_of_any_table_is_taken_or_shown(headings: list[str], rows: lis
     others = sum(len(table.cells) for table in imported.tables)
     assert in_headings + placeholders + others == len(headings) + sum(bool(cell) for row in rows for cell in row)
     assert find_silent_losses(imported) == []
+
+
+@settings(max_examples=count_examples(60), deadline=None)
+@given(
+    st.lists(st.sampled_from(HEADINGS), min_size=2, max_size=8, unique=True),
+    st.lists(st.lists(st.sampled_from(["", "0", *CELLS]), max_size=9), min_size=1, max_size=7),
+)
+def test_each_cell_of_any_workbook_is_taken_or_shown(headings: list[str], rows: list[list[str]]) -> None:
+    written = [
+        "".join(f'<c t="inlineStr"><is><t>{cell}</t></is></c>' if cell else "<c/>" for cell in row)
+        for row in [headings, *rows]
+    ]
+    sheet = f"<sheetData>{''.join(f'<row>{cells}</row>' for cells in written)}</sheetData>"
+    imported = importers.import_tables([("t.xlsx", make_workbook({"S": sheet}))], "jazzy")
+    if imported.data:
+        assert find_silent_losses(imported) == []
+        in_headings = sum(len(known.cells) for table in imported.tables for known in table.headings)
+        others = sum(len(table.cells) + len(table.placeholders) for table in imported.tables)
+        assert in_headings + others == len(headings) + sum(bool(cell) for row in rows for cell in row)
 
 
 def test_what_is_said_to_be_taken_must_stand_in_the_data() -> None:

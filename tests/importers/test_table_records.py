@@ -57,6 +57,9 @@ def _components(imported: importers.ImportResult) -> dict[str, list[str]]:
         # What flows, and of which type it is.
         ("Group,Component\nG,A\nG,B\n\nFrom,Signal,To,Type\nA,Scan,B,Laser scan\n", []),
         ("Group,Component,Lead partner\nG,A,Lab\n", []),
+        # Requirements and types may have tables of their own.
+        ("Requirement,Description\nR-1,It stops\n\nGroup,Component,Requirement\nG,A,R-1\n", []),
+        ("Type,Message\nScan,sensor_msgs/LaserScan\n\nGroup,Component,Outputs\nG,A,Scan\n", []),
         ("Group,Component,Owner\nG,A,Lab\nG,A,Lab\n", []),
         (
             "Group,Component,Description,Owner,Rate\nG,A,Looks,Lab,1 Hz\nG,A,Sees,Bal,2 Hz\n",
@@ -195,7 +198,7 @@ def test_the_summary_lists_each_cell_of_an_unknown_column() -> None:
     imported = _read("Group,Component,Price,Rate [Hz]\nG,A,3 EUR,30\nG,B,tbd,5\nG,C,4 EUR,\n")
     assert list(render_import_summary(imported)) == [
         "t.csv: 11 cells below headings: 8 taken, 2 not taken, 1 left out (says nothing yet)",
-        '  headings: Group = group, Component = component, Price is not taken (--map "Price=..."), Rate [Hz] = rate in Hz',
+        '  headings: Group = group, Component = component, Price is not taken (--map "Price=MEANING"), Rate [Hz] = rate in Hz',
         "  not taken: 2:5 `3 EUR`: its column `Price` was not taken",
         "  not taken: 4:5 `4 EUR`: its column `Price` was not taken",
     ]
@@ -216,3 +219,9 @@ def test_one_table_in_four_languages_is_one_project(text: str) -> None:
     camera, regulator = imported.data["groups"]["g"]["components"].values()
     assert (camera["inputs"], camera["outputs"]) == ({}, {"bild": "Bild"})
     assert (len(regulator["inputs"]), regulator["outputs"]) == (1, {})
+
+
+def test_a_hostile_heading_puts_no_command_into_the_option_to_type() -> None:
+    (warning,) = _read("Group,Component,$(reboot)\nG,A,x\n").diagnostics
+    assert warning.help is not None
+    assert warning.help.startswith("--map '$(reboot)=MEANING' takes it")
