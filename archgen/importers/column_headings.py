@@ -114,6 +114,10 @@ def read_headings(row: TableRow, heading_map: HeadingMap | None = None) -> Table
 
 def read_new_headings(row: TableRow, heading_map: HeadingMap | None = None) -> TableHeadings | None:
     """Read a row right below data as new headings: every cell of it must be a known heading."""
+    # Nearly every row is data: one unknown cell says so, and the others need no look.
+    is_listed = tuple(cell.text for _, cell in sorted(row.items())) in LIST_TABLES
+    if not is_listed and not all(key_of_heading(cell.one_line, heading_map) for cell in row.values()):
+        return None
     new_headings = read_headings(row, heading_map)
     return new_headings if new_headings and (new_headings.kind or not new_headings.unknown_columns) else None
 

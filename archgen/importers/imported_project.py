@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -132,7 +133,7 @@ class ImportedProject:
             None,
         )
         if group is None:
-            group = ImportedGroup(self._make_free_id("group", name, span, set(self.groups)), name, span)
+            group = ImportedGroup(self._make_free_id("group", name, span, self.groups.keys()), name, span)
             self.groups[group.id] = group
             self._id_by_name[f"group {fold_name(name)}"] = group.id
         return group
@@ -145,7 +146,7 @@ class ImportedProject:
             (candidate for candidate in self.find_components(name) if candidate.group == group.id), None
         ) or group.components.get(name)
         if component is None:
-            new_id = self._make_free_id("component", wanted_id or name, span, set(group.components))
+            new_id = self._make_free_id("component", wanted_id or name, span, group.components.keys())
             component = group.components[new_id] = ImportedComponent(group.id, new_id, name, span, wanted_id)
             self._components_by_name.setdefault(fold_name(name), []).append(component)
             self._components_by_id.setdefault(new_id, []).append(component)
@@ -211,7 +212,7 @@ class ImportedProject:
         near = find_closest(fold_name(name), name_by_folded)
         return f"did you mean `{name_by_folded[near]}`? " if near and near != fold_name(name) else ""
 
-    def _make_free_id(self, kind: str, name: str, span: Span, taken_ids: set[str]) -> str:
+    def _make_free_id(self, kind: str, name: str, span: Span, taken_ids: AbstractSet[str]) -> str:
         """Return a free id for a name; a note says where it differs from what the name would give."""
         wanted_id = element_ids.make_id(name, kind)
         free_id = element_ids.make_unique_id(wanted_id, taken_ids)

@@ -6,6 +6,7 @@ import hashlib
 import re
 import unicodedata
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 
 ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
 """The files in which elements are written, by kind (`group`, `component`, `node`) and complete id, in order of appearance."""
@@ -62,7 +63,7 @@ def make_id(name: str, prefix: str) -> str:
     return element_id
 
 
-def make_unique_id(wanted_id: str, used_ids: frozenset[str] | set[str]) -> str:
+def make_unique_id(wanted_id: str, used_ids: AbstractSet[str]) -> str:
     """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ..."""
     element_id, number = wanted_id, 2
     while element_id in used_ids:
