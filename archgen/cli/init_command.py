@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,10 +47,18 @@ if TYPE_CHECKING:
 @click.option(
     "--from",
     "tables",
-    metavar="FILE.csv",
+    metavar="FILE",
     multiple=True,
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Start from tables of components and connections, as spreadsheets export them; `-` is the standard input.",
+    help="Start from tables of components and connections: CSV, .xlsx or .docx; `-` is the standard input. May be "
+    "repeated.",
+)
+@click.option(
+    "--map",
+    "headings",
+    metavar="HEADING=MEANING",
+    multiple=True,
+    help='What a heading of a table means, such as "Baugruppe=group"; may be repeated.',
 )
 @click.option("-y", "--yes", is_flag=True, help="Ask nothing: take the defaults for what no flag says.")
 def command(  # noqa: PLR0913, PLR0917 - one for each option
@@ -60,6 +69,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     distro: str | None,
     ci: str | None,
     tables: tuple[Path, ...],
+    headings: tuple[str, ...],
     *,
     yes: bool,
 ) -> None:
@@ -77,6 +87,10 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if tables and groups:
         msg = "--from takes the groups from the table: leave out --group"
         raise click.UsageError(msg)
+    if headings and not tables:
+        msg = "--map says what the headings of a table mean: it needs --from"
+        raise click.UsageError(msg)
+    heading_map = _parse_headings(headings)
     answers = _gather_answers(
         target, title=title, partners=partners, groups=groups, distro=distro, forge=ci or "github"
     )
@@ -88,7 +102,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         answers = init_questions.ask_questions(
             answers, frozenset(key for key, value in flag_values.items() if value), KNOWN_DISTROS
         )
-    imported = _import_tables(tables, answers.distro) if tables else None
+    imported = _import_tables(tables, answers.distro, heading_map) if tables else None
     if imported:
         answers = add_partners(answers, imported.data.get("partners", {}))
     _write_project(target, answers, imported)
@@ -113,19 +127,37 @@ def _gather_answers(target: Path, **flags: Any) -> StartAnswers:  # noqa: ANN401
         raise click.UsageError(make_visible(str(error))) from None
 
 
-def _import_tables(tables: tuple[Path, ...], distro: str) -> ImportResult:
+def _parse_headings(headings: tuple[str, ...]) -> Mapping[str, str]:
+    from archgen.diagnostics.safe_text import make_visible
+
+    if not headings:
+        return {}
+    from archgen.importers import parse_heading_map
+
+    try:
+        return parse_heading_map(headings)
+    except ValueError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
+def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[str, str]) -> ImportResult:
     """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
     from archgen import importers
     from archgen.importers import MAX_BYTES
 
     imported = importers.import_tables(
-        [(str(path), command_support.read_input(path, MAX_BYTES)) for path in tables], distro
+        [(str(path), command_support.read_input(path, MAX_BYTES)) for path in tables], distro, heading_map
     )
     if imported.diagnostics:
         command_support.print_excerpts(imported.diagnostics, imported.sources, sys.stderr)
     if not imported.data:
         click.echo("Nothing was written.", err=True)
         sys.exit(1)
+    from archgen.cli.import_summary import render_import_summary
+
+    for line in render_import_summary(imported):
+        click.echo(line)
+    click.echo()
     return imported
 
 
@@ -164,12 +196,15 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
     """Print what there is now, and what comes next."""
     from archgen.emit.terminal.findings_text import format_summary
 
-    size = (
-        f"{len(checked_project.architecture.groups)} groups, {len(checked_project.architecture.components)} components"
-    )
+    architecture = checked_project.architecture
+    size = f"{_count_things(len(architecture.groups), 'group')}, {_count_things(len(architecture.components), 'component')}"
     click.echo(
-        f"\n{checked_project.architecture.project.title}: {size}; archgen check says: {format_summary(checked_project.findings)}."
+        f"\n{architecture.project.title}: {size}; archgen check says: {format_summary(checked_project.findings)}."
     )
+    if checked_project.findings:
+        rule_counts = Counter(finding.rule for finding in checked_project.findings)
+        sorted_rules = sorted(rule_counts, key=lambda rule: (-rule_counts[rule], rule))
+        click.echo(f"By rule: {', '.join(f'{rule_counts[rule]} {rule}' for rule in sorted_rules)}.")
     if project_plan.repository_folder != target.resolve():
         click.echo(f"The repository begins at {project_plan.repository_folder}: what the forge reads stands there.")
     if project_plan.reviewers_missing:
@@ -178,3 +213,7 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
         )
     change_folder = "" if target.resolve() == Path.cwd() else f"cd {shlex.quote(str(target))}; "
     click.echo(f"Now: {change_folder}archgen check, then archgen build. README.md says how to go on.")
+
+
+def _count_things(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' * (count != 1)}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from archgen.importers import cell_values, port_lists
+from archgen.importers import cell_values, declaration_rows, port_lists
 from archgen.importers.imported_project import UNSORTED, ImportedComponent, ImportedInput, ImportedProject
 from archgen.importers.row_records import TableRecord
 from archgen.importers.table_cells import TableCell
@@ -35,26 +35,51 @@ def import_connection(project: ImportedProject, row: TableRecord) -> None:
     source_cell = row.cell_below("from") or (row.cell_below("component") if row.cell_below("to") else None)
     target_cell = row.cell_below("to") or (row.cell_below("component") if row.cell_below("from") else None)
     if source_cell is None and target_cell is None:
-        return  # a formula stood there, and was said
+        row.is_lost = True  # a formula stood there, and was said
+        return
     source = _find_end(project, row, source_cell, "from_group") if source_cell else None
     target = _find_end(project, row, target_cell, "to_group") if target_cell else None
     if (source_cell and source is None) or (target_cell and target is None):
+        row.is_lost = True
         return
     _report_open_input(project, row, source, target)
     type_name = _read_type(project, row)
     output_id = _resolve_output(project, row, source, type_name) if source else ""
     # `import_node_row` comes later, and needs the component and output that this row is about.
     row.component = source.component if source else None
-    row.cells["output"] = TableCell(output_id, row.first_cell.span)
+    row.output_id = output_id
     if target:
         _connect_input(project, row, (source, target), DataFlow(output_id, type_name))
-    rate = row.cell_below("rate") or row.cell_below("period")
-    if rate and source:
-        unit = row.units.get("rate" if row.cell_below("rate") else "period", "Hz" if row.cell_below("rate") else "ms")
-        _import_rate(project, source.component, rate, unit)
-    if row.cell_below("requirement"):
-        message = "requirements of a connection were not taken: components have them"
-        project.add_warning("wrong-value", message, row.cells["requirement"].span, "write them in a component's row")
+    _take_ends(project, row, (source, target), (source_cell, target_cell), type_name)
+    if source:
+        declaration_rows.import_timing(project, row, source.component)
+    if requirement := row.cell_below("requirement"):
+        message = f"`{requirement.quotation}`: requirements of a connection were not taken: components have them"
+        project.reject_cell("wrong-value", message, requirement, "write them in a component's row")
+
+
+def _take_ends(
+    project: ImportedProject,
+    row: TableRecord,
+    ends: tuple[ConnectionEnd | None, ConnectionEnd | None],
+    cells: tuple[TableCell | None, TableCell | None],
+    type_name: str | None,
+) -> None:
+    """Note what the cells of a connection were taken for."""
+    source, target = ends
+    if source and cells[0]:
+        project.take_cell(cells[0], "from", target.component if target else source.component, source.component.id)
+    if target and cells[1]:
+        project.take_cell(cells[1], "to", target.component, target.component.id)
+    carrier = source.component if source else target.component if target else None
+    type_cell = row.cell_below("type")
+    if type_cell is None or type_cell.span in project.ledger.reasons:
+        type_cell = row.cell_below("message")
+    if type_cell and type_name and carrier:
+        project.take_cell(type_cell, "type", carrier, type_name)
+    output = row.cell_below("output")
+    if output and source and row.output_id:
+        project.take_cell(output, "output", source.component, row.output_id)
 
 
 def _report_open_input(
@@ -72,23 +97,18 @@ def _find_end(project: ImportedProject, row: TableRecord, cell: TableCell, group
     name = cell.one_line
     namesakes = project.find_components(name)
     if row.cell_below(group_key):
-        return ConnectionEnd(
-            project.get_component(project.get_group(row.cells[group_key].one_line, cell.span), name, cell.span), ""
-        )
+        return ConnectionEnd(project.get_component(project.get_group(row.cells[group_key]), name, cell.span), "")
     # A component of the row's own group comes before namesakes in other groups.
     candidates = [
-        component
-        for component in namesakes
-        if group_cell and component.group == project.get_group(group_cell.one_line, group_cell.span).id
+        component for component in namesakes if group_cell and component.group == project.get_group(group_cell).id
     ] or namesakes
     if len(candidates) == 1:
         return ConnectionEnd(candidates[0], "")
     if candidates:
         groups = ", ".join(f"`{component.group}`" for component in candidates)
         message = f"`{name}` is a component in several groups ({groups}): this row was not taken"
-        project.add_warning(
-            "ambiguous-reference", message, cell.span, f"write `{candidates[0].group}.{candidates[0].id}`"
-        )
+        help_line = f"write `{candidates[0].group}.{candidates[0].id}`"
+        project.reject_cell("ambiguous-reference", message, cell, help_line)
         return None
     component_and_port = project.resolve_path(name)
     if component_and_port:
@@ -99,7 +119,7 @@ def _find_end(project: ImportedProject, row: TableRecord, cell: TableCell, group
 def _add_component(project: ImportedProject, cell: TableCell, group_cell: TableCell | None) -> ImportedComponent:
     """Add a component that no row declares."""
     guess = project.suggest_component(cell.one_line)
-    group = project.get_group(group_cell.one_line if group_cell else UNSORTED, cell.span)
+    group = project.get_group(group_cell) if group_cell else project.get_named_group(UNSORTED, cell.span)
     component = project.get_component(group, cell.one_line, cell.span)
     if project.is_complete:
         message = f"no row declares the component `{cell.one_line}`: it was added to the group `{group.id}`"
@@ -164,20 +184,19 @@ def _connect_input(
             set(target.component.inputs),
         )
     port = target.component.inputs.setdefault(input_id, ImportedInput())
+    if cell:
+        project.take_cell(cell, "input", target.component, input_id)
     if path and path not in port.sources:
         port.sources.append(path)
     elif not path and type_name:
         port.type = port.type or type_name
     description = row.cell_below("description") or row.cell_below("functionality")
-    if description and port.description is None:
+    if description and port.description in {None, description.one_line}:
         port.description = description.one_line
-    elif description and port.description != description.one_line:
-        project.add_warning(
-            "conflicting-values",
-            f"another row describes the input `{input_id}`: this was not taken",
-            description.span,
-            "say it once",
-        )
+        project.take_cell(description, "description", target.component, description.one_line)
+    elif description:
+        message = f"another row describes the input `{input_id}`: `{description.quotation}` was not taken"
+        project.reject_cell("conflicting-values", message, description, "say it once")
 
 
 def _carries_other_type(project: ImportedProject, existing: ImportedInput, type_name: str | None) -> bool:
@@ -196,16 +215,6 @@ def _path_of(source: ConnectionEnd, output_id: str) -> tuple[str, ...]:
     return (component.group, component.id, output_id) if output_id else (component.group, component.id)
 
 
-def _import_rate(project: ImportedProject, component: ImportedComponent, cell: TableCell, unit: str) -> None:
-    """Set a component's rate; a different one from an earlier row stays."""
-    timing = cell_values.read_timing(project, cell, unit)
-    if timing is not None and component.values.setdefault("timing", timing) != timing:
-        message = f"`{component.name}` has another rate already: this was not taken"
-        project.add_warning(
-            "conflicting-values", message, cell.span, "a component has one rate; slower outputs are written by hand"
-        )
-
-
 def _import_listed_connection(project: ImportedProject, row: TableRecord) -> None:
     """Import a connection that `archgen list` wrote: complete paths at both ends."""
     source, target = row.cell_below("from"), row.cell_below("to")
@@ -214,12 +223,14 @@ def _import_listed_connection(project: ImportedProject, row: TableRecord) -> Non
     path = tuple(source.one_line.split("."))
     group, _, inner_path = target.one_line.partition(".")
     component, _, port = inner_path.partition(".")
-    reader = project.get_component(project.get_group(group, target.span), component, target.span)
+    reader = project.get_component(project.get_named_group(group, target.span), component, target.span)
+    project.take_cell(target, "to", reader, port)
+    project.take_cell(source, "from", reader, path[-1])
     existing = reader.inputs.setdefault(port, ImportedInput())
     if path not in existing.sources:
         existing.sources.append(path)
     if len(path) > 1:
-        producer = project.get_component(project.get_group(path[0], source.span), path[1], source.span)
+        producer = project.get_component(project.get_named_group(path[0], source.span), path[1], source.span)
         type_name = _read_type(project, row) if row.cell_below("type") and row.cells["type"].one_line != "?" else None
         if len(path) == 3:  # noqa: PLR2004 - group, component, output
             project.add_output(producer, path[2], producer.outputs.get(path[2]) or type_name)

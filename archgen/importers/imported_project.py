@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.importers.cell_ledger import CellLedger, ElementPath
+from archgen.importers.table_cells import TableCell
 from archgen.model import element_ids
 
 UNSORTED = "unsorted"
@@ -34,12 +37,21 @@ class ImportedComponent:
     id: str
     name: str
     span: Span
+    wanted_id: str = ""
+    """The id that a table gives it, as it is written there."""
     values: dict[str, object] = field(default_factory=dict)
     requirements: list[str] = field(default_factory=list)
     inputs: dict[str, ImportedInput] = field(default_factory=dict)
     outputs: dict[str, str | None] = field(default_factory=dict)
     declared_empty: set[str] = field(default_factory=set)
     """`inputs` or `outputs`, where the table says that there are none."""
+    untyped_outputs: set[str] = field(default_factory=set)
+    """The outputs that are listed without a type: their names stand for it until another row gives one."""
+
+    @property
+    def path(self) -> ElementPath:
+        """Where the component stands in the data."""
+        return ("groups", self.group, "components", self.id)
 
 
 @dataclass(slots=True)
@@ -52,6 +64,11 @@ class ImportedGroup:
     values: dict[str, object] = field(default_factory=dict)
     components: dict[str, ImportedComponent] = field(default_factory=dict)
 
+    @property
+    def path(self) -> ElementPath:
+        """Where the group stands in the data."""
+        return ("groups", self.id)
+
 
 @dataclass(slots=True)
 class ImportedProject:
@@ -63,8 +80,9 @@ class ImportedProject:
     requirements: dict[str, str | None] = field(default_factory=dict)
     partners: dict[str, str] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    first_spans: dict[str, Span] = field(default_factory=dict)
-    """Where a type or message was first written."""
+    ledger: CellLedger = field(default_factory=CellLedger)
+    message_cells: dict[str, list[TableCell]] = field(default_factory=dict)
+    """Where each type or message is written."""
     wrong_messages: set[str] = field(default_factory=set)
     """Messages that do not exist."""
     is_complete: bool = False
@@ -77,6 +95,19 @@ class ImportedProject:
     _components_by_name: dict[str, list[ImportedComponent]] = field(default_factory=dict)
     _components_by_id: dict[str, list[ImportedComponent]] = field(default_factory=dict)
 
+    def reject_cell(self, rule: str, message: str, cell: TableCell, help_line: str) -> None:
+        """Add a warning about a cell, or a part of it, that was not taken."""
+        self.ledger.reject_cell(cell, message)
+        self.add_warning(rule, message, cell.span, help_line)
+
+    def take_cell(self, cell: TableCell, key: str, component: ImportedComponent, words: str = "") -> None:
+        """Note that a cell was taken for a key of a component."""
+        self.ledger.take_cell(cell, key, component.path, words)
+
+    def add_message_cell(self, name: str, cell: TableCell) -> None:
+        """Note that a cell names a type or a message."""
+        self.message_cells.setdefault(name, []).append(cell)
+
     def add_warning(self, rule: str, message: str, span: Span, help_line: str, *labels: Label) -> None:
         """Add a warning about something that was not imported, or imported otherwise than written."""
         self.diagnostics.append(Diagnostic(rule, message, span, Severity.WARNING, labels, help_line))
@@ -85,7 +116,13 @@ class ImportedProject:
         """Add a note about a decision."""
         self.diagnostics.append(Diagnostic("wrong-value", message, span, Severity.NOTE, labels, help_line))
 
-    def get_group(self, name: str, span: Span) -> ImportedGroup:
+    def get_group(self, cell: TableCell) -> ImportedGroup:
+        """Return the group that a cell names, a new one where there is none."""
+        group = self.get_named_group(cell.one_line, cell.span)
+        self.ledger.take_cell(cell, "group", group.path, group.id)
+        return group
+
+    def get_named_group(self, name: str, span: Span) -> ImportedGroup:
         """Return the group of a name, a new one where there is none."""
         group = next(
             (
@@ -96,7 +133,7 @@ class ImportedProject:
             None,
         )
         if group is None:
-            group = ImportedGroup(self._make_free_id("group", name, span, set(self.groups)), name, span)
+            group = ImportedGroup(self._make_free_id("group", name, span, self.groups.keys()), name, span)
             self.groups[group.id] = group
             self._id_by_name[f"group {fold_name(name)}"] = group.id
         return group
@@ -107,10 +144,10 @@ class ImportedProject:
         """
         component = next(
             (candidate for candidate in self.find_components(name) if candidate.group == group.id), None
-        ) or group.components.get(wanted_id or name)
+        ) or group.components.get(name)
         if component is None:
-            new_id = self._make_free_id("component", wanted_id or name, span, set(group.components))
-            component = group.components[new_id] = ImportedComponent(group.id, new_id, name, span)
+            new_id = self._make_free_id("component", wanted_id or name, span, group.components.keys())
+            component = group.components[new_id] = ImportedComponent(group.id, new_id, name, span, wanted_id)
             self._components_by_name.setdefault(fold_name(name), []).append(component)
             self._components_by_id.setdefault(new_id, []).append(component)
         return component
@@ -175,7 +212,7 @@ class ImportedProject:
         near = find_closest(fold_name(name), name_by_folded)
         return f"did you mean `{name_by_folded[near]}`? " if near and near != fold_name(name) else ""
 
-    def _make_free_id(self, kind: str, name: str, span: Span, taken_ids: set[str]) -> str:
+    def _make_free_id(self, kind: str, name: str, span: Span, taken_ids: AbstractSet[str]) -> str:
         """Return a free id for a name; a note says where it differs from what the name would give."""
         wanted_id = element_ids.make_id(name, kind)
         free_id = element_ids.make_unique_id(wanted_id, taken_ids)

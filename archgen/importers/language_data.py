@@ -47,6 +47,7 @@ def _report_left_out(project: ImportedProject, groups: dict[str, ImportedGroup])
             project.add_warning(
                 "missing-key", f"the group `{group.name}` has no component and was not taken", group.span, "add one"
             )
+            project.ledger.list_element(group.path, "its group has no component")
     if UNSORTED in groups:
         count = len(groups[UNSORTED].components)
         message = (
@@ -134,7 +135,10 @@ def _check_messages(project: ImportedProject, distro: str | None) -> None:
             nearest = known_interfaces.find_nearest(message)
             help_line = f"did you mean `{nearest}`?" if nearest else "look the name up"
             text = f"{known_interfaces.distro or 'ROS'} has no message `{message}`: it was not taken"
-            project.add_warning("unknown-message", text, project.first_spans[message], help_line)
+            first_cell, *other_cells = project.message_cells[message]
+            project.reject_cell("unknown-message", text, first_cell, help_line)
+            for cell in other_cells:
+                project.ledger.list_cell(cell, f"there is no message `{message}`")
             project.wrong_messages.add(message)
     for component in project.all_components():
         component.outputs = {

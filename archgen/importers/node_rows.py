@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from archgen.importers import cell_values
+from archgen.importers import cell_values, port_lists
 from archgen.importers.imported_project import ImportedComponent, ImportedProject
 from archgen.importers.row_records import TableRecord
 from archgen.importers.table_cells import TableCell
 from archgen.model import element_ids
 
-_STATUSES = frozenset({"planned", "existing", "adapted"})
+_STATUS_SPELLINGS = {
+    "planned": "planned; geplant; in planung; prévu; prévue; planifié; planificado; planeado; previsto",
+    "existing": "existing; vorhanden; bestehend; fertig; existant; existante; existente",
+    "adapted": "adapted; angepasst; adapté; adaptée; adaptado; adaptada",
+}
+_STATUS_BY_WORD = {word.strip(): status for status, words in _STATUS_SPELLINGS.items() for word in words.split(";")}
 
 
 def import_node_row(project: ImportedProject, row: TableRecord) -> None:
@@ -23,34 +28,31 @@ def import_node_row(project: ImportedProject, row: TableRecord) -> None:
         row.component = next(iter(project.find_components(row.cells["component"].one_line)), None)
     if row.component is None:
         first_cell = next(row.cells[key] for key in ("node", "topic", "package", "status") if key in row.cells)
-        project.add_warning(
-            "missing-key", "no component stands beside this: it was not taken", first_cell.span, "name the component"
-        )
+        message = f"`{first_cell.quotation}`: no component stands beside this: it was not taken"
+        project.reject_cell("missing-key", message, first_cell, "name the component")
+        row.is_lost = True
         return
-    node = _get_node(project, row, row.component)
+    name = _get_node(project, row, row.component)
     cell = row.cell_below("package")
     if cell and (package := cell_values.read_package(project, cell)):
-        _set_node_key(project, node, "package", package, cell)
+        _set_node_key(project, name, "package", package, cell)
     status = row.cell_below("status")
-    if status and status.one_line.casefold() in _STATUSES:
-        node["status"] = status.one_line.casefold()
+    if status and (word := _STATUS_BY_WORD.get(status.one_line.casefold())):
+        _set_node_key(project, name, "status", word, status)
     elif status:
-        project.add_warning(
-            "wrong-value",
-            f"`{status.one_line}` is no status and was not taken",
-            status.span,
-            "write planned, adapted or existing",
-        )
+        message = f"`{status.quotation}` is no status and was not taken"
+        project.reject_cell("wrong-value", message, status, "write planned, adapted or existing")
     if row.cell_below("topic"):
-        _import_topic(project, row, row.component, node)
+        _import_topics(project, row, row.component, name)
 
 
-def _set_node_key(project: ImportedProject, node: dict[str, object], key: str, value: str, cell: TableCell) -> None:
+def _set_node_key(project: ImportedProject, name: str, key: str, value: str, cell: TableCell) -> None:
     """Set a node's key; a different value from an earlier row stays."""
-    if node.setdefault(key, value) != value:
-        project.add_warning(
-            "conflicting-values", f"the node has another {key} already: this was not taken", cell.span, "say it once"
-        )
+    if project.nodes[name].setdefault(key, value) == value:
+        project.ledger.take_cell(cell, key, ("nodes", name), value)
+        return
+    message = f"the node `{name}` has another {key} already: `{cell.quotation}` was not taken"
+    project.reject_cell("conflicting-values", message, cell, "say it once")
 
 
 def _import_listed_node(project: ImportedProject, row: TableRecord) -> None:
@@ -61,16 +63,18 @@ def _import_listed_node(project: ImportedProject, row: TableRecord) -> None:
     node: dict[str, object] = {"implements": [part.strip() for part in implements.one_line.split(",")]}
     node |= {key: row.cells[key].one_line for key in ("package", "status") if key in row.cells}
     project.nodes[cell.one_line] = node
+    for key in {"node", "component", "package", "status"} & set(row.cells):
+        project.ledger.take_cell(row.cells[key], key, ("nodes", cell.one_line))
 
 
-def _get_node(project: ImportedProject, row: TableRecord, component: ImportedComponent) -> dict[str, object]:
-    """Return the node of a row: the one it names, the component's first, or a new one called like the component."""
+def _get_node(project: ImportedProject, row: TableRecord, component: ImportedComponent) -> str:
+    """Return the id of the node of a row: the one it names, the component's first, or a new one called like the component."""
     path = f"{component.group}.{component.id}"
     cell = row.cell_below("node")
     if cell is None:
         existing = project.first_node.get(path)
         if existing is not None:
-            return project.nodes[existing]
+            return existing
         name = element_ids.make_unique_id(component.id, set(project.nodes))
     else:
         name = element_ids.make_id(cell.one_line.strip("/"), "node")
@@ -78,7 +82,9 @@ def _get_node(project: ImportedProject, row: TableRecord, component: ImportedCom
     project.first_node.setdefault(path, name)
     if path not in _implemented_paths(node):
         node["implements"] = [*_implemented_paths(node), path]
-    return node
+    if cell:
+        project.ledger.take_cell(cell, "node", ("nodes", name), name)
+    return name
 
 
 def _implemented_paths(node: dict[str, object]) -> list[str]:
@@ -86,39 +92,55 @@ def _implemented_paths(node: dict[str, object]) -> list[str]:
     return implements if isinstance(implements, list) else []
 
 
-def _import_topic(
-    project: ImportedProject, row: TableRecord, component: ImportedComponent, node: dict[str, object]
-) -> None:
-    """Import a topic for the row's output, or for the component's only one."""
+def _import_topics(project: ImportedProject, row: TableRecord, component: ImportedComponent, node: str) -> None:
+    """Import the topics for the row's outputs, or for the component's only one."""
     cell = row.cells["topic"]
-    output = row.cell_below("output") if row.kind == "connection" else None
-    names = [output.one_line] if output and output.one_line else list(component.outputs)
-    name = cell_values.read_topic(project, cell)
-    if name is None:
-        return
-    if len(names) != 1:
-        message = f"it cannot be told which output of `{component.name}` stands on this topic: it was not taken"
-        project.add_warning("ambiguous-reference", message, cell.span, "write it in a row that names the output")
-        return
-    type_name = component.outputs.get(names[0])
+    connected = [row.output_id] if row.kind == "connection" and row.output_id else []
+    names = connected or row.output_ids or list(component.outputs)
+    if not names:
+        message = f"`{cell.quotation}` was not taken: `{component.name}` has no output that could stand on this topic"
+        project.reject_cell("missing-key", message, cell, "write it in a row that names the output")
+    for name, topic_cell in zip(names, port_lists.split_beside(project, names, cell, component), strict=True):
+        topic = cell_values.read_topic(project, topic_cell) if topic_cell else None
+        if topic and topic_cell:
+            _set_topic(project, component, (node, name), topic, topic_cell)
+
+
+def _set_topic(
+    project: ImportedProject,
+    component: ImportedComponent,
+    node_and_output: tuple[str, str],
+    topic: str,
+    cell: TableCell,
+) -> None:
+    """Set the topic of an output; a different one from an earlier row stays."""
+    node, output = node_and_output
+    type_name = component.outputs.get(output)
     interface_kind = (project.types.get(type_name or "") or type_name or "").split("/")[1:2]
     # The middle of `package/srv/Name` says whether this is a service or an action.
     section = "serves" if interface_kind in (["srv"], ["action"]) else "publishes"
-    topics = node.setdefault(section, {})
-    if isinstance(topics, dict) and topics.setdefault(names[0], name) != name:
-        message = f"`{names[0]}` stands on the topic `{topics[names[0]]}` already: this was not taken"
-        project.add_warning("conflicting-values", message, cell.span, "say it once")
+    topics = project.nodes[node].setdefault(section, {})
+    if not isinstance(topics, dict):
+        return
+    if topics.setdefault(output, topic) == topic:
+        project.ledger.take_cell(cell, "topic", ("nodes", node), topic)
+    else:
+        message = f"`{output}` stands on the topic `{topics[output]}` already: `{cell.quotation}` was not taken"
+        project.reject_cell("conflicting-values", message, cell, "say it once")
 
 
 def _import_message(project: ImportedProject, row: TableRecord) -> None:
     """Import the message that carries a type."""
     cell, type_cell = row.cell_below("message"), row.cell_below("type")
-    if cell is None or type_cell is None or cell.one_line in {"?", "physical"}:
+    # The messages beside a list of outputs were imported with them.
+    if cell is None or type_cell is None or row.output_ids:
+        return
+    if row.has_exact_ids and cell.one_line in {"?", "physical"}:
         return
     type_name = cell_values.read_type_name(project, type_cell)
     message = cell_values.read_message(project, cell)
-    if type_name is None or message is None or type_name == message:
+    if type_name is None or message is None:
         return
-    if project.types.setdefault(type_name, message) != message:
-        text = f"`{type_name}` is carried by `{project.types[type_name]}` in another row: this was not taken"
-        project.add_warning("conflicting-values", text, cell.span, "give one of the two another type")
+    port_lists.set_message(project, type_name, message, cell)
+    if type_name in project.types:
+        project.ledger.take_cell(type_cell, "type", ("types", type_name), type_name)

@@ -9,28 +9,91 @@ from archgen.importers.imported_project import ImportedComponent, ImportedInput,
 from archgen.importers.row_records import TableRecord
 from archgen.importers.table_cells import TableCell
 from archgen.model import element_ids
+from archgen.model.message_types import full_message_name
 
-_NONE_WORDS = frozenset({"none", "nothing", "no", "no inputs", "no outputs"})
+_NONE_WORDS = frozenset(
+    {"none", "nothing", "no", "no inputs", "no outputs", "keine", "keiner", "kein", "keines", "nichts", "nein"}
+    | {"aucun", "aucune", "néant", "rien", "non", "ninguno", "ninguna", "nada"}
+)
+_FROM_PATTERN = re.compile(
+    r"(.+?)(?:\s+from\s+|\s*<-\s*|\s*\u2190\s*|\s*@\s*)(.+)\Z|(.+?)\s*\((?:from|von|aus|de|du|depuis|desde|del)\s+(.+)\)\Z"
+)
+# These words are also parts of names (`nuage de points`): they count only before the name of a component.
+_WEAK_FROM_PATTERN = re.compile(r"\s+(?:von|vom|aus|de la|de l'|du|depuis|desde|del|de)\s*(?=\S)")
 
 
 def import_outputs(project: ImportedProject, row: TableRecord) -> None:
-    """Import the list of outputs in a component's row."""
+    """Import the list of outputs in a component's row, with their types and messages."""
     cell, component = row.cell_below("output"), row.component
     if row.kind != "component" or row.has_exact_ids or cell is None or component is None:
         return
     if cell.one_line.casefold() in _NONE_WORDS:
         component.declared_empty.add("outputs")
+        project.take_cell(cell, "outputs", component)
         return
-    for item in cell_values.split_list(cell):
-        name, colon, text = (word.strip() for word in item.partition(":"))
-        type_cell = row.cell_below("type") if len(cell_values.split_list(cell)) == 1 and not colon else None
-        type_name = (
-            cell_values.read_type_name(project, type_cell)
-            if type_cell
-            else cell_values.read_type_name(project, TableCell(text if colon else name, cell.span))
-        )
-        if name:
-            add_typed_output(project, component, element_ids.make_id(name, "output"), type_name, cell)
+    items = cell_values.split_list(cell)
+    types = split_beside(project, items, row.cell_below("type"), component)
+    messages = split_beside(project, items, row.cell_below("message"), component)
+    for number, item in enumerate(items):
+        type_name, output_id = _import_output(project, component, item, types[number], cell)
+        row.output_ids.append(output_id)
+        message_cell = messages[number]
+        message = cell_values.read_message(project, message_cell) if message_cell and type_name else None
+        if type_name and message and message_cell:
+            set_message(project, type_name, message, message_cell)
+
+
+def _import_output(
+    project: ImportedProject, component: ImportedComponent, item: str, type_cell: TableCell | None, cell: TableCell
+) -> tuple[str | None, str]:
+    """Import one output: `TYPE`, `NAME: TYPE`, or its name with the type in a cell beside it. Return its type and id."""
+    name, _, text = (word.strip() for word in item.partition(":"))
+    name = name or text
+    if type_cell and text and fold_name(type_cell.one_line) != fold_name(text):
+        message = f"`{type_cell.quotation}` was not taken: the output `{name}` carries `{text}`"
+        project.reject_cell("conflicting-values", message, type_cell, "say it once")
+        type_cell = None
+    type_name = cell_values.read_type_name(project, type_cell or cell.with_text(text or name))
+    output_id = add_typed_output(project, component, element_ids.make_id(name, "output"), type_name, cell)
+    project.take_cell(cell, "outputs", component, output_id)
+    if type_name and text:
+        project.take_cell(cell, "type of an output", component, type_name)
+    elif type_cell is None:
+        component.untyped_outputs.add(output_id)
+    if type_name and type_cell:
+        project.take_cell(type_cell, "type", component, type_name)
+    return type_name, output_id
+
+
+def split_beside(
+    project: ImportedProject, items: list[str], cell: TableCell | None, component: ImportedComponent
+) -> list[TableCell | None]:
+    """Split a cell beside a list of outputs: the first line belongs to the first output, and so on.
+
+    Where there are not as many lines as outputs, nothing tells which one is meant, and that is reported.
+    """
+    nothing: list[TableCell | None] = [None] * len(items)
+    if cell is None or len(items) < 2:  # noqa: PLR2004 - one output, or none
+        return [cell] * len(items)
+    lines = cell_values.split_list(cell)
+    if len(lines) == len(items):
+        return [cell.with_text(line) for line in lines]
+    message = f"`{cell.quotation}` was not taken: which of the {len(items)} outputs of `{component.name}` is it for?"
+    help_line = "write a line for each output, in their order; or a row for each"
+    project.reject_cell("ambiguous-reference", message, cell, help_line)
+    return nothing
+
+
+def set_message(project: ImportedProject, type_name: str, message: str, cell: TableCell) -> None:
+    """Set the message that carries a type; a different one from an earlier row stays."""
+    carried_by = type_name if full_message_name(type_name) else project.types.setdefault(type_name, message)
+    if carried_by == message:
+        # A message that is its own type stands at the output, and in no table of types.
+        element = ("types", type_name) if type_name in project.types else ("groups",)
+        project.ledger.take_cell(cell, "message", element, message)
+        return
+    text = f"`{type_name}` is carried by `{carried_by}` already: `{cell.quotation}` was not taken"
+    project.reject_cell("conflicting-values", text, cell, "give one of the two another type")
 
 
 def add_typed_output(
@@ -38,8 +101,10 @@ def add_typed_output(
 ) -> str:
     """Add an output to a component and return its id; another type on the same id makes another output."""
     existing_type = component.outputs.get(output_id)
-    if output_id not in component.outputs or existing_type is None:
-        project.add_output(component, output_id, type_name)
+    if output_id not in component.outputs or existing_type is None or output_id in component.untyped_outputs:
+        if type_name or output_id not in component.outputs:
+            project.add_output(component, output_id, type_name)
+            component.untyped_outputs.discard(output_id)
     elif type_name is not None and existing_type != type_name:
         same_type = next((other_id for other_id, type_ in component.outputs.items() if type_ == type_name), None)
         free_id = same_type or element_ids.make_unique_id(output_id, set(component.outputs))
@@ -58,29 +123,41 @@ def import_inputs(project: ImportedProject, row: TableRecord) -> None:
         return
     if cell.one_line.casefold() in _NONE_WORDS:
         component.declared_empty.add("inputs")
+        project.take_cell(cell, "inputs", component)
         return
     for item in cell_values.split_list(cell):
         name, _, text = (word.strip() for word in item.partition(":"))
-        _import_input(project, component, name, text or name, cell)
+        _import_input(project, component, name or text, text or name, cell)
 
 
 def _import_input(
     project: ImportedProject, component: ImportedComponent, name: str, text: str, cell: TableCell
 ) -> None:
     """Import one input: `WHAT`, `NAME: WHAT`, `WHAT from COMPONENT`, `WHAT <- COMPONENT` or `WHAT @ COMPONENT`."""
-    wanted_name, producer = text, ""
-    match = re.match(r"(.+?)(?:\s+from\s+|\s*<-\s*|\s*\u2190\s*|\s*@\s*)(.+)\Z|(.+?)\s*\((?:from\s+)(.+)\)\Z", text)
-    if match:
-        wanted_name, producer = (match[1] or match[3]).strip(), (match[2] or match[4]).strip()
-        name = wanted_name if name == text else name
+    wanted_name, producer = _split_source(project, text)
+    name = wanted_name if name == text else name
     sources = _find_sources(project, component, wanted_name, producer)
-    port = component.inputs.setdefault(element_ids.make_id(name, "input"), ImportedInput())
+    if name == wanted_name and len(sources) == 1 and _has_source(component, sources[0]):
+        # A connection gave this source another name already.
+        project.take_cell(cell, "inputs", component, sources[0][-1])
+        return
+    input_id = element_ids.make_id(name, "input")
+    port = component.inputs.setdefault(input_id, ImportedInput())
+    project.take_cell(cell, "inputs", component, input_id)
     if len(sources) == 1:
         port.sources += [source for source in sources if source not in port.sources]
+        project.take_cell(cell, "source of an input", component, sources[0][-1])
         return
-    if port.sources:
+    if port.sources or port.type:
+        if port.type != wanted_name:
+            message = (
+                f"`{text}` was not taken: the input `{input_id}` of `{component.name}` comes from elsewhere already"
+            )
+            project.reject_cell("conflicting-values", message, cell, "name a component that gives it")
         return
-    port.type = cell_values.read_type_name(project, TableCell(wanted_name, cell.span))
+    port.type = cell_values.read_type_name(project, cell.with_text(wanted_name))
+    if port.type:
+        project.take_cell(cell, "type of an input", component, port.type)
     if len(sources) > 1:
         candidates = ", ".join(f"`{'.'.join(path)}`" for path in sources[:4])
         message = f"`{wanted_name}` comes from several components ({candidates}): the input has no source yet"
@@ -95,6 +172,23 @@ def _import_input(
         project.add_warning(
             "unknown-reference", message, cell.span, "name it as an output somewhere, or write `WHAT from COMPONENT`"
         )
+
+
+def _has_source(component: ImportedComponent, source: tuple[str, ...]) -> bool:
+    return any(source in port.sources for port in component.inputs.values())
+
+
+def _split_source(project: ImportedProject, text: str) -> tuple[str, str]:
+    """Return what an input takes, and the component that it names behind `from` (empty where it names none)."""
+    match = _FROM_PATTERN.match(text)
+    if match:
+        return (match[1] or match[3]).strip(), (match[2] or match[4]).strip()
+    if not project.find_producers(text) and not project.find_components(text):
+        for weak_match in _WEAK_FROM_PATTERN.finditer(text):
+            producer = text[weak_match.end() :].strip()
+            if weak_match.start() and project.find_components(producer):
+                return text[: weak_match.start()].strip(), producer
+    return text, ""
 
 
 def _find_sources(

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.importers.column_headings import TableHeadings
-from archgen.importers.imported_project import ImportedComponent, fold_name
+from archgen.importers.heading_words import KEY_BY_HEADING, fold_heading
+from archgen.importers.imported_project import ImportedComponent, ImportedProject
 from archgen.importers.table_cells import TableCell, TableRow
 
 _KIND_SPELLINGS = {
-    "component": ("component", "functional component", "module", "block", "function"),
-    "connection": ("connection", "link", "flow", "edge", "data flow", "interface", "arrow"),
-    "group": ("group", "functional group", "subsystem", "layer"),
-    "node": ("node", "ros node"),
-    "requirement": ("requirement", "req"),
-    "type": ("type", "data type", "message"),
+    "connection": "connection; signal; signal flow; link; flow; edge; data flow; interface; arrow; Verbindung; Verknüpfung; Datenfluss; liaison; lien; "
+    "connexion; flux; conexión; enlace; flujo",
+    "component": "function; Funktion; fonction; función",
 }
-_KIND_BY_WORD = {fold_name(word): kind for kind, several in _KIND_SPELLINGS.items() for word in several}
+_KIND_BY_WORD = {fold_heading(word): kind for kind, words in _KIND_SPELLINGS.items() for word in words.split(";")}
+_ROW_KINDS = ("component", "group", "node", "requirement", "type", "message")
+"""The meanings of columns that also say what a row is: a row `Komponente` is a component."""
 
 
 @dataclass(slots=True)
@@ -32,6 +32,12 @@ class TableRecord:
     units: Mapping[str, str]
     has_exact_ids: bool = False
     component: ImportedComponent | None = None
+    output_id: str = ""
+    """The output of the component that a connection is about."""
+    is_lost: bool = False
+    """Whether the row as a whole could not be imported, which was reported."""
+    output_ids: list[str] = field(default_factory=list)
+    """The outputs that the row of a component lists."""
 
     def cell_below(self, key: str) -> TableCell | None:
         """Return the cell below a heading."""
@@ -43,7 +49,9 @@ class TableRecord:
         return next(iter(self.cells.values()))
 
 
-def read_record(headings: TableHeadings, row: TableRow, cells_above: dict[str, Any]) -> TableRecord | None:
+def read_record(
+    project: ImportedProject, headings: TableHeadings, row: TableRow, cells_above: dict[str, Any]
+) -> TableRecord | None:
     """Read a row below headings; None where nothing in it can be imported.
 
     Merged cells leave all but the first empty: group, component and `from` are taken from above. `cells_above` is
@@ -52,11 +60,24 @@ def read_record(headings: TableHeadings, row: TableRow, cells_above: dict[str, A
     cells = {key: row[column] for column, key in sorted(headings.key_by_column.items()) if column in row}
     if not cells:
         return None
-    kind = headings.kind or _KIND_BY_WORD.get(fold_name(cells["kind"].one_line) if "kind" in cells else "", "")
+    kind = headings.kind or (_read_kind(project, cells["kind"]) if "kind" in cells else "")
     if not headings.kind:
         _fill_merged(headings, cells, cells_above)
         kind = kind or _guess_kind(headings, cells)
     return TableRecord(kind, cells, headings.unit_by_key, bool(headings.kind)) if kind else None
+
+
+def _read_kind(project: ImportedProject, cell: TableCell) -> str:
+    """Return what a cell says that its row is; empty where it says nothing that is known, which is reported."""
+    key = KEY_BY_HEADING.get(fold_heading(cell.one_line), "")
+    kind = _KIND_BY_WORD.get(fold_heading(cell.one_line)) or (key if key in _ROW_KINDS else "")
+    if kind:
+        project.ledger.take_cell(cell, "kind", ("groups",))
+        return "type" if kind == "message" else kind
+    message = f"`{cell.quotation}` is no kind of row and was not taken"
+    help_line = "write component, connection, group, node, requirement or type; or map the column to what it means"
+    project.reject_cell("wrong-value", message, cell, help_line)
+    return ""
 
 
 def _fill_merged(headings: TableHeadings, cells: dict[str, TableCell], cells_above: dict[str, TableCell]) -> None:

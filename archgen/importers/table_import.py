@@ -6,49 +6,55 @@ outputs), and a row for each connection (from, to, what flows). A table below an
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.importers import (
-    column_headings,
     connection_rows,
     declaration_rows,
     language_data,
     node_rows,
     port_lists,
-    row_records,
-    table_cells,
+    table_files,
+    table_records,
 )
-from archgen.importers.column_headings import TableHeadings
+from archgen.importers.cell_ledger import CellLedger, CellUse
+from archgen.importers.column_headings import HeadingMap
 from archgen.importers.imported_project import ImportedProject
 from archgen.importers.row_records import TableRecord
-from archgen.importers.table_cells import TableRow
+from archgen.importers.table_cells import TableCell
+from archgen.importers.table_records import TableReport
 
 
 @dataclass(frozen=True, slots=True)
 class ImportResult:
-    """What was imported: `data` by the language's sections (empty where nothing could be imported), and diagnostics."""
+    """What was imported: `data` by the language's sections (empty where nothing could be imported), and diagnostics.
+
+    `ledger` says what became of each cell, `tables` what each table's headings were taken for.
+    """
 
     data: Mapping[str, Any]
     diagnostics: tuple[Diagnostic, ...]
     sources: SourceTexts
+    ledger: CellLedger
+    tables: tuple[TableReport, ...]
 
 
-def import_tables(files: Sequence[tuple[str, bytes]], distro: str | None) -> ImportResult:
+def import_tables(
+    files: Sequence[tuple[str, bytes]], distro: str | None, heading_map: HeadingMap | None = None
+) -> ImportResult:
     """Import tables given as (name, bytes). Messages are looked up for the distribution."""
     project, sources = ImportedProject(), SourceTexts()
-    records: list[TableRecord] = []
+    heading_map = heading_map or {}
+    reports: list[TableReport] = []
     for name, data in files:
-        text, diagnostics = table_cells.decode_table(name, data)
-        project.diagnostics.extend(diagnostics)
-        sources.add_text(name, text)
-        if text:
-            records += _read_records(project, name, text)
+        sheets = table_files.read_sheets(name, data, heading_map, project.diagnostics, sources)
+        reports += table_records.read_reports(project, name, sheets, heading_map)
+    records = [record for report in reports for record in report.records]
+    table_records.report_unused_map(project, reports, heading_map, files[0][0])
     _import_records(project, records)
     has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in project.diagnostics)
     sections = {} if has_errors else language_data.build_language_data(project, distro)
@@ -57,15 +63,10 @@ def import_tables(files: Sequence[tuple[str, bytes]], distro: str | None) -> Imp
         help_line = "a row names a component, or connects two"
         empty = Diagnostic("missing-key", "no row names a component", file_span, Severity.ERROR, help=help_line)
         project.diagnostics.append(empty)
-    # In the order in which the files were given, then by place: the passes found them in another order.
-    sorted_diagnostics = sorted(
-        project.diagnostics,
-        key=lambda diagnostic: (
-            [file_name for file_name, _ in files].index(diagnostic.span.file),
-            diagnostic.sort_key[1:],
-        ),
-    )
-    return ImportResult(sections, tuple(sorted_diagnostics), sources)
+    if sections:
+        _account_for_rest(project, records, sections)
+    diagnostics = _sort_diagnostics(project, [name for name, _ in files], reports)
+    return ImportResult(sections, diagnostics, sources, project.ledger, tuple(reports))
 
 
 def _import_records(project: ImportedProject, records: Sequence[TableRecord]) -> None:
@@ -84,100 +85,42 @@ def _import_records(project: ImportedProject, records: Sequence[TableRecord]) ->
         node_rows.import_node_row(project, record)
 
 
-def _read_records(project: ImportedProject, name: str, text: str) -> list[TableRecord]:
-    """Return the rows below headings."""
-    declared_separator, text = table_cells.read_separator(text)
-    try:
-        diagnostics: list[Diagnostic] = []
-        separator = declared_separator or _guess_separator(name, text)
-        table = list(table_cells.read_rows(name, text, separator, diagnostics))
-    except table_cells.TableTooLargeError as error:
-        project.diagnostics.append(error.diagnostic)
-        return []
-    project.diagnostics.extend(diagnostics)
-    records = list(_records_below_headings(project, table))
-    if not records and not any(map(column_headings.read_headings, table)):
-        message = "no row has headings that archgen knows"
-        help_line = "name the columns: Group, Component, Description, Inputs, Outputs; or From, Output, To, Input, Type"
-        project.diagnostics.append(
-            Diagnostic("missing-key", message, Span.of_file(name), Severity.ERROR, help=help_line)
-        )
-    return records
+def _account_for_rest(project: ImportedProject, records: Sequence[TableRecord], sections: Mapping[str, Any]) -> None:
+    """Report what nothing was said about: cells without an account, and those that did not get into the data."""
+    ledger = project.ledger
+    for record in records:
+        for cell in record.cells.values():
+            if record.is_lost and not ledger.has_account(cell):
+                ledger.list_cell(cell, "its row was not taken")
+            elif record.has_exact_ids and not ledger.has_account(cell):
+                ledger.omit_cell(cell, "follows from the rest")
+    for cell, use in list(ledger.prove_uses(sections)):
+        project.reject_cell("wrong-value", _explain_loss(ledger, cell, use), cell, "if it matters, write it by hand")
 
 
-def _guess_separator(name: str, text: str) -> str:
-    """Guess the separator: the one with which most headings are recognised in the first rows, else the one with most
-    cells.
-    """
-    # The first 50 rows decide, and they may be long: a cut keeps four trial parses cheap.
-    beginning = text[:100_000]
-
-    def weight(mark: str) -> tuple[int, int]:
-        table: list[TableRow] = []
-        with contextlib.suppress(table_cells.TableTooLargeError):
-            table.extend(islice(table_cells.read_rows(name, beginning, mark, []), 50))
-        known = (column_headings.read_headings(row) for row in table)
-        return max((len(found.key_by_column) for found in known if found), default=0), max(map(len, table), default=0)
-
-    return max(",;\t|", key=weight)
-
-
-def _records_below_headings(project: ImportedProject, table: Sequence[TableRow]) -> Iterator[TableRecord]:
-    """Yield the records below each row of headings, and report what is lost."""
-    headings: TableHeadings | None = None
-    cells_above: dict[str, Any] = {}
-    lost_cells: dict[int, int] = {}
-    for row in table:
-        # Later headings must be complete, else a row of data could be taken for headings.
-        new_headings = (
-            column_headings.read_headings(row) if headings is None else column_headings.read_new_headings(row)
-        )
-        if new_headings:
-            _report_unknown_columns(project, headings, lost_cells)
-            headings, cells_above, lost_cells = new_headings, {}, {}
-        elif headings is None:
-            _report_lost_row(project, row, "stands above the headings")
-        else:
-            for column in row:
-                if column not in headings.key_by_column:
-                    lost_cells[column] = lost_cells.get(column, 0) + 1
-                    if column not in headings.unknown_columns and not headings.kind:
-                        cell = row[column]
-                        project.add_warning(
-                            "unknown-key",
-                            "this cell stands below no heading and was not taken",
-                            cell.span,
-                            "give its column a heading",
-                        )
-            record = row_records.read_record(headings, row, cells_above)
-            if record:
-                yield record
-            else:
-                _report_lost_row(project, row, "says nothing below headings that archgen knows")
-    _report_unknown_columns(project, headings, lost_cells)
-
-
-def _report_lost_row(project: ImportedProject, row: TableRow, reason: str) -> None:
-    first = row[min(row)]
-    project.add_warning(
-        "wrong-value", f"this row {reason} and was not taken", first.span, "if it matters, put it below known headings"
+def _explain_loss(ledger: CellLedger, cell: TableCell, use: CellUse | None) -> str:
+    key = ledger.key_by_cell.get(cell.span, "cell").replace("_", " ")
+    if use is None:
+        return f"`{cell.quotation}` was not taken: a row like this one has no place for it ({key})"
+    return (
+        f"`{cell.quotation}` was not taken as {use.key} of `{use.element[-1]}`: another row or cell says it otherwise"
     )
 
 
-def _report_unknown_columns(
-    project: ImportedProject, headings: TableHeadings | None, lost_cells: Mapping[int, int]
-) -> None:
-    """Report once for each column that its cells were not imported."""
-    for column, cell in headings.unknown_columns.items() if headings else ():
-        count = lost_cells.get(column, 0)
-        if count:
-            lost_phrase = f"{count} cells below it were" if count > 1 else "the cell below it was"
-            help_line = "rename the column if it is one of: " + ", ".join(
-                dict.fromkeys(column_headings.KEY_BY_HEADING.values())
-            )
-            project.add_warning(
-                "unknown-key",
-                f"the column `{cell.one_line}` is not known, or is the second of its kind: {lost_phrase} not taken",
-                cell.span,
-                help_line,
-            )
+def _sort_diagnostics(
+    project: ImportedProject, file_names: Sequence[str], reports: Sequence[TableReport]
+) -> tuple[Diagnostic, ...]:
+    """Sort by file, table and place: the passes found them in another order."""
+    # Each cell of a workbook is a place of its own, in the order in which it was read.
+    places = list(file_names)
+    for report in reports:
+        headings = [cell for known_headings in report.headings for cell in known_headings.cells.values()]
+        places += [report.name, *(cell.span.file for cell in (*headings, *report.cells))]
+    number_by_place = {place: number for number, place in reversed(list(enumerate(dict.fromkeys(places))))}
+    last = len(number_by_place)
+    return tuple(
+        sorted(
+            project.diagnostics,
+            key=lambda diagnostic: (number_by_place.get(diagnostic.span.file, last), diagnostic.sort_key[1:]),
+        )
+    )

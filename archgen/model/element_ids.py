@@ -6,6 +6,7 @@ import hashlib
 import re
 import unicodedata
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 
 ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
 """The files in which elements are written, by kind (`group`, `component`, `node`) and complete id, in order of appearance."""
@@ -27,7 +28,11 @@ _LATIN_SPELLINGS = {
     "Đ": "D",
     "&": " and ",
 }
-_SPELLING_TABLE = str.maketrans(_LATIN_SPELLINGS)
+# As in passports (ICAO 9303) and German: whoever reads `hohe` for `Höhe` reads another word. A name does not say its
+# language, so the few French and Spanish words with `ü`, and Swedish, Finnish and Turkish names, are spelled so, too.
+_UMLAUT_SPELLINGS = {"ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "œ": "oe", "Œ": "Oe", "ẞ": "Ss"}
+_CAPITAL_UMLAUT = re.compile(r"[ÄÖÜ](?![a-zäöüß])")
+_SPELLING_TABLE = str.maketrans(_LATIN_SPELLINGS | _UMLAUT_SPELLINGS)
 
 
 def is_id(text: str) -> bool:
@@ -36,12 +41,18 @@ def is_id(text: str) -> bool:
 
 
 def make_id(name: str, prefix: str) -> str:
-    """Make an id from a name: `Object Recognition (3D)` is `object_recognition_3d`.
+    """Make an id from a name: `Object Recognition (3D)` is `object_recognition_3d`, `Höhe` is `hoehe`.
 
     `prefix` is put in front of names that begin with a digit or are reserved words. A name without any Latin letter or
     digit becomes the prefix and a digest of the name, so that the same name always makes the same id.
     """
-    ascii_name = unicodedata.normalize("NFKD", name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
+    # macOS writes an umlaut as a letter and a mark: composed first, both spellings make one id.
+    composed_name = unicodedata.normalize("NFC", name)
+    # In a word of capitals both letters are: `AeOe` would be two words.
+    composed_name = _CAPITAL_UMLAUT.sub(lambda match: _UMLAUT_SPELLINGS[match[0]].upper(), composed_name)
+    ascii_name = (
+        unicodedata.normalize("NFKD", composed_name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
+    )
     words = re.findall(r"[a-z0-9]+", _CAMEL_CASE_HUMP.sub(" ", ascii_name).lower())
     # Cutting may leave an underscore at the end, which no id may have.
     element_id = "_".join(words)[:MAX_ID_LENGTH].strip("_")
@@ -52,7 +63,7 @@ def make_id(name: str, prefix: str) -> str:
     return element_id
 
 
-def make_unique_id(wanted_id: str, used_ids: frozenset[str] | set[str]) -> str:
+def make_unique_id(wanted_id: str, used_ids: AbstractSet[str]) -> str:
     """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ..."""
     element_id, number = wanted_id, 2
     while element_id in used_ids:

@@ -68,6 +68,8 @@ def parse_group(text: str, partners: Iterable[PartnerAnswer]) -> GroupAnswer:
     """Read `perception=certh`: a group's id or title, and the partner who owns it, if any. Raise ValueError."""
     group_text, _, owner = (item.strip() for item in text.partition("="))
     partner_ids = [known_partner.id for known_partner in partners]
+    if owner and owner not in partner_ids and _make_id(owner, "partner") in partner_ids:
+        owner = _make_id(owner, "partner")
     if owner and owner not in partner_ids:
         listed = ", ".join(partner_ids) if partner_ids else "none is named with --partner"
         msg = f"'{owner}' is no partner's id ({listed})"
@@ -82,12 +84,14 @@ def _parse_id_and_title(text: str, kind: str) -> tuple[str, str]:
     if not first_part:
         msg = f"a {kind} has a name"
         raise ValueError(msg)
-    if has_equals and not element_ids.is_id(first_part):
-        msg = f"'{first_part}' is no id: lower-case words joined by '_'; write '{element_ids.make_id(first_part, kind)}={title}'"
-        raise ValueError(msg)
     if element_ids.is_id(first_part):
         return first_part, title
-    return element_ids.make_id(first_part.casefold() if kind == "partner" else first_part, kind), first_part
+    return _make_id(first_part, kind), title if has_equals else first_part
+
+
+def _make_id(name: str, kind: str) -> str:
+    """Return the id that a name gets: `robo corp` is the partner `robo_corp`."""
+    return element_ids.make_id(name.casefold() if kind == "partner" else name, kind)
 
 
 def add_partners(answers: StartAnswers, titles_by_id: Mapping[str, str]) -> StartAnswers:
@@ -127,7 +131,9 @@ def collect_answers(  # noqa: PLR0913 - one for each flag
     example_groups = tuple(
         GroupAnswer(id_, title_from_id(id_), owner) for id_, owner in zip(EXAMPLE_GROUPS, owners, strict=True)
     )
-    project_title = (title or "").strip() or name.replace("_", " ").capitalize()
+    # A name with a blank or an accent is typed as a title; `my-robot` is not.
+    is_title = " " in folder.strip() or not folder.isascii()
+    project_title = (title or "").strip() or (folder.strip() if is_title else name.replace("_", " ").capitalize())
     return StartAnswers(
         name, project_title, distro or DEFAULT_DISTRO, parsed_partners, parsed_groups or example_groups, forge
     )

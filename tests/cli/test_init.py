@@ -68,7 +68,19 @@ def test_groups_and_owners_of_ones_own(count: int, run: Run, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--partner", "A B=x"), "'A B' is no id: lower-case words joined by '_'; write 'a_b=x'"),
+        (("--map", "Baugruppe=group"), "--map says what the headings of a table mean: it needs --from"),
+        (
+            ("--from", "x.csv", "--map", "Baugruppe"),
+            "'Baugruppe' is no heading with its meaning: write \"Baugruppe=group\"",
+        ),
+        (
+            ("--from", "x.csv", "--map", "A=grop"),
+            (
+                "'grop' is nothing that a column can mean. did you mean group? Columns mean: kind, group, component, id, title, "
+                "functionality, description, owner, role, input, output, from, to, from_group, to_group, signal, type, message, node, "
+                "package, topic, rate, period, requirement, status"
+            ),
+        ),
         (("--partner", "a @-x"), "'@-x' is no handle: write @user, @organisation/team or an e-mail address"),
         (("--partner", "a", "--partner", "A"), "two partners have the id 'a'"),
         (("--group", "g=a"), "'a' is no partner's id (none is named with --partner)"),
@@ -277,3 +289,32 @@ def test_what_appears_meanwhile_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(file_tree.OutputError, match="File exists"):
         new_files.write_new_files({tmp_path / "a": b"1", tmp_path / "b": b"2"}, tmp_path)
     assert contents(tmp_path) == {"b": b"mine"}
+
+
+def test_a_table_in_a_partners_language_says_what_became_of_it(run: Run, tmp_path: Path) -> None:
+    table = tmp_path / "teile.csv"
+    table.write_text("Hauptgruppe;Komponente;Preis\nAntrieb;Rad;3 EUR\nSumme:;1;3 EUR\n", encoding="utf-8")
+    ran = run("init", tmp_path / "My Robot Ä", "--yes", "--from", table, "--map", "Hauptgruppe=group")
+    assert ran.status == 0, ran.err
+    assert ran.out.splitlines()[:6] == [
+        f"{table}: 6 cells below headings: 2 taken, 4 not taken",
+        '  headings: Hauptgruppe = group, Komponente = component, Preis is not taken (--map "Preis=MEANING")',
+        "  not taken: 2:13 `3 EUR`: its column `Preis` was not taken",
+        "  not taken: 3:8 `1`: it stands in a row of totals",
+        "  not taken: 3:10 `3 EUR`: it stands in a row of totals",
+        "",
+    ]
+    assert "My Robot Ä: 1 group, 1 component; archgen check says: 1 warning, 1 note." in ran.out
+    assert "By rule: 1 missing-detail, 1 unmapped-component." in ran.out
+    assert "`Summe:` begins a row of totals, which was not taken" in ran.err
+    assert "1 components" not in ran.err + ran.out
+
+
+def test_a_title_is_kept_as_it_is_typed(run: Run, tmp_path: Path) -> None:
+    assert (
+        run("init", tmp_path / "My Robot ÄÖ", "--partner", "robo corp = RoboCorp", "--group", "g=robo corp").status == 0
+    )
+    found = check_project(tmp_path / "My Robot ÄÖ").architecture
+    assert (found.project.id, found.project.title) == ("my_robot_aeoe", "My Robot ÄÖ")
+    assert {name: partner.title for name, partner in found.partners.items()} == {"robo_corp": "RoboCorp"}
+    assert found.groups["g"].owner == "robo_corp"

@@ -114,4 +114,6 @@ def test_requirements_are_ids_or_sentences(
 def test_a_type_may_be_long_but_not_too_long(project: ImportedProject) -> None:
     assert cell_values.read_type_name(project, _cell("x" * 200)) == "x" * 200
     assert cell_values.read_type_name(project, _cell("x" * 201)) is None
-    assert [d.message for d in project.diagnostics] == ["a type's name has at most 200 characters: it was not taken"]
+    assert [d.message for d in project.diagnostics] == [
+        f"a type's name has at most 200 characters: `{'x' * 39}…` was not taken"
+    ]

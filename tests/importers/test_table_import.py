@@ -135,9 +135,9 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
             "Group,Component,Costs\nG,A,3 EUR\n",
             [
                 (
-                    "1:17 warning unknown-key: the column `Costs` is not known, or is the second of its kind: the cell below it was not taken | rename the column "
-                    "if it is one of: kind, group, component, id, title, functionality, description, owner, role, input, output, from, to, "
-                    "from_group, to_group, type, message, node, package, topic, rate, period, requirement, status"
+                    '1:17 warning unknown-key: the column `Costs` is not known: the cell below it was not taken | --map "Costs=MEANING" takes it; '
+                    "a MEANING is one of: kind, group, component, id, title, functionality, description, owner, role, input, output, from, to, "
+                    "from_group, to_group, signal, type, message, node, package, topic, rate, period, requirement, status"
                 )
             ],
         ),
@@ -182,7 +182,7 @@ def test_separators_encodings_and_line_ends(mark: str, encoding: str, ending: st
         (
             "My robot\nGroup,Component\nG,A\n",
             [
-                "1:1 warning wrong-value: this row stands above the headings and was not taken | if it matters, put it below known headings"
+                "1:1 warning wrong-value: `My robot` stands above the headings and was not taken | if it matters, put it below known headings"
             ],
         ),
         (
@@ -203,8 +203,9 @@ def test_what_is_said(text: str, expected: list[str]) -> None:
     [
         (b"", "no row names a component"),
         (b"Group,Component\n", "no row names a component"),
-        (b"a,b,c\n1,2,3\n", "no row has headings that archgen knows"),
-        (b"PK\x03\x04 workbook", "this is a workbook, not a CSV file"),
+        (b"a,b,c\n1,2,3\n", "no row has headings that archgen knows; the first rows are: `a | b | c`, `1 | 2 | 3`"),
+        (b"PK\x03\x04 workbook", "this file cannot be read: the file is damaged (File is not a zip file)"),
+        (b"\xd0\xcf\x11\xe0 workbook", "this is a workbook or document of the old form, or one with a password"),
         (b"Group,Component\nG,A\0\n", "the table holds NUL characters"),
         (b"Group,Component\n" + b"," * 1_000_000, "the table has more than 200 columns"),
         (b"Group,Component\n" + b"G,A\n" * 150_001, "the table has more than 300,000 cells"),
@@ -238,6 +239,6 @@ def test_a_type_has_one_message() -> None:
     text = "From,To,Type,Message\nA,B,Scan,sensor_msgs/LaserScan\nA,C,Scan,sensor_msgs::msg::PointCloud2\n"
     assert read(text).data["types"] == {"Scan": "sensor_msgs/msg/LaserScan"}
     assert said(text)[-1] == (
-        "3:10 warning conflicting-values: `Scan` is carried by `sensor_msgs/msg/LaserScan` in another row: this was not taken | "
+        "3:10 warning conflicting-values: `Scan` is carried by `sensor_msgs/msg/LaserScan` already: `sensor_msgs::msg::PointCloud2` was not taken | "
         "give one of the two another type"
     )

@@ -36,7 +36,7 @@ def test_an_id_is_lower_case_words(text: str, valid: object) -> None:
         ("Object Recognition (3D)", "object_recognition_3d"),
         ("LaserScanner", "laser_scanner"),
         ("RGBCamera", "rgbcamera"),
-        ("Größe & Maß", "grosse_and_mass"),
+        ("Größe & Maß", "groesse_and_mass"),
         ("Łódź", "lodz"),
         ("3D camera", "g_3d_camera"),
         ("None", "g_none"),
