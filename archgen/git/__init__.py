@@ -7,6 +7,7 @@ repository whose configuration or attributes name a program is therefore read wi
 from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit
 from archgen.git.commit_log import find_object_ids, list_first_parents
 from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.ignored_files import ignores_file
 from archgen.git.object_reader import GitObjects, TreeEntry
 from archgen.git.repository_lookup import GitRepository, find_repository, list_cut_commits, resolve_revision
 
@@ -24,6 +25,7 @@ __all__ = [
     "find_common_commit",
     "find_object_ids",
     "find_repository",
+    "ignores_file",
     "list_cut_commits",
     "list_first_parents",
     "resolve_revision",

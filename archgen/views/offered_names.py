@@ -47,18 +47,34 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
     messages = sorted(architecture.interfaces.names)
     sections = {
         name: tuple(_list_titles(getattr(architecture, name)))
-        for name in ("partners", "use_cases", "requirements", "hosts", "containers", "links", "chains", "views", "policies")
+        for name in (
+            "partners",
+            "use_cases",
+            "requirements",
+            "hosts",
+            "containers",
+            "links",
+            "chains",
+            "views",
+            "policies",
+        )
     }
     return sections | {
         "groups": groups,
         "nodes": nodes,
-        "types": tuple(OfferedName(each.name, each.message or "no message yet") for each in architecture.types.values()),
+        "types": tuple(
+            OfferedName(each.name, each.message or "no message yet") for each in architecture.types.values()
+        ),
         "sources": _add_short_forms((*outputs, *components, *groups)),
         "implemented": _add_short_forms(components),
         "waypoints": _add_short_forms((*nodes, *components, *outputs)),
         "inputs": tuple(_list_inputs(architecture.components.values())),
         "tags": tuple(OfferedName(tag, "") for tag in sorted(_list_tags(architecture))),
-        "topics": tuple(OfferedName(each.name, ", ".join(each.messages)) for each in architecture.topics.values() if each.flow == "topic"),
+        "topics": tuple(
+            OfferedName(each.name, ", ".join(each.messages))
+            for each in architecture.topics.values()
+            if each.flow == "topic"
+        ),
         "topic_messages": tuple(OfferedName(name, "") for name in messages if "/msg/" in name),
         "call_messages": tuple(OfferedName(name, "") for name in messages if "/msg/" not in name),
         "selectors": (
@@ -98,14 +114,14 @@ def _list_inputs(components: Iterable[Component]) -> Iterator[OfferedName]:
 
 
 def _list_tags(architecture: Architecture) -> set[str]:
-    tagged_elements = (
-        *architecture.groups.values(),
-        *architecture.components.values(),
-        *architecture.nodes.values(),
-        *architecture.requirements.values(),
-        *architecture.hosts.values(),
+    tags_by_element: tuple[Iterable[tuple[str, ...]], ...] = (
+        (group.tags for group in architecture.groups.values()),
+        (component.tags for component in architecture.components.values()),
+        (node.tags for node in architecture.nodes.values()),
+        (requirement.tags for requirement in architecture.requirements.values()),
+        (host.tags for host in architecture.hosts.values()),
     )
-    return set(chain.from_iterable(element.tags for element in tagged_elements))
+    return set(chain.from_iterable(chain.from_iterable(tags_by_element)))
 
 
 def _add_short_forms(names: tuple[OfferedName, ...]) -> tuple[OfferedName, ...]:

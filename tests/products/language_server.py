@@ -32,7 +32,13 @@ class LanguageServer:
     def start(self, schemas: dict[str, Any]) -> None:
         """Tell it which schema is for which files, as an editor's settings do."""
         self.settings = {
-            "yaml": {"schemas": schemas, "validate": True, "hover": True, "completion": True, "schemaStore": {"enable": False}},
+            "yaml": {
+                "schemas": schemas,
+                "validate": True,
+                "hover": True,
+                "completion": True,
+                "schemaStore": {"enable": False},
+            },
             "http": {},
             "[yaml]": {},
             "editor": {},
@@ -56,6 +62,9 @@ class LanguageServer:
         )
         self._send({"method": "initialized", "params": {}})
         self._send({"method": "workspace/didChangeConfiguration", "params": {"settings": self.settings}})
+        # It reads its settings some time after it has answered.
+        while schemas and not self.complete("wait.yaml", "|"):
+            pass
 
     def open_text(self, name: str, text: str) -> str:
         """Open a text as a file of the project; give its address, which is a new one each time.
@@ -70,6 +79,7 @@ class LanguageServer:
         return uri
 
     def close_text(self, uri: str) -> None:
+        """Close a text."""
         self._send({"method": "textDocument/didClose", "params": {"textDocument": {"uri": uri}}})
 
     def find_problems(self, name: str, text: str) -> list[str]:
@@ -119,7 +129,11 @@ class LanguageServer:
             ]
         elif "method" in message and "id" in message:
             is_configuration = message["method"] == "workspace/configuration"
-            result = [self.settings.get(item["section"]) for item in message["params"]["items"]] if is_configuration else None
+            result = (
+                [self.settings.get(item["section"]) for item in message["params"]["items"]]
+                if is_configuration
+                else None
+            )
             self._send({"id": message["id"], "result": result})
         return message
 

@@ -68,7 +68,9 @@ def test_what_a_pattern_refuses_is_explained() -> None:
 
 
 def test_no_example_is_a_list_or_a_mapping_which_editors_would_offer_as_object_object() -> None:
-    assert [path for path, part in PARTS.items() if any(isinstance(e, list | dict) for e in part.get("examples", ()))] == []
+    assert [
+        path for path, part in PARTS.items() if any(isinstance(e, list | dict) for e in part.get("examples", ()))
+    ] == []
 
 
 def test_no_example_is_a_name_of_the_case_study() -> None:

@@ -53,6 +53,9 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
 }
 """Which names fit where: a definition of the language's schema, or a property of one."""
 
+_LISTED_KINDS = frozenset({"inputs", "waypoints"})
+"""Names that are offered in lists only: nobody writes a chain of one element."""
+
 _SECTIONS = (
     *("partners", "use_cases", "requirements", "groups", "nodes", "types", "hosts", "containers", "links", "chains"),
     *("views", "policies"),
@@ -84,19 +87,18 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     schema: SchemaPart = json.loads(language_schema)
     definitions: dict[str, SchemaPart] = schema["$defs"]
     _add_rules(definitions["rules"], rule_summaries)
-    item_kinds = dict[str, tuple[OfferedName, ...]]()
+    list_items = dict[str, SchemaPart]()
     for place, kinds in _OFFERS.items():
-        _offer_names(_inline_part(definitions, place), kinds, definitions, item_kinds, names)
+        _offer_names(_inline_part(definitions, place), kinds, names, list_items)
+    definitions |= list_items
     for section in _SECTIONS:
         _offer_keys(definitions[section], names[section])
     for part in list(_walk_parts(schema)):
         _explain_part(part, keeps_examples=any(part is definitions[name] for name in _QUANTITIES))
         if part is not schema:
             _allow_empty(part)
-    for kind in dict.fromkeys(kind for kinds in _OFFERS.values() for kind in kinds):
+    for kind in sorted({kind for kinds in _OFFERS.values() for kind in kinds} - _LISTED_KINDS):
         definitions[f"offered_{kind}"] = _list_words(names[kind])
-    for kind, offered_names in item_kinds.items():
-        definitions[f"offered_{kind}_items"] = {"defaultSnippets": [_make_snippet(each) for each in offered_names]}
     return schema
 
 
@@ -130,20 +132,19 @@ def _inline_reference(part: SchemaPart, definitions: Mapping[str, SchemaPart]) -
 
 
 def _offer_names(
-    part: SchemaPart,
-    kinds: tuple[str, ...],
-    definitions: Mapping[str, SchemaPart],
-    item_kinds: dict[str, tuple[OfferedName, ...]],
-    names: OfferedNames,
+    part: SchemaPart, kinds: tuple[str, ...], names: OfferedNames, list_items: dict[str, SchemaPart]
 ) -> None:
-    """Offer names as the value of a part and as entries of its list."""
-    if "string" in _list_types(part) and part is not definitions["trigger"]:
+    """Offer names as the value of a part, and as entries of its list: for these `list_items` get definitions."""
+    if "string" in _list_types(part) and kinds[0] not in _LISTED_KINDS:
         part["anyOf"] = [{}, *({"$ref": f"#/$defs/offered_{kind}"} for kind in kinds)]
     if "items" in part:
-        # Not `anyOf` here: yaml-language-server then offers "- (array item) ..." as well.
-        for kind in kinds:
-            item_kinds[kind] = keep_plain_names(names[kind])
-            part["items"]["$ref"] = f"#/$defs/offered_{kind}_items"
+        # Snippets, and a reference that stands alone: where yaml-language-server sees alternatives of entries (it makes
+        # them of what stands beside a reference, too), it offers "- (array item) ..." as well.
+        offered_names = [each for kind in kinds for each in keep_plain_names(names[kind])]
+        definition = part["items"] | {"offers": [_make_snippet(each) for each in offered_names]}
+        name = next((name for name, known in list_items.items() if known == definition), f"item_{len(list_items) + 1}")
+        list_items[name] = definition
+        part["items"] = {"$ref": f"#/$defs/{name}"}
 
 
 def _offer_keys(section: SchemaPart, names: tuple[OfferedName, ...]) -> None:
@@ -178,8 +179,12 @@ def _explain_part(part: SchemaPart, *, keeps_examples: bool) -> None:
     """Move the examples into the explanation, where they explain and are not offered as values."""
     examples = part.pop("examples", []) if not keeps_examples else []
     examples += [snippet["body"] for snippet in part.pop("defaultSnippets", [])]
+    if "offers" in part:
+        part["defaultSnippets"] = part.pop("offers")
     if "description" not in part:
         return
+    if part.get("$ref", "").rpartition("/")[2] in _QUANTITIES:
+        examples = []
     blocks = [f"```yaml\n{_write_example(example)}\n```" for example in examples if example not in ({}, [])]
     part["markdownDescription"] = "\n\n".join((part["description"], *(f"Example:\n\n{block}" for block in blocks)))
 
@@ -217,10 +222,12 @@ def _allow_empty(part: SchemaPart) -> None:
     del part["type"]
     words = [word for word in part.pop("enum", []) if word is not None]
     kinds = [kind for kind in types if kind != "null"]
-    rest = {key: part.pop(key) for key in ("if", "then") if key in part}
-    if kinds[0] == "string" and "items" in part:
-        # What stands outside of `else` decides what an editor writes behind the key: here a value, not a list.
-        rest["items"] = part.pop("items")
+    # What stands outside of `else` decides what an editor writes behind the key: a value, or a list or mapping below it.
+    moved_keys = ("if", "then", *(("items", "properties", "additionalProperties") if kinds[0] == "string" else ()))
+    rest = {key: part.pop(key) for key in moved_keys if key in part}
+    if kinds[0] == "array":
+        # Else the entries of a list would be offered as the value behind the key.
+        rest["items"], part["items"] = part["items"], {}
     part["if"] = {"type": "null"}
     part["else"] = {"type": kinds, "errorMessage": _describe_types(part, kinds, words), **rest}
     if words:
