@@ -1,7 +1,8 @@
 """git, read only and at arm's length: which repository, which commit, what its trees and blobs hold.
 
-Only objects are read, never the index (but to ask whether git ignores a file), and never through a filter, hook, textconv, pager, monitor or remote. A
-repository whose configuration or attributes name a program is therefore read without running it.
+Only objects are read, never the index (but to ask whether git ignores a file), and never through a filter, hook,
+textconv, pager, monitor or remote. A repository whose configuration or attributes name a program is therefore read
+without running it.
 """
 
 from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit

@@ -72,3 +72,9 @@ def test_check_renews_it_for_people_only(  # noqa: PLR0913, PLR0917 - three of t
     ran = run("check", tmp_path / "r")
     assert "schema" not in ran.out + ran.err
     assert ((tmp_path / "r" / SCHEMA).read_bytes() != before) == is_renewed
+
+
+def test_a_gitignore_that_is_kept_is_to_list_it(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".gitignore").write_text("*.o\n", encoding="utf-8")
+    ran = run("init", tmp_path)
+    assert f"Let .gitignore list {SCHEMA}, unless it does: `archgen schema` makes it again at any time.\n" in ran.out

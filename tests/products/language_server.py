@@ -149,7 +149,9 @@ class LanguageServer:
         while header := stream.readline():
             length = int(header.split(b":")[1])
             stream.readline()
-            self._messages.put(json.loads(stream.read(length)))
+            body = stream.read(length)
+            if len(body) == length:  # less of it, where the server was ended
+                self._messages.put(json.loads(body))
 
 
 @contextmanager

@@ -219,3 +219,27 @@ def test_a_new_project_works_at_once_by_its_first_lines(tmp_path: Path) -> None:
         assert set(server.complete("groups/sensing.yaml", group.replace("[R-1]", "[|]"))) == {"R-1"}
         keys = server.complete("groups/sensing.yaml", f"{group.rstrip()}\n    |\n")
         assert {"host", "container", "publishes"} < set(keys)
+
+
+def test_hostile_names_stay_names(tmp_path: Path) -> None:
+    text = (
+        'archgen: 1\npartners: {lab: "x\\"}],$ref: <b> ${1:evil} `rm` [l](http://evil)"}\n'
+        'types: {__proto__: a_msgs/msg/A, constructor: a_msgs/msg/B, "$T }: x #y": a_msgs/msg/C, "- a": a_msgs/msg/D}\n'
+    )
+    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "a.schema.json").write_bytes(render_schema(check_project(tmp_path)))
+    with run_language_server(tmp_path, {(tmp_path / "a.schema.json").as_uri(): ["*.yaml"]}) as server:
+        assert server.find_problems("archgen.yaml", text) == []
+        owner = server.complete("x.yaml", "groups:\n  g:\n    owner: |")["lab"]
+        # Text, not Markdown: nothing in it can be followed.
+        assert (owner["insertText"], owner["documentation"]) == (
+            "lab",
+            'x"}],$ref: <b> ${1:evil} `rm` [l](http://evil)',
+        )
+        # The server itself fails for `__proto__` and `constructor`: these two are left out, and do no harm.
+        types = server.complete("x.yaml", COMPONENT + "        outputs:\n          a: |")
+        # `\$` and `\}` are the characters themselves, where an editor would fill in something else.
+        assert {offer["insertText"] for offer in types.values()} == {
+            '"\\$T \\}: x #y"', '"- a"'
+        }  # fmt: skip
+        assert set(server.complete("x.yaml", "types:\n  |")) == {"$T }: x #y", "- a"}

@@ -68,6 +68,9 @@ _QUANTITIES = frozenset({"bandwidth", "duration", "frequency", "size", "percenta
 _WORD_PATTERN = re.compile(r"\^\(\?:([a-z_|]+)\)\$\Z")
 """A pattern that lists words, as in the short form of `qos`."""
 
+_PLAIN_TEXT = re.compile(r"(?![0-9.]+\Z)[A-Za-z0-9/](?:[^:#,\[\]{}\n]|:(?=\S))*\Z")
+"""Text that needs no quotes in YAML, in lists neither."""
+
 _TYPE_PHRASES = {
     "object": "a mapping",
     "array": "a list",
@@ -77,6 +80,15 @@ _TYPE_PHRASES = {
     "boolean": "`true` or `false`",
 }
 
+_BUILT_IN_NAMES = frozenset(
+    {
+        *("constructor", "hasOwnProperty", "isPrototypeOf", "propertyIsEnumerable", "toLocaleString", "toString"),
+        *("valueOf", "__defineGetter__", "__defineSetter__", "__lookupGetter__", "__lookupSetter__", "__proto__"),
+    }
+)
+"""Names that every object of JavaScript has. yaml-language-server takes an offer of that name for one that it has made
+already, and then offers nothing at all; as a key `__proto__` makes the schema unreadable."""
+
 _NEVER_VALID: SchemaPart = {"not": {}}
 """What makes an alternative an offer only: editors list its words, but do not take it for what a value is. Else a hover
 over one name would list all of them."""
@@ -85,6 +97,7 @@ over one name would list all of them."""
 def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summaries: Mapping[str, str]) -> SchemaPart:
     """Return the schema of a project with these names; `rule_summaries` are those of the rules that may be set."""
     schema: SchemaPart = json.loads(language_schema)
+    names = {kind: _leave_out_built_in(kind_names) for kind, kind_names in names.items()}
     definitions: dict[str, SchemaPart] = schema["$defs"]
     _add_rules(definitions["rules"], rule_summaries)
     list_items = dict[str, SchemaPart]()
@@ -100,6 +113,10 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     for kind in sorted({kind for kinds in _OFFERS.values() for kind in kinds} - _LISTED_KINDS):
         definitions[f"offered_{kind}"] = _list_words(names[kind])
     return schema
+
+
+def _leave_out_built_in(names: tuple[OfferedName, ...]) -> tuple[OfferedName, ...]:
+    return tuple(each for each in names if each.name not in _BUILT_IN_NAMES)
 
 
 def _walk_parts(part: SchemaPart) -> Iterator[SchemaPart]:
@@ -205,7 +222,10 @@ def _write_entry(key: str, value: object) -> str:
 def _write_flow(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_write_flow, value))}]"
-    return value if isinstance(value, str) and "\n" not in value else json.dumps(value, ensure_ascii=False)
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_write_flow(below)}' for key, below in value.items())}}}"
+    is_plain = isinstance(value, str) and _PLAIN_TEXT.match(value)
+    return str(value) if is_plain else json.dumps(value, ensure_ascii=False)
 
 
 def _allow_empty(part: SchemaPart) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -103,3 +104,13 @@ def test_names_stand_once_however_many_places_offer_them(schema_of: Callable[[st
     text = json.dumps(schema_of("partners: {a_partner_of_its_own: P}"))
     # As a value, in lists of owners, as a key of the section, and in selectors.
     assert text.count("a_partner_of_its_own") == 4
+
+
+def test_examples_in_explanations_are_yaml_and_the_languages_own(schema_of: Callable[[str], Any]) -> None:
+    language, schema = json.loads(LANGUAGE), schema_of("")
+    for name, part in language["$defs"].items():
+        examples = [*part.get("examples", ()), *(snippet["body"] for snippet in part.get("defaultSnippets", ()))]
+        explanation = schema["$defs"][name]["markdownDescription"]
+        written = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)\n```", explanation, re.DOTALL)]
+        kept = schema["$defs"][name].get("examples", [])
+        assert kept + written == [example for example in examples if example not in ({}, [])], name
