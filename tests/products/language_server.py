@@ -6,6 +6,7 @@ import json
 import queue
 import subprocess
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -63,8 +64,9 @@ class LanguageServer:
         self._send({"method": "initialized", "params": {}})
         self._send({"method": "workspace/didChangeConfiguration", "params": {"settings": self.settings}})
         # It reads its settings some time after it has answered.
+        last_try = time.monotonic() + _TIMEOUT_SECONDS
         while schemas and not self.complete("wait.yaml", "|"):
-            pass
+            assert time.monotonic() < last_try, "the server offers nothing: it cannot read the schema"
 
     def open_text(self, name: str, text: str) -> str:
         """Open a text as a file of the project; give its address, which is a new one each time.
