@@ -27,7 +27,7 @@ def command(project: Path | None, output: Path | None) -> None:
     from archgen.products import editor_schema_file
 
     checked_project = command_support.check_or_exit(project)
-    if checked_project.structural_errors:
+    if checked_project.architecture.partial:
         command_support.print_warning("names of what cannot be read are missing: `archgen check` says what to mend")
     if output == Path("-"):
         sys.stdout.write(editor_schema_file.render_schema(checked_project).decode())

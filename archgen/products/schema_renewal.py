@@ -33,7 +33,7 @@ def renew_schema(checked_project: CheckedProject) -> bool:
     that it had.
     """
     path = checked_project.root / SCHEMA_FILE
-    if not _is_plain_file(path) or checked_project.structural_errors:
+    if not _is_plain_file(path) or checked_project.architecture.partial:
         return False
     head = read_head(path) or ""
     text_digest = digest_texts(checked_project)

@@ -121,6 +121,11 @@ def test_names_stay_while_a_file_cannot_be_read(root: Path) -> None:
     assert (root / SCHEMA_FILE).read_bytes() == before
 
 
+def test_a_typing_error_elsewhere_keeps_no_name_back(root: Path) -> None:
+    assert renew_schema(change(root, f"{MORE}nodes: {{n: {{implements: nothing.there, host: pcc}}}}\n"))
+    assert offered_hosts(root) == ["pc"]
+
+
 def test_a_disk_that_refuses_is_no_failure(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError(13, "Permission denied")
