@@ -87,10 +87,19 @@ def command(  # noqa: PLR0913 - one for each option
     if not quiet:
         _print_known(reported, baseline)
         _print_earlier(reported, changed_since)
+    _renew_editor_schema(checked_project)
     # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
     sys.exit(
         command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
     )
+
+
+def _renew_editor_schema(checked_project: CheckedProject) -> None:
+    """Keep the names that editors offer current for people who work on the project; never in a workflow or a script."""
+    if sys.stdout.isatty() and not os.environ.get("CI"):
+        from archgen.products import schema_renewal
+
+        schema_renewal.renew_schema(checked_project)
 
 
 def _check_at_revision(project: Path | None, revision: str, version_cache: VersionCache) -> CheckedProject | None:

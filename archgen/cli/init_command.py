@@ -195,6 +195,7 @@ def _refuse_replacing_slices(project_plan: StartPlan, target: Path, files: Mappi
 def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: StartPlan) -> None:
     """Print what there is now, and what comes next."""
     from archgen.emit.terminal.findings_text import format_summary
+    from archgen.products.schema_renewal import SCHEMA_FILE
 
     architecture = checked_project.architecture
     size = f"{_count_things(len(architecture.groups), 'group')}, {_count_things(len(architecture.components), 'component')}"
@@ -211,6 +212,8 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
         click.echo(
             "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"
         )
+    if target.resolve() / ".gitignore" in project_plan.existing_files:
+        click.echo(f"Let .gitignore list {SCHEMA_FILE}, unless it does: `archgen schema` makes it again at any time.")
     change_folder = "" if target.resolve() == Path.cwd() else f"cd {shlex.quote(str(target))}; "
     click.echo(f"Now: {change_folder}archgen check, then archgen build. README.md says how to go on.")
 

@@ -17,7 +17,7 @@ from archgen.edit.text_insertion import CannotInsertError
 from archgen.pipeline import CheckedProject
 from archgen.syntax.project_files import FileRefusal
 
-_MODELINE_PATTERN = re.compile(r"\A\s*# yaml-language-server: \$schema=(\S+)")
+SCHEMA_LINE_PATTERN = re.compile(r"\A\s*# yaml-language-server: \$schema=(\S+)")
 
 
 class EditRefusedError(Exception):
@@ -89,7 +89,7 @@ def _read_file(checked_project: CheckedProject, place: ElementPlace) -> tuple[by
 def _schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
     """Return the first line of a new file: the schema comment, where the project's other files have one."""
     for file in checked_project.yaml_files:
-        match = _MODELINE_PATTERN.match(checked_project.sources.text_of(file) or "")
+        match = SCHEMA_LINE_PATTERN.match(checked_project.sources.text_of(file) or "")
         # A relative path to the schema has to be rewritten for the new file's folder.
         if match and "://" not in match[1] and not match[1].startswith(("/", "\\")):
             schema = posixpath.join(posixpath.dirname(file), match[1])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from archgen import pipeline
 from archgen.pipeline import CheckedProject
-from archgen.products import code_ownership
+from archgen.products import code_ownership, editor_schema_file, schema_renewal
 from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.start import start_templates
@@ -56,7 +56,9 @@ def plan_files(
     target = Path(os.path.realpath(folder))
     repository_folder = _find_repository(target) or target
     prefix = "" if target == repository_folder else target.relative_to(repository_folder).as_posix()
-    wanted_files = {target / name: data for name, data in {**yaml_files, **_project_files(answers)}.items()}
+    wanted_files = {
+        target / name: data for name, data in {**yaml_files, **_project_files(answers, checked_project)}.items()
+    }
     wanted_files |= {repository_folder / name: data for name, data in _forge_files(answers, prefix).items()}
     reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
     if any(partner.reviewers for partner in answers.partners):
@@ -78,9 +80,9 @@ def plan_files(
     )
 
 
-def _project_files(answers: StartAnswers) -> dict[str, bytes]:
+def _project_files(answers: StartAnswers, checked_project: CheckedProject) -> dict[str, bytes]:
     return {
-        start_templates.SCHEMA_PATH: start_templates.compact_schema(),
+        schema_renewal.SCHEMA_FILE: editor_schema_file.render_schema(checked_project),
         ".vscode/settings.json": start_templates.read_plain_file("vscode/settings.json"),
         ".vscode/extensions.json": start_templates.read_plain_file("vscode/extensions.json"),
         ".gitignore": start_templates.read_plain_file("gitignore"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from functools import cache
@@ -18,7 +17,6 @@ from archgen.syntax import yaml_writer
 
 _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
-SCHEMA_PATH = ".archgen/archgen.schema.json"
 PORT_HINTS = {
     "inputs": "                      # where the data comes from: group.component.output",
     "outputs": "                     # what it gives: a conceptual type each",
@@ -128,9 +126,3 @@ def _example_component(example: Mapping[str, Any], group: GroupAnswer, kind: str
         "first": False,
         "node": {"id": name, "body": {"implements": f"{group.id}.{example['id']}", **node}},
     }
-
-
-def compact_schema() -> bytes:
-    """Return the JSON Schema for editors, more compact than it ships."""
-    data = json.loads(resources.resource_path("schemas", "archgen.schema.json").read_bytes())
-    return (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode()

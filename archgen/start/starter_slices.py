@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from archgen.products.schema_renewal import SCHEMA_FILE
 from archgen.project import PROJECT_FILE
 from archgen.start import start_templates
 from archgen.start.start_answers import StartAnswers
@@ -76,8 +77,10 @@ def _write_slice(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) 
     if nodes:
         node_section = root.add_mapping("nodes", is_spaced=True)
         for node, body in nodes.items():
-            node_section.add_entry(node, body)
-    return block_documents.write_document(root, f"# yaml-language-server: $schema=../{start_templates.SCHEMA_PATH}\n")
+            node_mapping = node_section.add_mapping(node)
+            for key, value in body.items():
+                node_mapping.add_entry(key, value)
+    return block_documents.write_document(root, f"# yaml-language-server: $schema=../{SCHEMA_FILE}\n")
 
 
 def _add_component(component: block_documents.BlockMapping, body: Mapping[str, Any]) -> None:

@@ -17,10 +17,10 @@ from tests.cli.conftest import Run
 from tests.running import ROOT, contents
 
 FILES = [
-    ".archgen/archgen.schema.json",
     ".gitattributes",
     ".github/workflows/architecture.yml",
     ".gitignore",
+    ".vscode/archgen.schema.json",
     ".vscode/extensions.json",
     ".vscode/settings.json",
     "README.md",
@@ -207,6 +207,7 @@ def test_settings_are_what_editors_and_git_read(run: Run, tmp_path: Path) -> Non
         line = (tmp_path / file).read_text(encoding="utf-8").splitlines()[0]
         assert line.startswith("# yaml-language-server: $schema=")
         assert ((tmp_path / file).parent / line.partition("=")[2]).resolve() == (tmp_path / schema).resolve()
+    assert schema.removeprefix("./") in (tmp_path / ".gitignore").read_text(encoding="utf-8").splitlines()
     attributes = (tmp_path / ".gitattributes").read_text(encoding="utf-8")
     assert not any(word in attributes for word in ("filter", "diff=", "merge="))
 

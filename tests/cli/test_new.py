@@ -84,7 +84,7 @@ def test_where_nodes_stand_beside_their_groups_a_new_one_does(run: Run, tmp_path
     for words in (("group", "arm"), ("component", "arm.hand"), ("node", "hand_driver", "--implements", "hand")):
         assert run("new", *words, "-C", tmp_path / "r").status == 0
     assert (tmp_path / "r/groups/arm.yaml").read_text(encoding="utf-8") == (
-        "# yaml-language-server: $schema=../.archgen/archgen.schema.json\n"
+        "# yaml-language-server: $schema=../.vscode/archgen.schema.json\n"
         "groups:\n  arm:\n    title: Arm\n    description:  # what the group is for\n"
         "    components:  # `archgen new component` adds one\n"
         "      hand:\n        title: Hand\n        functionality:  # what it does, in a sentence or two\n"

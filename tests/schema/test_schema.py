@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
 import jsonschema_rs
 import pytest
 
+from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.schema.schema_validation import load_schema
 
 SCHEMA = load_schema()
@@ -25,6 +27,11 @@ def parts(part: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:  #
         yield from parts(below, f"{path}/$defs/{name}")
 
 
+def examples_of(part: dict[str, Any]) -> list[Any]:
+    """Give the examples of a value: single values, and the bodies of snippets."""
+    return [*part.get("examples", ()), *(snippet["body"] for snippet in part.get("defaultSnippets", ()))]
+
+
 PARTS = dict(parts(SCHEMA))
 
 
@@ -37,9 +44,10 @@ def test_everything_is_explained_and_every_example_holds(path: str) -> None:
     part = PARTS[path]
     assert part["title"]
     assert part["description"].rstrip().endswith((".", "`", ")"))
-    assert part["examples"]
     validator = jsonschema_rs.Draft202012Validator({**part, "$defs": SCHEMA["$defs"]})
-    for example in part["examples"]:
+    examples = examples_of(part)
+    assert examples
+    for example in examples:
         validator.validate(example)
 
 
@@ -57,3 +65,18 @@ def test_nothing_is_required_and_every_value_may_be_left_empty() -> None:
 
 def test_what_a_pattern_refuses_is_explained() -> None:
     assert [path for path, part in PARTS.items() if "pattern" in part and "patternErrorMessage" not in part] == []
+
+
+def test_no_example_is_a_list_or_a_mapping_which_editors_would_offer_as_object_object() -> None:
+    assert [
+        path for path, part in PARTS.items() if any(isinstance(e, list | dict) for e in part.get("examples", ()))
+    ] == []
+
+
+def test_no_example_is_a_name_of_the_case_study() -> None:
+    examples = json.dumps([examples_of(part) for part in PARTS.values()]).lower()
+    assert [word for word in ("ramcip", "certh", "sssa", "r-12", "rgbd", "grasp") if word in examples] == []
+
+
+def test_every_distribution_that_init_knows_is_an_example() -> None:
+    assert tuple(SCHEMA["$defs"]["ros"]["properties"]["distro"]["examples"]) == KNOWN_DISTROS

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 import pytest
@@ -53,9 +52,3 @@ def test_a_folder_is_no_expression_of_a_workflow(folder: str) -> None:
 def test_a_folder_is_no_variable_of_a_pipeline(folder: str, written: str) -> None:
     assert written in start_templates.fill_pipeline(folder).decode()
     yaml.safe_load(start_templates.fill_pipeline(folder))
-
-
-def test_the_schema_for_editors_is_the_shipped_one() -> None:
-    compact = start_templates.compact_schema()
-    assert json.loads(compact)["title"]
-    assert compact.count(b"\n") > 100

@@ -1,0 +1,74 @@
+"""Write the JSON Schema of a project for editors."""
+
+from __future__ import annotations
+
+import json
+import os
+import posixpath
+from pathlib import Path
+
+from archgen.edit.element_edit import SCHEMA_LINE_PATTERN
+from archgen.emit import file_tree
+from archgen.emit.data import editor_schema
+from archgen.findings.rule_pages import parse_rule_page
+from archgen.pipeline import ALL_RULES, CheckedProject
+from archgen.products import schema_renewal
+from archgen.products.product_writing import write_product_file
+from archgen.views.offered_names import OfferedNames, list_offered_names
+
+_LANGUAGE_ID = '"$id": "urn:archgen:schema:1"'
+"""Near the beginning of the schema without names, which older versions of `archgen init` wrote."""
+
+
+def render_schema(checked_project: CheckedProject) -> bytes:
+    """Return the schema of a project, as one line of JSON."""
+    return render_names(list_offered_names(checked_project.architecture), schema_renewal.digest_texts(checked_project))
+
+
+def render_names(names: OfferedNames, text_digest: str) -> bytes:
+    """Return the schema that offers these names, made from files with this digest."""
+    summaries = {rule.name: parse_rule_page(rule).summary for rule in ALL_RULES if not rule.fixed}
+    language_schema = schema_renewal.language_schema_path().read_bytes()
+    schema = editor_schema.make_editor_schema(language_schema, names, summaries)
+    mark = schema_renewal.format_mark(text_digest, schema_renewal.digest_names(names))
+    # ASCII: names may hold anything, and editors read the file in any encoding.
+    return f'{mark}",{json.dumps(schema, separators=(",", ":"))[1:]}\n'.encode()
+
+
+def write_schema(checked_project: CheckedProject, target: Path | None = None) -> tuple[Path, bool]:
+    """Write the schema of a project, by default to its place; return where it is, and whether it was another before.
+
+    Raise OutputError where a link or a file of somebody else stands there.
+    """
+    path = target or checked_project.root / schema_renewal.SCHEMA_FILE
+    if path.is_symlink() or (target is None and path.parent.is_symlink()):
+        msg = f"{path} is a link"
+        raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
+    content = render_schema(checked_project)
+    head = schema_renewal.read_head(path)
+    if head is not None and not head.startswith(schema_renewal.MARK) and _LANGUAGE_ID not in head:
+        msg = f"{path} is no schema that archgen wrote"
+        raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
+    if head is not None and path.read_bytes() == content:
+        return path, False
+    write_product_file(checked_project, path, content)
+    return path, True
+
+
+def explain_set_up(checked_project: CheckedProject, path: Path) -> str | None:
+    """Return what is still to be done so that editors find a schema that was written; None if nothing is."""
+    root = checked_project.root
+    address = os.path.relpath(path, root).replace(os.sep, "/")
+    schema_lines = {
+        file: match[1]
+        for file in checked_project.yaml_files
+        if (match := SCHEMA_LINE_PATTERN.match(checked_project.sources.text_of(file) or ""))
+    }
+    # Editors follow the line before their settings.
+    for file, line_address in schema_lines.items():
+        if posixpath.normpath(posixpath.join(posixpath.dirname(file), line_address)) != address:
+            wanted = posixpath.relpath(address, posixpath.dirname(file) or ".")
+            return f"the first line of {file} names another schema: write `# yaml-language-server: $schema={wanted}`"
+    if schema_lines or (root / ".vscode/settings.json").exists():
+        return None
+    return f"editors find it by the line `# yaml-language-server: $schema={address}` on top of a file, or by a setting"

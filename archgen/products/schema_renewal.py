@@ -1,0 +1,107 @@
+"""Renew the JSON Schema of a project for editors where it is archgen's own, and git ignores it.
+
+Nearly every check on a terminal ends here with nothing to do: this module imports the rest only to write.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from archgen import resources
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.views.offered_names import OfferedNames
+
+SCHEMA_FILE = ".vscode/archgen.schema.json"
+"""Where `archgen init` lets editors look for it, relative to the project's folder."""
+MARK = '{"$comment":"archgen schema wrote this file, and renews it; do not edit it, let git ignore it. '
+"""How a schema begins that archgen wrote."""
+_HEAD_LENGTH = 400
+_MAKER_FILE = Path(__file__).resolve().parents[1] / "emit" / "data" / "editor_schema.py"
+
+
+def renew_schema(checked_project: CheckedProject) -> bool:
+    """Write the schema of a project anew if one is there, names have changed, and git ignores it.
+
+    Silent where that cannot be: it comes beside something else. A project that cannot be read whole keeps the names
+    that it had.
+    """
+    path = checked_project.root / SCHEMA_FILE
+    if not _is_plain_file(path) or checked_project.architecture.partial:
+        return False
+    head = read_head(path) or ""
+    text_digest = digest_texts(checked_project)
+    if not head.startswith(MARK) or head.startswith(format_mark(text_digest)):
+        return False
+    from archgen.views.offered_names import list_offered_names
+
+    names = list_offered_names(checked_project.architecture)
+    return digest_names(names) not in head and _write_names(checked_project.root, names, text_digest)
+
+
+def _write_names(root: Path, names: OfferedNames, text_digest: str) -> bool:
+    from archgen.emit import file_tree
+    from archgen.git import ignores_file
+    from archgen.products import editor_schema_file
+
+    if ignores_file(root, SCHEMA_FILE):
+        with contextlib.suppress(OSError, file_tree.OutputError):
+            file_tree.write_file(root / SCHEMA_FILE, editor_schema_file.render_names(names, text_digest))
+            return True
+    return False
+
+
+def format_mark(text_digest: str, name_digest: str = "") -> str:
+    """Return how a schema begins that was made from files with this digest, and holds names with that one."""
+    return f"{MARK}Made from {text_digest}, names {name_digest}"
+
+
+def digest_texts(checked_project: CheckedProject) -> str:
+    """Return a digest of the project's YAML files and of what makes schemas of them."""
+    checksum = _start_digest()
+    for file in checked_project.yaml_files:
+        text = checked_project.sources.text_of(file) or ""
+        checksum.update(f"{file} {len(text)}\n{text}".encode(errors="surrogatepass"))
+    return checksum.hexdigest()[:16]
+
+
+def digest_names(names: OfferedNames) -> str:
+    """Return a digest of the names, and of what makes a schema of them."""
+    checksum = _start_digest()
+    checksum.update(repr(names).encode(errors="surrogatepass"))
+    return checksum.hexdigest()[:16]
+
+
+def _start_digest() -> hashlib._Hash:
+    """Begin a digest with what makes schemas: another archgen makes another schema."""
+    return hashlib.sha256(language_schema_path().read_bytes() + _MAKER_FILE.read_bytes())
+
+
+def language_schema_path() -> Path:
+    """Return the file with the language's own schema."""
+    return resources.resource_path("schemas", "archgen.schema.json")
+
+
+def _is_plain_file(path: Path) -> bool:
+    """Whether there is a file, and neither it nor its folder is a link."""
+    try:
+        return stat.S_ISREG(os.lstat(path).st_mode) and stat.S_ISDIR(os.lstat(path.parent).st_mode)
+    except OSError:
+        return False
+
+
+def read_head(path: Path) -> str | None:
+    """Return the beginning of a file, empty if it cannot be read; None if there is none."""
+    if not os.path.lexists(path):
+        return None
+    try:
+        with path.open("rb") as stream:
+            return stream.read(_HEAD_LENGTH).decode("utf-8", "replace")
+    except OSError:
+        return ""
