@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import field
 from typing import Literal
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics.suggestions import count_slips, find_closest
 from archgen.frozen import dataclass
 from archgen.model.ros_distro import is_ros_1
 
@@ -24,6 +24,12 @@ _GENERATED_SUFFIXES = {
     ),
 }
 """Suffixes of the interfaces that ROS 2 generates from services and actions, and that exist as soon as these do."""
+_MAX_NAME_SLIPS = 2
+"""The slips after which a name of a package that is not held whole is still taken for another one of it."""
+_SURE_STEM_LENGTH = 5
+"""The letters of a package's name, without `_msgs`, from which on one wrong letter is a slip: `car_msgs` may be a package
+of somebody's own, `geometri_msgs` hardly (and `tensor_msgs` exists, so that the first letter has to be right).
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +56,8 @@ class Interfaces:
     """All interfaces known for one distribution.
 
     All names of a package in `complete_packages` are known. Any other package may have names that archgen does not
-    know: no name of it is ever wrong. `definitions` reads the shipped data on first use.
+    know: of a package in `patch_packages`, which is held as of an earlier patch release, only slips are wrong, and of the
+    others nothing is. `definitions` and `holding_distros` read the shipped data on first use.
     """
 
     distro: str | None = None
@@ -63,12 +70,50 @@ class Interfaces:
     """Whether archgen knows any names for this distribution."""
     mapper_names: tuple[str, ...] = ()
     """The type names of the shipped type mapper, if it is used: candidates for what an unmapped type may mean."""
+    patch_packages: frozenset[str] = frozenset()
+    holding_distros: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False, repr=False)
+    """The distributions that have an interface, by full name: a name that is missing here may be right elsewhere."""
 
     def status_of(self, message: str) -> InterfaceStatus:
         """Return whether `pkg/msg/Name` exists ("known"), does not exist ("wrong"), or is unknown ("not held")."""
         if message in self.names or self._base_name(message) in self.names:
             return "known"
-        return "wrong" if message.split("/", 1)[0] in self.complete_packages else "not held"
+        is_wrong = message.split("/", 1)[0] in self.complete_packages or self.find_slip(message) is not None
+        return "wrong" if is_wrong else "not held"
+
+    def find_slip(self, message: str) -> str | None:
+        """Return the interface that an unknown name is certainly a slip of, None if there is none.
+
+        A name that some distribution has is no slip: it may have come to this one since.
+        """
+        package, kind, short = message.split("/")
+        if message in self.holding_distros:
+            return None
+        if package in self.complete_packages | self.patch_packages:
+            return self.find_other_kind(message) or self._find_near_name(package, kind, short)
+        if package in self.known_packages() or self.distro is None:
+            return None
+        namesakes = sorted(name for name in self.names if name.endswith(f"/{kind}/{short}"))
+        return next((name for name in namesakes if _is_package_slip(package, name.split("/")[0])), None)
+
+    def find_other_kind(self, message: str) -> str | None:
+        """Return the interface of this name, but of another kind: `nav_msgs/srv/GetPlan` for `nav_msgs/msg/GetPlan`.
+
+        ROS 1 writes actions as messages: `MoveBaseAction` is the action `MoveBase`.
+        """
+        package, kind, short = message.split("/")
+        other_kinds = {
+            "srv": f"{package}/srv/{short}",
+            "msg": f"{package}/msg/{short}",
+            "action": f"{package}/action/{short.removesuffix('Action') or short}",
+        }
+        return next((name for other, name in other_kinds.items() if other != kind and name in self.names), None)
+
+    def _find_near_name(self, package: str, kind: str, short: str) -> str | None:
+        package_names = self._index_by_name((name for name in self.names if name.startswith(f"{package}/")), kind)
+        guess = find_closest(short, package_names)
+        is_slip = guess is not None and count_slips(short, guess) <= _MAX_NAME_SLIPS
+        return package_names[guess] if guess is not None and is_slip else None
 
     def known_packages(self) -> frozenset[str]:
         """Return the packages with at least one known interface."""
@@ -79,6 +124,9 @@ class Interfaces:
 
         A namesake in another package counts if the packages' names are similar, or if it is the only one.
         """
+        other_kind = self.find_other_kind(message)
+        if other_kind is not None:
+            return other_kind
         package, kind, short = message.split("/")
         # A name of the same package outranks a namesake elsewhere, however similar the packages are.
         package_names = self._index_by_name((name for name in self.names if name.startswith(f"{package}/")), kind)
@@ -107,3 +155,16 @@ class Interfaces:
         for name in sorted(names, key=lambda name: (name.split("/")[1] == kind, name)):
             names_by_end[name.rsplit("/", 1)[1]] = name
         return names_by_end
+
+
+def _is_package_slip(package: str, name: str) -> bool:
+    """Whether an unknown package is certainly a slip of a known one: `nav_msg`, `sdt_msgs` or `sensors_msgs`.
+
+    Of the 6,134 packages of eleven distributions none is taken for one that is held and has the same message.
+    """
+    slips = count_slips(package, name)
+    stem, known_stem = package.rpartition("_")[0], name.rpartition("_")[0]
+    if stem and stem == known_stem:
+        return slips <= _MAX_NAME_SLIPS
+    is_long = len(known_stem) >= _SURE_STEM_LENGTH and package[0] == name[0]
+    return slips == 0 or (slips == 1 and (is_long or sorted(package) == sorted(name)))
