@@ -24,7 +24,7 @@ from archgen.link import interface_sources, report_chapters, shipped_types, slic
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
+from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
@@ -188,7 +188,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         merged_table,
         default_id=loaded_project.id,
         default_title=loaded_project.title,
-        shipped_types=shipped_types.load_shipped_types(loaded_project.distro),
+        shipped_types=shipped_types.load_shipped_types(guess_distro(loaded_project.distro)),
         interfaces=known_interfaces,
         lost_keys=loaded_project.lost_keys,
         is_partial=loaded_project.partial,
@@ -263,7 +263,7 @@ def _load_interfaces(
     entries = inline_table if isinstance(inline_table, MappingNode) else ()
     inline_definitions = {e.key: (e.value.text, e.value.span) for e in entries if isinstance(e.value, ScalarNode)}
     known_interfaces, load_diagnostics = interface_sources.load_interfaces(
-        loaded_project.distro, tuple(texts.items()), inline_definitions
+        guess_distro(loaded_project.distro), tuple(texts.items()), inline_definitions
     )
     return known_interfaces, (*diagnostics, *load_diagnostics)
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 from archgen.diagnostics.suggestions import count_slips, find_closest
 from archgen.frozen import dataclass
-from archgen.model.ros_distro import is_ros_1
+from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 
 KNOWN_DISTROS = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
 """The distributions whose interfaces ship with archgen. The order counts: for a project without a distribution, the
@@ -155,6 +155,16 @@ class Interfaces:
         for name in sorted(names, key=lambda name: (name.split("/")[1] == kind, name)):
             names_by_end[name.rsplit("/", 1)[1]] = name
         return names_by_end
+
+
+def guess_distro(distro: str | None) -> str | None:
+    """Return the distribution that a project means: what it writes, or what that is a slip of (`jazzy` for `jazy`).
+
+    Messages are checked against the guess, so that a slip in one word does not keep all others unseen.
+    """
+    if distro is None or distro in KNOWN_DISTROS or distro in PAST_DISTROS:
+        return distro
+    return find_closest(distro, KNOWN_DISTROS) or distro
 
 
 def _is_package_slip(package: str, name: str) -> bool:
