@@ -196,7 +196,9 @@ def _suggest_interface(message: str, interfaces: Interfaces) -> str | None:
     other_kind = interfaces.find_other_kind(message)
     if other_kind is not None:
         article = "an" if flow_of(other_kind) == "action" else "a"
-        return f"`{other_kind.rpartition('/')[2]}` is {article} {_FLOW_NOUNS[flow_of(other_kind)]}: write `{other_kind}`"
+        return (
+            f"`{other_kind.rpartition('/')[2]}` is {article} {_FLOW_NOUNS[flow_of(other_kind)]}: write `{other_kind}`"
+        )
     holding_distros = _name_other_distros(message, interfaces)
     if holding_distros:
         return f"it is in {holding_distros}, not in {interfaces.distro}"
@@ -225,6 +227,47 @@ def _suggest_definition_file(message: str) -> str:
     package, kind, name = message.split("/")
     file = f"msgs/{package}/{kind}/{name}.{kind}"
     return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
+
+
+def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """The message that describes an action is used as if it were sent on a topic.
+
+    Why: `MoveBaseAction` is how ROS 1 names an action in its programs. Taken for a message, the goal seems to flow from the
+    component that has the output, while in an action the server has it: roles, pictures and timing go the wrong way.
+
+    Bad:
+        ros: {distro: noetic}
+        groups:
+          driving:
+            components:
+              base: {outputs: {go: move_base_msgs/MoveBaseAction}}
+              planner: {inputs: {go: base.go}}
+        nodes:
+          move_base: {implements: base}
+          planner: {implements: planner}
+
+    Good:
+        ros: {distro: noetic}
+        groups:
+          driving:
+            components:
+              base: {outputs: {go: move_base_msgs/action/MoveBase}}
+              planner: {inputs: {go: base.go}}
+        nodes:
+          move_base: {implements: base}
+          planner: {implements: planner}
+    """
+    interfaces = architecture.interfaces
+    for message, span, element in _mentions_with_status(architecture, "known"):
+        action = interfaces.find_other_kind(message) if message.endswith("Action") else None
+        if action is not None and flow_of(action) == "action":
+            yield Diagnostic(
+                "action-as-message",
+                f"`{message}` describes an action, and no topic carries it",
+                span,
+                help=f"write `{action}`; its output belongs to the component that serves it",
+                element=element,
+            )
 
 
 def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -304,5 +347,6 @@ def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
 RULES = (
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
+    (action_as_message, Severity.WARNING),
     (topic_type_conflict, Severity.ERROR),
 )

@@ -33,11 +33,15 @@ nodes: {n: g.c}
         # A name that is right, though old, is no error.
         (
             "foxy",
-            ["1:15 warning unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"],
+            [
+                "1:15 warning unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"
+            ],
         ),
         (
             "windows",
-            ["1:15 error unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"],
+            [
+                "1:15 error unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"
+            ],
         ),
         ("humble", ["2:51 error unknown-message did you mean `sensor_msgs/msg/Image`?"]),
     ],

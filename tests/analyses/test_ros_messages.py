@@ -96,18 +96,24 @@ def test_unknown_messages_of_types_and_of_nodes() -> None:
         ),
         (
             "nav_msgs/msg/GetPlan",
-            "no message `nav_msgs/msg/GetPlan` in `nav_msgs`, as jazzy has it "
-            "(`GetPlan` is a service: write `nav_msgs/srv/GetPlan`)",
+            (
+                "no message `nav_msgs/msg/GetPlan` in `nav_msgs`, as jazzy has it "
+                "(`GetPlan` is a service: write `nav_msgs/srv/GetPlan`)"
+            ),
         ),
         (
             "nav2_msgs/msg/NavigateToPoseAction",
-            "no message `nav2_msgs/msg/NavigateToPoseAction` in `nav2_msgs`, as jazzy has it "
-            "(`NavigateToPose` is an action: write `nav2_msgs/action/NavigateToPose`)",
+            (
+                "no message `nav2_msgs/msg/NavigateToPoseAction` in `nav2_msgs`, as jazzy has it "
+                "(`NavigateToPose` is an action: write `nav2_msgs/action/NavigateToPose`)"
+            ),
         ),
         (
             "nav_msg/msg/Odometry",
-            "no message `nav_msg/msg/Odometry`: archgen holds no package `nav_msg` for jazzy "
-            "(did you mean `nav_msgs/msg/Odometry`?)",
+            (
+                "no message `nav_msg/msg/Odometry`: archgen holds no package `nav_msg` for jazzy "
+                "(did you mean `nav_msgs/msg/Odometry`?)"
+            ),
         ),
         (
             "nav2_msgs/msg/Trajectory",

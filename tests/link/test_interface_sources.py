@@ -274,12 +274,18 @@ def test_a_slip_in_the_type_of_a_field_is_an_error_where_it_is_certain() -> None
     text = "geometry_msgs/Piont a\ngeomtry_msgs/Point b\nfar_off_msgs/Strange c\nfar_off_msgs/Wrench d\ngeomtri_msgs/Point e"
     _, diagnostics = load_interfaces("humble", [("demo_msgs/msg/Thing.msg", text)])
     assert [f"{diagnostic.rule} {brief(diagnostic)}" for diagnostic in diagnostics] == [
-        "invalid-interface demo_msgs/msg/Thing.msg:1:1 there is no message `geometry_msgs/msg/Piont` (did you mean "
-        "`geometry_msgs/Point`?)",
-        "invalid-interface demo_msgs/msg/Thing.msg:2:1 there is no message `geomtry_msgs/msg/Point` (did you mean "
-        "`geometry_msgs/Point`?)",
-        "unchecked-message demo_msgs/msg/Thing.msg:5:1 archgen holds no message `geomtri_msgs/msg/Point` (did you mean "
-        "`geometry_msgs/Point`?)",
+        (
+            "invalid-interface demo_msgs/msg/Thing.msg:1:1 there is no message `geometry_msgs/msg/Piont` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
+        (
+            "invalid-interface demo_msgs/msg/Thing.msg:2:1 there is no message `geomtry_msgs/msg/Point` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
+        (
+            "unchecked-message demo_msgs/msg/Thing.msg:5:1 archgen holds no message `geomtri_msgs/msg/Point` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
     ]
     assert load_interfaces("foxy", [("demo_msgs/msg/Thing.msg", text)])[1] == ()
 
