@@ -20,7 +20,7 @@ from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
 from archgen.frozen import dataclass
-from archgen.link import interface_sources, report_chapters, shipped_types, slice_merging
+from archgen.link import interface_sources, parameter_files, report_chapters, shipped_types, slice_merging
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
@@ -196,6 +196,11 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     architecture = transform.transform_architecture(linked_architecture)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
+    # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    missing_files = (
+        tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
+    )
     # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
     # explain, so that one mistake is reported once.
     structural_errors = [
@@ -208,6 +213,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *interface_findings,
         *link_findings,
         *chapter_findings,
+        *missing_files,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), structural_errors, loaded_project.sources
         ),

@@ -44,7 +44,7 @@ def half_written(architecture: Architecture) -> Iterator[Diagnostic]:
         nodes:
           camera: {implements: camera, kind: composable, package: usb_cam, plugin: "usb_cam::UsbCamNode", container: vision}
           screen: {implements: screen}
-        containers: {vision: Vision}
+        containers: {vision: {title: Vision}}
     """
     # In ROS 1 the kind itself is wrong, which `other-ros-generation` reports.
     for node in architecture.nodes.values() if not is_ros_1(architecture.distro) else ():
@@ -103,7 +103,7 @@ def uncomposable_node(architecture: Architecture) -> Iterator[Diagnostic]:
         nodes:
           camera: {implements: camera, kind: composable, plugin: "usb_cam::UsbCamNode", container: vision}
           screen: {implements: screen, container: vision, executable: image_view}
-        containers: {vision: Vision}
+        containers: {vision: {title: Vision}}
 
     Good:
         groups:
@@ -114,7 +114,7 @@ def uncomposable_node(architecture: Architecture) -> Iterator[Diagnostic]:
         nodes:
           camera: {implements: camera, kind: composable, plugin: "usb_cam::UsbCamNode", container: vision}
           screen: {implements: screen, executable: image_view}
-        containers: {vision: Vision}
+        containers: {vision: {title: Vision}}
     """
     loaded_nodes = {node.container: node for node in architecture.nodes.values() if _is_loadable(node)}
     for node in architecture.nodes.values():
