@@ -277,6 +277,7 @@ def test_rules_have_pages() -> None:
     assert {rule.name: rule.severity for rule in rules} == {
         "unknown-message": Severity.ERROR,
         "unchecked-message": Severity.NOTE,
+        "action-as-message": Severity.WARNING,
         "topic-type-conflict": Severity.ERROR,
     }
     for rule in rules:
