@@ -24,6 +24,9 @@ _GENERATED_SUFFIXES = {
     ),
 }
 """Suffixes of the interfaces that ROS 2 generates from services and actions, and that exist as soon as these do."""
+_SPELLED_SEPARATOR = re.compile(r"/|::|\.")
+"""What stands between the parts of a message's name: in ROS, in C++, in Python."""
+_FULL_NAME_PARTS = 3
 _MAX_NAME_SLIPS = 2
 """The slips after which a name of a package that is not held whole is still taken for another one of it."""
 _SURE_STEM_LENGTH = 5
@@ -95,6 +98,18 @@ class Interfaces:
             return None
         namesakes = sorted(name for name in self.names if name.endswith(f"/{kind}/{short}"))
         return next((name for name in namesakes if _is_package_slip(package, name.split("/")[0])), None)
+
+    def read_message(self, text: str) -> str | None:
+        """Return the message that a text in another spelling means, such as `nav_msgs::msg::Odometry` or `std_msgs/string`.
+
+        None if it is a known message as it stands, or means none for certain.
+        """
+        parts = _SPELLED_SEPARATOR.split(text)
+        package, kind, short = parts if len(parts) == _FULL_NAME_PARTS else (parts[0], "msg", parts[-1])
+        if not 1 < len(parts) <= _FULL_NAME_PARTS or kind not in {"msg", "srv", "action"} or not short:
+            return None
+        message = f"{package}/{kind}/{short}"
+        return message if message in self.names else self.find_slip(message)
 
     def find_other_kind(self, message: str) -> str | None:
         """Return the interface of this name, but of another kind: `nav_msgs/srv/GetPlan` for `nav_msgs/msg/GetPlan`.
