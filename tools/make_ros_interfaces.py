@@ -75,7 +75,7 @@ def names(distro: str, listed: dict[str, dict[str, dict[str, list[str]]]]) -> di
             found[package] = {kind: set(entry.get(kind, ())) for kind in KINDS}
             if "seen" not in entry and distro != "rolling":
                 whole.add(package)
-            elif "seen" in entry and minor(str(entry["seen"])) == minor(str(entry["released"])):
+            elif "seen" in entry and distro != "rolling" and minor(str(entry["seen"])) == minor(str(entry["released"])):
                 patch.add(package)
             if distro == "noetic":
                 found[package]["msg"] |= {action + end for action in found[package]["action"] for end in OF_ACTION}
