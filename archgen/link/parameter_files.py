@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from collections import defaultdict
 from collections.abc import Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
@@ -77,7 +78,7 @@ class _FileSearch:
 
     def __init__(self, files: ProjectFiles) -> None:
         self._files = files
-        self._folders: tuple[str, ...] | None = None
+        self._parents_by_name: dict[str, list[str]] | None = None
 
     def is_missing(self, scalar: ScalarNode, package: str | None) -> bool:
         """Whether a file that a node of a package names should be in the project, and is not."""
@@ -91,7 +92,7 @@ class _FileSearch:
         if self._is_below(package_folders, scalar.text):
             return False
         first_part = posixpath.normpath(scalar.text).partition("/")[0]
-        return not package or bool(package_folders) or any(first_part in self._list_content(top) for top in tops)
+        return not package or bool(package_folders) or not set(tops).isdisjoint(self._find_parents(first_part))
 
     def _is_below(self, folders: list[str], path: str) -> bool:
         paths = [posixpath.normpath(posixpath.join(folder, path)) for folder in folders]
@@ -99,14 +100,15 @@ class _FileSearch:
         return any(not path.startswith("../") and read_binary_file(self._files, path) is not None for path in paths)
 
     def _find_folders(self, name: str) -> list[str]:
-        if self._folders is None:
-            self._folders = tuple(self._list_folders())
-        return [folder for folder in self._folders if posixpath.basename(folder) == name]
+        return [posixpath.join(parent, name) for parent in self._find_parents(name)]
 
-    def _list_content(self, folder: str) -> list[str]:
-        if self._folders is None:
-            self._folders = tuple(self._list_folders())
-        return [posixpath.basename(path) for path in self._folders if posixpath.dirname(path) == folder]
+    def _find_parents(self, name: str) -> list[str]:
+        """Return the folders that hold a folder of this name."""
+        if self._parents_by_name is None:
+            self._parents_by_name = defaultdict(list)
+            for folder in self._list_folders():
+                self._parents_by_name[posixpath.basename(folder)].append(posixpath.dirname(folder))
+        return self._parents_by_name.get(name, [])
 
     def _list_folders(self) -> Iterator[str]:
         for folder, folders, _ in self._files.walk_folders(""):

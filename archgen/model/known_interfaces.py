@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import field
+from functools import lru_cache
 from typing import Literal
 
 from archgen.diagnostics.suggestions import count_slips, find_closest
@@ -96,8 +97,9 @@ class Interfaces:
             return self.find_other_kind(message) or self._find_near_name(package, kind, short)
         if package in self.known_packages() or self.distro is None:
             return None
-        namesakes = sorted(name for name in self.names if name.endswith(f"/{kind}/{short}"))
-        return next((name for name in namesakes if _is_package_slip(package, name.split("/")[0])), None)
+        namesake_packages = _index_packages(self.names).get(f"{kind}/{short}", ())
+        slips = (name for name in namesake_packages if _is_package_slip(package, name))
+        return next((f"{name}/{kind}/{short}" for name in slips), None)
 
     def read_message(self, text: str) -> str | None:
         """Return the message that a text in another spelling means, such as `nav_msgs::msg::Odometry` or `std_msgs/string`.
@@ -125,14 +127,14 @@ class Interfaces:
         return next((name for other, name in other_kinds.items() if other != kind and name in self.names), None)
 
     def _find_near_name(self, package: str, kind: str, short: str) -> str | None:
-        package_names = self._index_by_name((name for name in self.names if name.startswith(f"{package}/")), kind)
+        package_names = _index_names(self.names, package, kind)
         guess = find_closest(short, package_names)
         is_slip = guess is not None and count_slips(short, guess) <= _MAX_NAME_SLIPS
         return package_names[guess] if guess is not None and is_slip else None
 
     def known_packages(self) -> frozenset[str]:
         """Return the packages with at least one known interface."""
-        return frozenset(name.split("/", 1)[0] for name in self.names)
+        return _list_packages(self.names)
 
     def find_nearest(self, message: str) -> str | None:
         """Return the interface that an unknown name most likely means: one of its package, else its namesake elsewhere.
@@ -144,11 +146,11 @@ class Interfaces:
             return other_kind
         package, kind, short = message.split("/")
         # A name of the same package outranks a namesake elsewhere, however similar the packages are.
-        package_names = self._index_by_name((name for name in self.names if name.startswith(f"{package}/")), kind)
+        package_names = _index_names(self.names, package, kind)
         guess = find_closest(short, package_names)
         if guess is not None:
             return package_names[guess]
-        namesake_packages = {name.split("/")[0] for name in self.names if name.endswith(f"/{kind}/{short}")}
+        namesake_packages = _index_packages(self.names).get(f"{kind}/{short}", ())
         nearest_package = find_closest(package, namesake_packages) or (
             min(namesake_packages) if len(namesake_packages) == 1 else None
         )
@@ -162,14 +164,32 @@ class Interfaces:
         pattern = None if is_ros_1(self.distro) else _GENERATED_SUFFIXES.get(message.split("/")[1])
         return pattern.sub("", message) if pattern else message
 
-    @staticmethod
-    def _index_by_name(names: Iterable[str], kind: str) -> dict[str, str]:
-        """Index full names by their last part; if two kinds share a last part, the wanted kind wins."""
-        # Names of the wanted kind are sorted to the end: the last one written stays.
-        names_by_end = dict[str, str]()
-        for name in sorted(names, key=lambda name: (name.split("/")[1] == kind, name)):
-            names_by_end[name.rsplit("/", 1)[1]] = name
-        return names_by_end
+
+# Cached by the set of names, which a project has one of: a hostile one may ask for tens of thousands of names.
+@lru_cache(8)
+def _list_packages(names: frozenset[str]) -> frozenset[str]:
+    return frozenset(name.split("/", 1)[0] for name in names)
+
+
+@lru_cache(8)
+def _index_packages(names: frozenset[str]) -> Mapping[str, tuple[str, ...]]:
+    """Return the packages that have an interface, sorted, by the rest of its name (`msg/Image`)."""
+    packages = dict[str, tuple[str, ...]]()
+    for name in sorted(names):
+        package, _, rest = name.partition("/")
+        packages[rest] = (*packages.get(rest, ()), package)
+    return packages
+
+
+@lru_cache(512)
+def _index_names(names: frozenset[str], package: str, kind: str) -> Mapping[str, str]:
+    """Index the full names of a package by their last part; if two kinds share a last part, the wanted kind wins."""
+    # Names of the wanted kind are sorted to the end: the last one written stays.
+    package_names = [name for name in names if name.startswith(f"{package}/")]
+    return {
+        name.rsplit("/", 1)[1]: name
+        for name in sorted(package_names, key=lambda name: (name.split("/")[1] == kind, name))
+    }
 
 
 def guess_distro(distro: str | None) -> str | None:
