@@ -20,11 +20,11 @@ from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
 from archgen.frozen import dataclass
-from archgen.link import interface_sources, report_chapters, shipped_types, slice_merging
+from archgen.link import interface_sources, parameter_files, report_chapters, shipped_types, slice_merging
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
+from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
@@ -188,7 +188,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         merged_table,
         default_id=loaded_project.id,
         default_title=loaded_project.title,
-        shipped_types=shipped_types.load_shipped_types(loaded_project.distro),
+        shipped_types=shipped_types.load_shipped_types(guess_distro(loaded_project.distro)),
         interfaces=known_interfaces,
         lost_keys=loaded_project.lost_keys,
         is_partial=loaded_project.partial,
@@ -196,6 +196,11 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     architecture = transform.transform_architecture(linked_architecture)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
+    # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    missing_files = (
+        tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
+    )
     # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
     # explain, so that one mistake is reported once.
     structural_errors = [
@@ -208,6 +213,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *interface_findings,
         *link_findings,
         *chapter_findings,
+        *missing_files,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), structural_errors, loaded_project.sources
         ),
@@ -263,7 +269,7 @@ def _load_interfaces(
     entries = inline_table if isinstance(inline_table, MappingNode) else ()
     inline_definitions = {e.key: (e.value.text, e.value.span) for e in entries if isinstance(e.value, ScalarNode)}
     known_interfaces, load_diagnostics = interface_sources.load_interfaces(
-        loaded_project.distro, tuple(texts.items()), inline_definitions
+        guess_distro(loaded_project.distro), tuple(texts.items()), inline_definitions
     )
     return known_interfaces, (*diagnostics, *load_diagnostics)
 

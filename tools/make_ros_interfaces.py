@@ -2,13 +2,14 @@
 
 Run `python tools/make_ros_interfaces.py`; it needs the package rosbags. For each distribution two files are made:
 
-- `NAME.names.json`: package -> {"whole": true or false, "msg": [...], "srv": [...], "action": [...]};
+- `NAME.names.json`: package -> {"whole": true or false, "patch": true, "msg": [...], "srv": [...], "action": [...]};
 - `NAME.fields.json`: message -> its fields, as in a definition (`float64[36] covariance`), for the core messages.
 
 Names come from ros_interfaces.yaml beside this script and from rosbags' type stores, fields from the type stores. A
-package is whole where ros_interfaces.yaml read it at the released version; only of such a package may archgen say that
-a name is wrong. Of lyrical and rolling, nothing is whole: lyrical's names are rosbags' core messages, rolling's these
-and what ros_interfaces.yaml lists for rolling, and rolling moves.
+package is whole where ros_interfaces.yaml read it at the released version; only of such a package may archgen say of any
+name that it is wrong. With `patch` it was read at an earlier patch release (5.9.2, and 5.9.3 is released): of such a
+package archgen says it only of slips. Of rolling, nothing is whole: its names are rosbags' core messages of lyrical and
+what ros_interfaces.yaml lists for rolling, and rolling moves.
 """
 
 from __future__ import annotations
@@ -67,24 +68,34 @@ def spell(node: tuple[int, Any], distro: str) -> str:
 def names(distro: str, listed: dict[str, dict[str, dict[str, list[str]]]]) -> dict[str, dict[str, object]]:
     """Give the packages of a distribution with their names."""
     found = dict[str, dict[str, set[str]]]()
-    whole = set[str]()
+    whole, patch = set[str](), set[str]()
     for package, distros in listed.items():
         entry = distros.get(distro)
         if entry is not None:
             found[package] = {kind: set(entry.get(kind, ())) for kind in KINDS}
             if "seen" not in entry and distro != "rolling":
                 whole.add(package)
+            elif "seen" in entry and distro != "rolling" and minor(str(entry["seen"])) == minor(str(entry["released"])):
+                patch.add(package)
             if distro == "noetic":
                 found[package]["msg"] |= {action + end for action in found[package]["action"] for end in OF_ACTION}
     for message in fields(distro):
         package, kind, name = message.split("/")
         found.setdefault(package, {kind: set() for kind in KINDS})[kind].add(name)
-    return {package: entry_of(package in whole, kinds) for package, kinds in sorted(found.items())}
+    return {
+        package: {"whole": package in whole, **({"patch": True} if package in patch else {}), **sorted_kinds(kinds)}
+        for package, kinds in sorted(found.items())
+    }
 
 
-def entry_of(whole: bool, kinds: dict[str, set[str]]) -> dict[str, object]:  # noqa: FBT001  # a plain fact
-    """Put one package together; kinds that it has none of are left out."""
-    return {"whole": whole, **{kind: sorted(kinds[kind]) for kind in KINDS if kinds[kind]}}
+def minor(version: str) -> list[str]:
+    """Return a version without what counts its patches: 5.9 of 5.9.2."""
+    return version.split(".")[:2]
+
+
+def sorted_kinds(kinds: dict[str, set[str]]) -> dict[str, object]:
+    """Sort the names of one package by kind; kinds that it has none of are left out."""
+    return {kind: sorted(kinds[kind]) for kind in KINDS if kinds[kind]}
 
 
 def rows(data: dict[str, object]) -> str:

@@ -30,7 +30,8 @@ def find_name_fault(text: str, *, ros_1: bool = False) -> str | None:
     remaining_name = text
     if text.startswith("~"):
         remaining_name = text[1:]
-        if remaining_name and not remaining_name.startswith("/"):
+        # In ROS 1 `~scan` is the private name that launch files and nodes write.
+        if remaining_name and not remaining_name.startswith("/") and not ros_1:
             return "`~` is followed by `/`"
     if remaining_name == "/" or not remaining_name:
         return None

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.component import Output
 from archgen.model.message_types import flow_of, full_message_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
-    from archgen.model.component import Output
 
 
 def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:
@@ -96,9 +97,10 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input is said to be physical, but its source sends messages.
+    """An input is said to be physical, but its source sends messages; or a node reads messages that a physical source never sends.
 
-    Why: What can be touched, seen or heard has no topic. The node would not subscribe to the data that is meant for it.
+    Why: What can be touched, seen or heard has no topic. The node would not subscribe to the data that is meant for it, or
+    subscribe to a topic that nobody publishes.
 
     Bad:
         groups:
@@ -136,6 +138,28 @@ def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
                 help="leave `medium: physical` out at the input, or write it at the output too",
                 element=entry.component,
             )
+    yield from _find_readers_of_physical_outputs(architecture)
+
+
+def _find_readers_of_physical_outputs(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Report what nodes subscribe to, or call, for inputs whose sources are all physical."""
+    outputs_by_input = defaultdict[str, list[Output]](list)
+    for edge in architecture.edges:
+        outputs_by_input[edge.input].append(architecture.outputs[edge.output])
+    for node in architecture.nodes.values():
+        for use in node.uses:
+            entry = architecture.inputs.get(use.port or "")
+            outputs = outputs_by_input.get(use.port or "", [])
+            # A physical input is `wrong-section`'s; one that is also fed from outside may get its messages there.
+            if entry and not entry.physical and not entry.external and outputs and all(o.physical for o in outputs):
+                yield Diagnostic(
+                    "medium-mismatch",
+                    f"`{node.id}` {'subscribes to' if use.use == 'subscribes' else use.use} `{entry.name}`, but `{outputs[0].id}` is physical and sends no messages",
+                    use.at,
+                    labels=(Label(outputs[0].at, "physical"),),
+                    help="leave the entry out at the node, or `medium: physical` at the output",
+                    element=node.id,
+                )
 
 
 def _suggest_common_type(architecture: Architecture, expected_type: str, output: Output) -> str | None:

@@ -113,9 +113,9 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
         if requirement.id not in named_ids and requirement.id not in misspelt_ids:
             yield Diagnostic(
                 "uncovered-requirement",
-                f"no component serves the requirement `{requirement.id}`{_title_suffix(requirement)}",
+                f"no component and no chain serves the requirement `{requirement.id}`{_title_suffix(requirement)}",
                 requirement.at,
-                help=f"name `{requirement.id}` in `requirements` of the component whose task it is",
+                help=f"name `{requirement.id}` in `requirements` of the component or chain whose task it is",
                 element=requirement.id,
             )
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis, HostLoad
+    from archgen.timing.system.timing_system import Activity
 
 
 def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
@@ -115,8 +116,27 @@ def _report_overload(
         labels=(Label(heaviest.places.get("wcet", heaviest.at), f"`{heaviest.id}` takes most"),)
         if heaviest.at != NO_SPAN
         else (),
-        help="move something to another host or core, or let it run less often",
+        help=_describe_calls(analysis, heaviest) or "move something to another host or core, or let it run less often",
         element=host_id,
+    )
+
+
+def _describe_calls(analysis: Analysis, activity: Activity) -> str:
+    """Describe who calls a server as often as it runs itself, because nothing says how often; empty for none."""
+    requests = [
+        arc
+        for arc in analysis.system.arcs_into.get(activity.id, ())
+        if arc.role == "request" and arc.output not in analysis.system.activities[arc.source].calls
+    ]
+    rates = [(arc, analysis.paces[arc.source].rate.value) for arc in requests]
+    known_rates = [(arc, rate) for arc, rate in rates if rate]
+    if not known_rates:
+        return ""
+    arc, rate = max(known_rates, key=lambda pair: pair[1])
+    return (
+        f"`{arc.source}` is taken to call `{activity.id}` once in each activation, {format_number(rate)} times a second: "
+        f"write in its timing how often it calls (`calls: {{{arc.output.rpartition('.')[2]}: 0.1}}`), or move something to "
+        "another host"
     )
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.suggestions import did_you_mean
-from archgen.model.known_interfaces import KNOWN_DISTROS
+from archgen.model.known_interfaces import KNOWN_DISTROS, guess_distro
+from archgen.model.ros_distro import PAST_DISTROS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 def unknown_distro(architecture: Architecture) -> Iterator[Diagnostic]:
     """The project is for a ROS distribution of which archgen holds no interfaces.
 
-    Why: No message, service or action is checked then, but for those that the project defines itself. Most often it is a
-    slip in the name.
+    Why: Most often it is a slip in the name; messages, services and actions are then checked as of the distribution that is
+    meant. Otherwise none is checked, but for those that the project defines itself. For a distribution that is no longer
+    maintained (`foxy`, `melodic`) this is only a warning.
 
     Bad:
         ros: {distro: jazy}
@@ -27,14 +28,17 @@ def unknown_distro(architecture: Architecture) -> Iterator[Diagnostic]:
         ros: {distro: jazzy}
     """
     distro = architecture.distro
-    if distro is not None and distro not in KNOWN_DISTROS:
-        known_distros = f"archgen holds the interfaces of {', '.join(sorted(KNOWN_DISTROS))}"
-        yield Diagnostic(
-            "unknown-distro",
-            f"archgen holds no interfaces of `{distro}`: no message is checked",
-            architecture.distro_at,
-            help=did_you_mean(distro, KNOWN_DISTROS) or known_distros,
-        )
+    if distro is None or distro in KNOWN_DISTROS:
+        return
+    meant_distro = guess_distro(distro)
+    if meant_distro != distro:
+        message = f"no ROS distribution is called `{distro}`: messages are checked as of `{meant_distro}`"
+        help_line = f"did you mean `{meant_distro}`?"
+    else:
+        message = f"archgen holds no interfaces of `{distro}`: no message is checked"
+        help_line = f"archgen holds the interfaces of {', '.join(sorted(KNOWN_DISTROS))}"
+    severity = Severity.WARNING if distro in PAST_DISTROS else None
+    yield Diagnostic("unknown-distro", message, architecture.distro_at, help=help_line, severity=severity)
 
 
-RULES = ((unknown_distro, Severity.WARNING),)
+RULES = ((unknown_distro, Severity.ERROR),)

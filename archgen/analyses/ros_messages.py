@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import find_closest
@@ -70,8 +71,9 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """No message, service or action of this name exists.
 
     Why: the name is written for a package whose interfaces archgen holds completely for this distribution, or which the
-    project defines itself, and no such name is among them. The node that uses it will not build. A name that is
-    still to be defined is marked with `status: planned` at its type.
+    project defines itself, and no such name is among them; or it is one or two letters off a name of a package that archgen
+    holds up to its last patch release. The node that uses it will not build. A name that is still to be defined is marked
+    with `status: planned` at its type, one that archgen does not hold is defined in the project (`ros: {interfaces: ...}`).
 
     Bad:
 
@@ -103,17 +105,23 @@ def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     interfaces = architecture.interfaces
     for message, span, element in _mentions_with_status(architecture, "wrong"):
-        package = message.partition("/")[0]
-        definition_source = (
-            "which the project defines" if package in interfaces.project_packages else f"as {interfaces.distro} has it"
-        )
         yield Diagnostic(
             "unknown-message",
-            f"no {_FLOW_NOUNS[flow_of(message)]} `{message}` in `{package}`, {definition_source}",
+            f"no {_FLOW_NOUNS[flow_of(message)]} `{message}`{_name_package(message, interfaces)}",
             span,
             help=_suggest_interface(message, interfaces) or _suggest_definition(message, interfaces),
             element=element,
         )
+
+
+def _name_package(message: str, interfaces: Interfaces) -> str:
+    """Return where a message that does not exist was looked for, to follow its name."""
+    package = message.partition("/")[0]
+    if package in interfaces.project_packages:
+        return f" in `{package}`, which the project defines"
+    if package in interfaces.known_packages():
+        return f" in `{package}`, as {interfaces.distro} has it"
+    return f": archgen holds no package `{package}` for {interfaces.distro}"
 
 
 def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -171,12 +179,29 @@ def _explain_unchecked(message: str, interfaces: Interfaces) -> str:
     package = message.partition("/")[0]
     if interfaces.distro is None:
         return "the project names no distribution (`ros: {distro: jazzy}`)"
+    holding_distros = _name_other_distros(message, interfaces)
+    if holding_distros:
+        return f"it is in {holding_distros}, but not among the names held for {interfaces.distro}"
     if package in interfaces.known_packages():
         return f"it is not among the names held of `{package}`, and newer ones may be missing there"
     return f"archgen holds no names of `{package}` for {interfaces.distro}"
 
 
+def _name_other_distros(message: str, interfaces: Interfaces) -> str:
+    """Return the distributions that have a message which the project's one lacks, as a list of words."""
+    return join_words(interfaces.holding_distros.get(message, ()))
+
+
 def _suggest_interface(message: str, interfaces: Interfaces) -> str | None:
+    other_kind = interfaces.find_other_kind(message)
+    if other_kind is not None:
+        article = "an" if flow_of(other_kind) == "action" else "a"
+        return (
+            f"`{other_kind.rpartition('/')[2]}` is {article} {_FLOW_NOUNS[flow_of(other_kind)]}: write `{other_kind}`"
+        )
+    holding_distros = _name_other_distros(message, interfaces)
+    if holding_distros:
+        return f"it is in {holding_distros}, not in {interfaces.distro}"
     guess = interfaces.find_nearest(message)
     return f"did you mean `{guess}`?" if guess else None
 
@@ -202,6 +227,47 @@ def _suggest_definition_file(message: str) -> str:
     package, kind, name = message.split("/")
     file = f"msgs/{package}/{kind}/{name}.{kind}"
     return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
+
+
+def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """The message that describes an action is used as if it were sent on a topic.
+
+    Why: `MoveBaseAction` is how ROS 1 names an action in its programs. Taken for a message, the goal seems to flow from the
+    component that has the output, while in an action the server has it: roles, pictures and timing go the wrong way.
+
+    Bad:
+        ros: {distro: noetic}
+        groups:
+          driving:
+            components:
+              base: {outputs: {go: move_base_msgs/MoveBaseAction}}
+              planner: {inputs: {go: base.go}}
+        nodes:
+          move_base: {implements: base}
+          planner: {implements: planner}
+
+    Good:
+        ros: {distro: noetic}
+        groups:
+          driving:
+            components:
+              base: {outputs: {go: move_base_msgs/action/MoveBase}}
+              planner: {inputs: {go: base.go}}
+        nodes:
+          move_base: {implements: base}
+          planner: {implements: planner}
+    """
+    interfaces = architecture.interfaces
+    for message, span, element in _mentions_with_status(architecture, "known"):
+        action = interfaces.find_other_kind(message) if message.endswith("Action") else None
+        if action is not None and flow_of(action) == "action":
+            yield Diagnostic(
+                "action-as-message",
+                f"`{message}` describes an action, and no topic carries it",
+                span,
+                help=f"write `{action}`; its output belongs to the component that serves it",
+                element=element,
+            )
 
 
 def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -281,5 +347,6 @@ def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
 RULES = (
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
+    (action_as_message, Severity.WARNING),
     (topic_type_conflict, Severity.ERROR),
 )

@@ -59,12 +59,15 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
     for name, spans in _spans_by_type(architecture).items():
         type_ = architecture.types.get(name)
         if type_ is None or type_.message is None:
+            meant_message = architecture.interfaces.read_message(name)
             yield Diagnostic(
                 "unmapped-type",
                 f"no message is named for the type `{name}`",
                 spans[0],
+                # What is written as a message and is none is no type that waits to be mapped.
+                severity=Severity.ERROR if meant_message else None,
                 labels=tuple(_label_elsewhere(type_, spans[1:])),
-                help=_suggest_mapping(name, architecture),
+                help=f"did you mean `{meant_message}`?" if meant_message else _suggest_mapping(name, architecture),
                 element=name,
             )
 

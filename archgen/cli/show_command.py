@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,14 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
+    timed_kinds = {kind for word in words for kind, _ in element_card.find_elements(lookup, word)}
+    if checked_project.analysis is not None and not timed_kinds.isdisjoint({"requirement", "chain"}):
+        # Only these say whether deadlines are met; the bounds of chains take longer than all else here.
+        from archgen.timing.chains.chain_bounds import bound_all_chains
+        from archgen.views.timing.timing_lookup import make_timing_lookup
+
+        chain_results = bound_all_chains(checked_project.analysis, checked_project.architecture).values()
+        lookup = replace(lookup, timing=make_timing_lookup(checked_project.analysis, chain_results))
     any_missing = False
     for word in words:
         matches = element_card.find_elements(lookup, word)

@@ -139,7 +139,7 @@ def _print_chain(request: TimingRequest, chain_id: str) -> None:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, age, published))
+        _print_lines(timing_text.format_chain(result, analysis.system, age, published))
 
 
 def _print_reasons(request: TimingRequest, word: str) -> None:
@@ -194,13 +194,13 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
     from archgen.timing.chains.chain_sensitivity import find_sensitivity
     from archgen.timing.run_analysis import analyse_for_chains
 
-    _, chains = _analyse_chains(request.architecture)
+    analysis, chains = _analyse_chains(request.architecture)
     result = _find_chain(chains, chain_id)
     ranking = find_sensitivity(request.architecture, request.architecture.chains[chain_id], analyse_for_chains, chains)
     if request.as_json:
         _print_json(timing_answers.sensitivity_to_json(result, ranking))
     else:
-        _print_lines(timing_answers.format_sensitivity(result, ranking))
+        _print_lines(timing_answers.format_sensitivity(result, analysis.system, ranking))
 
 
 def _print_measured(request: TimingRequest, file: Path) -> None:

@@ -37,6 +37,17 @@ def find_closest(word: str, candidates: Iterable[str]) -> str | None:
     return best_match[0] if best_match else None
 
 
+def count_slips(word: str, name: str) -> int:
+    """Return how many slips make `word` of `name`: 0 where only case and separators differ."""
+    if _fold_word(word) == _fold_word(name):
+        return 0
+    if max(len(word), len(name)) > _MAX_WORD_LENGTH:
+        return _MAX_WORD_LENGTH
+    from rapidfuzz.distance import OSA
+
+    return OSA.distance(word, name)
+
+
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     """Return a help line with the closest candidate, or None if there is none, or none but the word itself."""
     name = find_closest(word, candidates)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 _LACK_RULES = frozenset(
     {
         "disconnected-component",
+        "half-written",
         "incompatible-qos",
         "missing-detail",
         "role-mismatch",

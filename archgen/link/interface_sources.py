@@ -66,6 +66,24 @@ class LazyInterfaces(Mapping[str, Interface]):
         return sum(1 for _ in self)
 
 
+class LazyHoldingDistros(Mapping[str, tuple[str, ...]]):
+    """The distributions that have an interface, by full name; read when the first name is asked for."""
+
+    __slots__ = ()
+
+    def __getitem__(self, name: str) -> tuple[str, ...]:
+        """Return the distributions that have `package/msg/Name`; raise KeyError where there is none."""
+        return _load_holding_distros()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names that any distribution has."""
+        return iter(_load_holding_distros())
+
+    def __len__(self) -> int:
+        """Count these names."""
+        return len(_load_holding_distros())
+
+
 def load_interfaces(
     distro: str | None,
     definition_files: Sequence[tuple[str, str]] = (),
@@ -240,23 +258,44 @@ def _list_distros(distro: str | None) -> tuple[str, ...]:
 @cache
 def _load_shipped_interfaces(distro: str | None) -> Interfaces:
     """Return the interfaces that ship for a distribution; for None, those of all distributions."""
-    names, whole_packages = set[str](), set[str]()
+    names, whole_packages, patch_packages = set[str](), set[str](), set[str]()
     for data_distro in _list_distros(distro):
-        for package, kinds in _load_names(data_distro).items():
-            for kind in ("msg", "srv", "action"):
-                names.update(f"{package}/{kind}/{name}" for name in kinds.get(kind, ()))
-            # Without a distribution nothing is "whole": a name that one lacks may exist in another.
-            if kinds["whole"] and distro is not None:
-                whole_packages.add(package)
+        names.update(_list_names(data_distro))
+        # Without a distribution nothing is "whole": a name that one lacks may exist in another.
+        if distro is not None:
+            packages = _load_names(data_distro)
+            whole_packages.update(package for package, entry in packages.items() if entry["whole"])
+            patch_packages.update(package for package, entry in packages.items() if entry.get("patch"))
     return Interfaces(
         distro,
         frozenset(names),
         frozenset(whole_packages),
         LazyInterfaces(_list_distros(distro), {}),
         has_names=bool(_list_distros(distro)),
+        patch_packages=frozenset(patch_packages),
+        holding_distros=LazyHoldingDistros(),
     )
 
 
+@cache
+def _load_holding_distros() -> dict[str, tuple[str, ...]]:
+    distros_by_name = dict[str, tuple[str, ...]]()
+    for distro in sorted(KNOWN_DISTROS):
+        for name in _list_names(distro):
+            distros_by_name[name] = (*distros_by_name.get(name, ()), distro)
+    return distros_by_name
+
+
+def _list_names(distro: str) -> Iterator[str]:
+    return (
+        f"{package}/{kind}/{name}"
+        for package, kinds in _load_names(distro).items()
+        for kind in ("msg", "srv", "action")
+        for name in kinds.get(kind, ())
+    )
+
+
+@cache
 def _load_names(distro: str) -> dict[str, dict[str, Any]]:
     names_by_package: dict[str, dict[str, Any]] = json.loads(
         (_DATA_FOLDER / f"{distro}.names.json").read_text(encoding="utf-8")

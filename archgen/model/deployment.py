@@ -43,3 +43,6 @@ class Link:
     best: Quantity | None = None
     worst: Quantity | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    connects_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    unresolved: tuple[str, ...] = ()
+    """The entries of `connects` that name no host."""

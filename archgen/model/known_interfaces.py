@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import field
+from functools import lru_cache
 from typing import Literal
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics.suggestions import count_slips, find_closest
 from archgen.frozen import dataclass
-from archgen.model.ros_distro import is_ros_1
+from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 
 KNOWN_DISTROS = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
 """The distributions whose interfaces ship with archgen. The order counts: for a project without a distribution, the
@@ -24,6 +25,15 @@ _GENERATED_SUFFIXES = {
     ),
 }
 """Suffixes of the interfaces that ROS 2 generates from services and actions, and that exist as soon as these do."""
+_SPELLED_SEPARATOR = re.compile(r"/|::|\.")
+"""What stands between the parts of a message's name: in ROS, in C++, in Python."""
+_FULL_NAME_PARTS = 3
+_MAX_NAME_SLIPS = 2
+"""The slips after which a name of a package that is not held whole is still taken for another one of it."""
+_SURE_STEM_LENGTH = 5
+"""The letters of a package's name, without `_msgs`, from which on one wrong letter is a slip: `car_msgs` may be a package
+of somebody's own, `geometri_msgs` hardly (and `tensor_msgs` exists, so that the first letter has to be right).
+"""
 
 
 PART_NAMES = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
@@ -80,7 +90,8 @@ class Interfaces:
     """All interfaces known for one distribution.
 
     All names of a package in `complete_packages` are known. Any other package may have names that archgen does not
-    know: no name of it is ever wrong. `definitions` reads the shipped data on first use.
+    know: of a package in `patch_packages`, which is held as of an earlier patch release, only slips are wrong, and of the
+    others nothing is. `definitions` and `holding_distros` read the shipped data on first use.
     """
 
     distro: str | None = None
@@ -93,29 +104,83 @@ class Interfaces:
     """Whether archgen knows any names for this distribution."""
     mapper_names: tuple[str, ...] = ()
     """The type names of the shipped type mapper, if it is used: candidates for what an unmapped type may mean."""
+    patch_packages: frozenset[str] = frozenset()
+    holding_distros: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False, repr=False)
+    """The distributions that have an interface, by full name: a name that is missing here may be right elsewhere."""
 
     def status_of(self, message: str) -> InterfaceStatus:
         """Return whether `pkg/msg/Name` exists ("known"), does not exist ("wrong"), or is unknown ("not held")."""
         if message in self.names or self._base_name(message) in self.names:
             return "known"
-        return "wrong" if message.split("/", 1)[0] in self.complete_packages else "not held"
+        is_wrong = message.split("/", 1)[0] in self.complete_packages or self.find_slip(message) is not None
+        return "wrong" if is_wrong else "not held"
+
+    def find_slip(self, message: str) -> str | None:
+        """Return the interface that an unknown name is certainly a slip of, None if there is none.
+
+        A name that some distribution has is no slip: it may have come to this one since.
+        """
+        package, kind, short = message.split("/")
+        if message in self.holding_distros:
+            return None
+        if package in self.complete_packages | self.patch_packages:
+            return self.find_other_kind(message) or self._find_near_name(package, kind, short)
+        if package in self.known_packages() or self.distro is None:
+            return None
+        namesake_packages = _index_packages(self.names).get(f"{kind}/{short}", ())
+        slips = (name for name in namesake_packages if _is_package_slip(package, name))
+        return next((f"{name}/{kind}/{short}" for name in slips), None)
+
+    def read_message(self, text: str) -> str | None:
+        """Return the message that a text in another spelling means, such as `nav_msgs::msg::Odometry` or `std_msgs/string`.
+
+        None if it is a known message as it stands, or means none for certain.
+        """
+        parts = _SPELLED_SEPARATOR.split(text)
+        package, kind, short = parts if len(parts) == _FULL_NAME_PARTS else (parts[0], "msg", parts[-1])
+        if not 1 < len(parts) <= _FULL_NAME_PARTS or kind not in {"msg", "srv", "action"} or not short:
+            return None
+        message = f"{package}/{kind}/{short}"
+        return message if message in self.names else self.find_slip(message)
+
+    def find_other_kind(self, message: str) -> str | None:
+        """Return the interface of this name, but of another kind: `nav_msgs/srv/GetPlan` for `nav_msgs/msg/GetPlan`.
+
+        ROS 1 writes actions as messages: `MoveBaseAction` is the action `MoveBase`.
+        """
+        package, kind, short = message.split("/")
+        other_kinds = {
+            "srv": f"{package}/srv/{short}",
+            "msg": f"{package}/msg/{short}",
+            "action": f"{package}/action/{short.removesuffix('Action') or short}",
+        }
+        return next((name for other, name in other_kinds.items() if other != kind and name in self.names), None)
+
+    def _find_near_name(self, package: str, kind: str, short: str) -> str | None:
+        package_names = _index_names(self.names, package, kind)
+        guess = find_closest(short, package_names)
+        is_slip = guess is not None and count_slips(short, guess) <= _MAX_NAME_SLIPS
+        return package_names[guess] if guess is not None and is_slip else None
 
     def known_packages(self) -> frozenset[str]:
         """Return the packages with at least one known interface."""
-        return frozenset(name.split("/", 1)[0] for name in self.names)
+        return _list_packages(self.names)
 
     def find_nearest(self, message: str) -> str | None:
         """Return the interface that an unknown name most likely means: one of its package, else its namesake elsewhere.
 
         A namesake in another package counts if the packages' names are similar, or if it is the only one.
         """
+        other_kind = self.find_other_kind(message)
+        if other_kind is not None:
+            return other_kind
         package, kind, short = message.split("/")
         # A name of the same package outranks a namesake elsewhere, however similar the packages are.
-        package_names = self._index_by_name((name for name in self.names if name.startswith(f"{package}/")), kind)
+        package_names = _index_names(self.names, package, kind)
         guess = find_closest(short, package_names)
         if guess is not None:
             return package_names[guess]
-        namesake_packages = {name.split("/")[0] for name in self.names if name.endswith(f"/{kind}/{short}")}
+        namesake_packages = _index_packages(self.names).get(f"{kind}/{short}", ())
         nearest_package = find_closest(package, namesake_packages) or (
             min(namesake_packages) if len(namesake_packages) == 1 else None
         )
@@ -129,11 +194,52 @@ class Interfaces:
         pattern = None if is_ros_1(self.distro) else _GENERATED_SUFFIXES.get(message.split("/")[1])
         return pattern.sub("", message) if pattern else message
 
-    @staticmethod
-    def _index_by_name(names: Iterable[str], kind: str) -> dict[str, str]:
-        """Index full names by their last part; if two kinds share a last part, the wanted kind wins."""
-        # Names of the wanted kind are sorted to the end: the last one written stays.
-        names_by_end = dict[str, str]()
-        for name in sorted(names, key=lambda name: (name.split("/")[1] == kind, name)):
-            names_by_end[name.rsplit("/", 1)[1]] = name
-        return names_by_end
+
+# Cached by the set of names, which a project has one of: a hostile one may ask for tens of thousands of names.
+@lru_cache(8)
+def _list_packages(names: frozenset[str]) -> frozenset[str]:
+    return frozenset(name.split("/", 1)[0] for name in names)
+
+
+@lru_cache(8)
+def _index_packages(names: frozenset[str]) -> Mapping[str, tuple[str, ...]]:
+    """Return the packages that have an interface, sorted, by the rest of its name (`msg/Image`)."""
+    packages = dict[str, tuple[str, ...]]()
+    for name in sorted(names):
+        package, _, rest = name.partition("/")
+        packages[rest] = (*packages.get(rest, ()), package)
+    return packages
+
+
+@lru_cache(512)
+def _index_names(names: frozenset[str], package: str, kind: str) -> Mapping[str, str]:
+    """Index the full names of a package by their last part; if two kinds share a last part, the wanted kind wins."""
+    # Names of the wanted kind are sorted to the end: the last one written stays.
+    package_names = [name for name in names if name.startswith(f"{package}/")]
+    return {
+        name.rsplit("/", 1)[1]: name
+        for name in sorted(package_names, key=lambda name: (name.split("/")[1] == kind, name))
+    }
+
+
+def guess_distro(distro: str | None) -> str | None:
+    """Return the distribution that a project means: what it writes, or what that is a slip of (`jazzy` for `jazy`).
+
+    Messages are checked against the guess, so that a slip in one word does not keep all others unseen.
+    """
+    if distro is None or distro in KNOWN_DISTROS or distro in PAST_DISTROS:
+        return distro
+    return find_closest(distro, KNOWN_DISTROS) or distro
+
+
+def _is_package_slip(package: str, name: str) -> bool:
+    """Whether an unknown package is certainly a slip of a known one: `nav_msg`, `sdt_msgs` or `sensors_msgs`.
+
+    Of the 6,134 packages of eleven distributions none is taken for one that is held and has the same message.
+    """
+    slips = count_slips(package, name)
+    stem, known_stem = package.rpartition("_")[0], name.rpartition("_")[0]
+    if stem and stem == known_stem:
+        return slips <= _MAX_NAME_SLIPS
+    is_long = len(known_stem) >= _SURE_STEM_LENGTH and package[0] == name[0]
+    return slips == 0 or (slips == 1 and (is_long or sorted(package) == sorted(name)))

@@ -93,6 +93,8 @@ class Node:
     implements_written: bool = False
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    kind_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    container_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
     def full_name(self) -> str:

@@ -165,6 +165,15 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     notes: tuple[Reason, ...] = ()
 
+    @property
+    def boundless_on_cores(self) -> tuple[str, ...]:
+        """The activities that share several cores and for which no bound was found there."""
+        return tuple(
+            name
+            for name, response in self.responses.items()
+            if response.tier == "cores" and "unbounded" in response.worst.assumptions
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class ChainTerm:

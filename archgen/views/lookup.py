@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -53,6 +53,8 @@ class Lookup:
     """Findings by the element they concern; findings about a port are listed under its component."""
     components_for_requirement: Mapping[str, tuple[Component, ...]] = field(default_factory=dict)
     """Components that serve a requirement, by the requirement's id."""
+    chains_for_requirement: Mapping[str, tuple[Chain, ...]] = field(default_factory=dict)
+    """Chains that serve a requirement, by the requirement's id."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
     """Outputs by the name of their conceptual type."""
     physical_types: frozenset[str] = frozenset()
@@ -112,6 +114,9 @@ def make_lookup(
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
         components_for_requirement=_group_values(
             (use.text, c) for c in components for use in c.requirements if use.is_id
+        ),
+        chains_for_requirement=_group_values(
+            (r, chain) for chain in architecture.chains.values() for r in chain.requirements
         ),
         outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
         physical_types=_find_physical_types(architecture),

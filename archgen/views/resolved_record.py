@@ -67,9 +67,12 @@ def _pick_fields(element: object, *keys: str) -> dict[str, object]:
 
 
 def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, object]:
-    served_by = [component.id for component in lookup.components_for_requirement.get(requirement.id, ())]
-    fields = _pick_fields(requirement, "title", "description", "use_cases", "tags")
-    return fields | _drop_unknown({"served_by": served_by, "urls": dict(requirement.urls)})
+    servers = {
+        "served_by": [component.id for component in lookup.components_for_requirement.get(requirement.id, ())],
+        "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
+        "urls": dict(requirement.urls),
+    }
+    return _pick_fields(requirement, "title", "description", "use_cases", "tags") | _drop_unknown(dict(servers))
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:

@@ -42,6 +42,9 @@ def test_names_of_topics_and_services_in_ros_2(name: str, fault: str | None) -> 
 
 def test_ros_1_minds_digits_only_at_the_beginning() -> None:
     assert find_name_fault("/camera/2d", ros_1=True) is None
+    assert find_name_fault("~scan", ros_1=True) is None
+    assert find_name_fault("~front/scan", ros_1=True) is None
+    assert find_name_fault("~front-scan", ros_1=True) == f"it holds `-`, {_LETTERS}"
     assert find_name_fault("2d/camera", ros_1=True) == "`2d` begins with a digit"
 
 

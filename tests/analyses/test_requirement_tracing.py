@@ -24,7 +24,7 @@ def test_an_undeclared_requirement_is_unknown_and_free_text_is_not(found: Found)
 
 def test_a_requirement_that_nobody_serves_is_uncovered(found: Found) -> None:
     text = f"{_TEXT}\nrequirement S-100"
-    assert found(uncovered_requirement, text) == ["8: no component serves the requirement `S-100`"]
+    assert found(uncovered_requirement, text) == ["8: no component and no chain serves the requirement `S-100`"]
 
 
 def test_a_slip_in_an_id_leaves_no_requirement_uncovered(found: Found) -> None:

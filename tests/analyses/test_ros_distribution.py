@@ -16,15 +16,37 @@ nodes: {n: g.c}
 @pytest.mark.parametrize(
     ("distro", "told"),
     [
-        ("humbel", ["1:15 unknown-distro did you mean `humble`?"]),
+        (
+            "humbel",
+            [
+                "1:15 error unknown-distro did you mean `humble`?",
+                "2:51 error unknown-message did you mean `sensor_msgs/msg/Image`?",
+            ],
+        ),
+        (
+            "noetik",
+            [
+                "1:15 error unknown-distro did you mean `noetic`?",
+                "2:51 error unknown-message did you mean `sensor_msgs/msg/Image`?",
+            ],
+        ),
+        # A name that is right, though old, is no error.
         (
             "foxy",
-            ["1:15 unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"],
+            [
+                "1:15 warning unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"
+            ],
         ),
-        ("humble", ["2:51 unchecked-message did you mean `sensor_msgs/msg/Image`?"]),
+        (
+            "windows",
+            [
+                "1:15 error unknown-distro archgen holds the interfaces of humble, jazzy, kilted, lyrical, noetic, rolling"
+            ],
+        ),
+        ("humble", ["2:51 error unknown-message did you mean `sensor_msgs/msg/Image`?"]),
     ],
 )
 def test_a_slip_in_the_distribution(distro: str, told: list[str]) -> None:
     found = check_text(_TEXT % distro)
     messages = [d for d in found if d.rule in {"unknown-distro", "unchecked-message", "unknown-message"}]
-    assert [f"{d.span.line}:{d.span.column} {d.rule} {d.help}" for d in messages] == told
+    assert [f"{d.span.line}:{d.span.column} {d.severity} {d.rule} {d.help}" for d in messages] == told

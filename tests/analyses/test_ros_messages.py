@@ -87,6 +87,46 @@ def test_unknown_messages_of_types_and_of_nodes() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("message", "expected"),
+    [
+        (
+            "std_msgs/msg/Boool",
+            "no message `std_msgs/msg/Boool` in `std_msgs`, as jazzy has it (did you mean `std_msgs/msg/Bool`?)",
+        ),
+        (
+            "nav_msgs/msg/GetPlan",
+            (
+                "no message `nav_msgs/msg/GetPlan` in `nav_msgs`, as jazzy has it "
+                "(`GetPlan` is a service: write `nav_msgs/srv/GetPlan`)"
+            ),
+        ),
+        (
+            "nav2_msgs/msg/NavigateToPoseAction",
+            (
+                "no message `nav2_msgs/msg/NavigateToPoseAction` in `nav2_msgs`, as jazzy has it "
+                "(`NavigateToPose` is an action: write `nav2_msgs/action/NavigateToPose`)"
+            ),
+        ),
+        (
+            "nav_msg/msg/Odometry",
+            (
+                "no message `nav_msg/msg/Odometry`: archgen holds no package `nav_msg` for jazzy "
+                "(did you mean `nav_msgs/msg/Odometry`?)"
+            ),
+        ),
+        (
+            "nav2_msgs/msg/Trajectory",
+            "no message `nav2_msgs/msg/Trajectory` in `nav2_msgs`, as jazzy has it (it is in kilted, not in jazzy)",
+        ),
+    ],
+)
+def test_a_slip_is_unknown_in_ros_2_too(message: str, expected: str) -> None:
+    one = architecture(mapped("Thing", message, 1), interfaces=load_interfaces("jazzy")[0])
+    assert [brief(diagnostic) for diagnostic in unknown_message(one)] == [f"a.yaml:1:20 Thing: {expected}"]
+    assert list(unchecked_message(one)) == []
+
+
 def test_unknown_message_of_the_project() -> None:
     interfaces, _ = load_interfaces("jazzy", [("demo_msgs/msg/Grasp.msg", "float64 width")])
     found = unknown_message(architecture(mapped("Plan", "demo_msgs/action/Planning", 1), interfaces=interfaces))
@@ -113,18 +153,27 @@ def test_unknown_message_of_the_project() -> None:
         ),
         (
             "jazzy",
-            "sensor_msgs/msg/Imgae",
+            "mavros_msgs/msg/Altitud",
             (
-                "cannot tell whether the message `sensor_msgs/msg/Imgae` exists: it is not among the names held of "
-                "`sensor_msgs`, and newer ones may be missing there (did you mean `sensor_msgs/msg/Image`?)"
+                "cannot tell whether the message `mavros_msgs/msg/Altitud` exists: it is not among the names held of "
+                "`mavros_msgs`, and newer ones may be missing there (did you mean `mavros_msgs/msg/Altitude`?)"
             ),
         ),
         (
             "jazzy",
-            "sensor_msg/msg/Image",
+            "snesr_msg/msg/Image",
             (
-                "cannot tell whether the message `sensor_msg/msg/Image` exists: archgen holds no names of `sensor_msg` for "
+                "cannot tell whether the message `snesr_msg/msg/Image` exists: archgen holds no names of `snesr_msg` for "
                 "jazzy (did you mean `sensor_msgs/msg/Image`?)"
+            ),
+        ),
+        (
+            "humble",
+            "nav_msgs/msg/Trajectory",
+            (
+                "cannot tell whether the message `nav_msgs/msg/Trajectory` exists: it is in jazzy, kilted, lyrical and "
+                "rolling, but not among the names held for humble (add its definition, for instance as "
+                '`msgs/nav_msgs/msg/Trajectory.msg` with `ros: {interfaces: ["msgs/**/*.msg"]}`)'
             ),
         ),
         (
@@ -228,6 +277,7 @@ def test_rules_have_pages() -> None:
     assert {rule.name: rule.severity for rule in rules} == {
         "unknown-message": Severity.ERROR,
         "unchecked-message": Severity.NOTE,
+        "action-as-message": Severity.WARNING,
         "topic-type-conflict": Severity.ERROR,
     }
     for rule in rules:

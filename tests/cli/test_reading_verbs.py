@@ -159,3 +159,17 @@ def test_version_and_help(run: Run) -> None:
     ran = run("--help")
     assert ran.status == 0
     assert "  check       Find mistakes in the architecture.\n" in ran.out
+
+
+def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp_path: Path) -> None:
+    text = (
+        "archgen: 1\nrequirements: {R-1: Stops}\nhosts: {pc: {cores: 2}}\n"
+        "groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {i: a.o}}}}}\n"
+        "nodes:\n  a: {implements: a, host: pc, timing: {period: 50 ms, wcet: 5 ms}}\n"
+        "  b: {implements: b, host: pc, timing: {wcet: 5 ms}}\n"
+        "chains: {k: {through: [g.a, g.b], deadline: 10 ms, requirements: [R-1]}}\n"
+    )
+    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    assert "  served by:\n    the chain k (missed)\n" in run("show", "R-1", "-C", tmp_path).out
+    shown_chain = run("show", "k", "-C", tmp_path).out
+    assert "  state:          missed\n  requirements:   R-1\n" in shown_chain

@@ -107,6 +107,7 @@ MODEL_ONLY = {
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
+    "link unresolved": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
@@ -121,6 +122,7 @@ TABLE_ONLY_FOR_MODEL = {
 }
 RECORD_ONLY = {
     "requirement served_by": "the key `requirements` of components",
+    "requirement served_by_chains": "the key `requirements` of chains",
     "group components": "elements of their own",
     "component group": "the beginning of the id",
     "component nodes": "the key `implements` of nodes",

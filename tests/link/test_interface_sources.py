@@ -13,7 +13,7 @@ from rosbags.typesys import Stores, get_typestore
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link.interface_sources import interface_name_of, load_interfaces
-from archgen.model.known_interfaces import Interface, InterfaceField, InterfaceStatus
+from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceField, InterfaceStatus
 from archgen.syntax.interface_definitions import RULES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -49,7 +49,7 @@ def test_the_script_makes_the_data(tmp_path: Path) -> None:
         ("humble", "nav2_msgs/action/DockRobot", "wrong"),
         ("jazzy", "nav2_msgs/action/DockRobot", "known"),
         ("jazzy", "sensor_msgs/msg/Image", "known"),
-        ("jazzy", "sensor_msgs/msg/Imgae", "not held"),
+        ("jazzy", "sensor_msgs/msg/Imgae", "wrong"),
         ("jazzy", "std_srvs/srv/Trigger", "known"),
         ("jazzy", "builtin_interfaces/msg/Time", "known"),
         ("noetic", "builtin_interfaces/msg/Time", "not held"),
@@ -57,6 +57,9 @@ def test_the_script_makes_the_data(tmp_path: Path) -> None:
         ("kilted", "vision_msgs/msg/Detections", "wrong"),
         ("lyrical", "sensor_msgs/msg/Image", "known"),
         ("lyrical", "nav2_msgs/action/NavigateToPose", "not held"),
+        ("lyrical", "vision_msgs/msg/Detections", "wrong"),
+        ("lyrical", "sensor_msgs/msg/LazerScan", "wrong"),
+        ("lyrical", "std_srvs/srv/Trigger", "known"),
         ("rolling", "hri_msgs/msg/Expression", "known"),
         ("rolling", "hri_msgs/msg/Expresion", "not held"),
         ("foxy", "sensor_msgs/msg/Image", "not held"),
@@ -71,7 +74,53 @@ def test_answers(distro: str | None, message: str, answer: InterfaceStatus) -> N
     assert interfaces.has_names is (distro != "foxy")
 
 
-@pytest.mark.parametrize("distro", ["noetic", "humble", "jazzy", "kilted"])
+@pytest.mark.parametrize(
+    ("message", "slip"),
+    [
+        ("std_msgs/msg/Boool", "std_msgs/msg/Bool"),
+        ("geometry_msgs/msg/TwistStampd", "geometry_msgs/msg/TwistStamped"),
+        ("sensor_msgs/msg/IMU", "sensor_msgs/msg/Imu"),
+        ("nav_msgs/msg/odometry", "nav_msgs/msg/Odometry"),
+        ("nav_msgs/msg/Odometrie", "nav_msgs/msg/Odometry"),
+        ("nav_msgs/msg/GetPlan", "nav_msgs/srv/GetPlan"),
+        ("nav_msgs/srv/Path", "nav_msgs/msg/Path"),
+        ("nav2_msgs/msg/NavigateToPoseAction", "nav2_msgs/action/NavigateToPose"),
+        ("nav_msg/msg/Odometry", "nav_msgs/msg/Odometry"),
+        ("sdt_msgs/msg/String", "std_msgs/msg/String"),
+        ("sensors_msgs/msg/Image", "sensor_msgs/msg/Image"),
+        ("geometrymsgs/msg/Pose", "geometry_msgs/msg/Pose"),
+        # Far from every name, or of packages that may well exist: nobody can tell.
+        ("sensor_msgs/msg/Radar", None),
+        ("nav_msgs/msg/GlobalCostmap", None),
+        ("car_msgs/msg/Frame", None),
+        ("uav_msgs/msg/Path", None),
+        ("tensor_msgs/msg/Image", None),
+        ("nav_msg/msg/Nothing", None),
+        ("mavros_msgs/msg/Altitud", None),
+        # Right in another distribution.
+        ("std_msgs/msg/Time", None),
+    ],
+)
+def test_slips_in_jazzy(message: str, slip: str | None) -> None:
+    interfaces, _ = load_interfaces("jazzy")
+    assert interfaces.find_slip(message) == slip
+    assert (interfaces.status_of(message) == "wrong") is (slip is not None)
+
+
+@pytest.mark.parametrize("distro", KNOWN_DISTROS)
+def test_what_another_distribution_has_is_wrong_only_where_a_package_is_whole(distro: str) -> None:
+    interfaces, _ = load_interfaces(distro)
+    for name in interfaces.holding_distros:
+        if name.partition("/")[0] not in interfaces.complete_packages:
+            assert interfaces.status_of(name) != "wrong"
+
+
+def test_a_name_that_another_distribution_has_says_in_which() -> None:
+    interfaces, _ = load_interfaces("humble")
+    assert interfaces.holding_distros["nav_msgs/msg/Trajectory"] == ("jazzy", "kilted", "lyrical", "rolling")
+
+
+@pytest.mark.parametrize("distro", ["noetic", "humble", "jazzy", "kilted", "lyrical"])
 def test_every_listed_name_is_known_and_only_lists_of_the_released_version_are_whole(distro: str) -> None:
     interfaces, _ = load_interfaces(distro)
     listed = yaml.safe_load((ROOT / "tools" / "ros_interfaces.yaml").read_text(encoding="utf-8"))
@@ -221,14 +270,23 @@ def test_a_message_that_holds_itself() -> None:
     ]
 
 
-def test_a_slip_in_the_type_of_a_field_is_noted() -> None:
-    text = "geometry_msgs/Piont a\ngeomtry_msgs/Point b\nfar_off_msgs/Strange c\nfar_off_msgs/Wrench d"
+def test_a_slip_in_the_type_of_a_field_is_an_error_where_it_is_certain() -> None:
+    text = "geometry_msgs/Piont a\ngeomtry_msgs/Point b\nfar_off_msgs/Strange c\nfar_off_msgs/Wrench d\ngeomtri_msgs/Point e"
     _, diagnostics = load_interfaces("humble", [("demo_msgs/msg/Thing.msg", text)])
-    assert [brief(diagnostic) for diagnostic in diagnostics] == [
-        "demo_msgs/msg/Thing.msg:1:1 archgen holds no message `geometry_msgs/msg/Piont` (did you mean `geometry_msgs/Point`?)",
-        "demo_msgs/msg/Thing.msg:2:1 archgen holds no message `geomtry_msgs/msg/Point` (did you mean `geometry_msgs/Point`?)",
+    assert [f"{diagnostic.rule} {brief(diagnostic)}" for diagnostic in diagnostics] == [
+        (
+            "invalid-interface demo_msgs/msg/Thing.msg:1:1 there is no message `geometry_msgs/msg/Piont` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
+        (
+            "invalid-interface demo_msgs/msg/Thing.msg:2:1 there is no message `geomtry_msgs/msg/Point` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
+        (
+            "unchecked-message demo_msgs/msg/Thing.msg:5:1 archgen holds no message `geomtri_msgs/msg/Point` (did you mean "
+            "`geometry_msgs/Point`?)"
+        ),
     ]
-    assert {diagnostic.rule for diagnostic in diagnostics} == {"unchecked-message"}
     assert load_interfaces("foxy", [("demo_msgs/msg/Thing.msg", text)])[1] == ()
 
 

@@ -65,6 +65,26 @@ def test_nearest(message: str, guess: str | None) -> None:
     assert HELD.find_nearest(message) == guess
 
 
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("sensor_msgs::msg::Image", "sensor_msgs/msg/Image"),
+        ("sensor_msgs.msg.Image", "sensor_msgs/msg/Image"),
+        ("nav2_msgs/costmap", "nav2_msgs/msg/Costmap"),
+        ("nav2_msgs/msg/costmap", "nav2_msgs/msg/Costmap"),
+        ("std_srvs/trigger", "std_srvs/srv/Trigger"),
+        ("Image/Depth", None),
+        ("v1.2", None),
+        ("camera picture", None),
+        ("a/b/c/d", None),
+        ("nav2_msgs/thing/Costmap", None),
+        ("nav2_msgs/", None),
+    ],
+)
+def test_a_message_in_another_spelling(text: str, message: str | None) -> None:
+    assert HELD.read_message(text) == message
+
+
 def test_several_namesakes_are_no_guess_unless_one_package_is_close() -> None:
     held = Interfaces(names=frozenset({"vision_msgs/msg/Point", "geometry_msgs/msg/Point"}))
     assert held.find_nearest("foo/msg/Point") is None

@@ -9,13 +9,15 @@ from typing import Any
 from archgen.diagnostics.common_wording import format_transition
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
-from archgen.emit.terminal.timing_text import AlignedRow, align_columns, describe_gaps, format_figure
+from archgen.emit.terminal.chain_gaps import describe_gaps
+from archgen.emit.terminal.timing_text import AlignedRow, align_columns, format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity
 from archgen.timing.chains.figure_explanations import ReasonLine
 from archgen.timing.chains.measured_comparison import MeasuredComparison
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.timing_system import TimingSystem
 
 ChainResults = Mapping[str, ChainResult]
 AnswerJson = dict[str, Any]
@@ -115,10 +117,10 @@ def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
     return f"({sign}{figure_wording.format_duration(abs(new_value.value - old_value.value))})"
 
 
-def format_sensitivity(chain: ChainResult, ranking: ChainSensitivity) -> Iterator[str]:
+def format_sensitivity(chain: ChainResult, system: TimingSystem, ranking: ChainSensitivity) -> Iterator[str]:
     """Yield a ranking of what decides a chain."""
     if not chain.terms:
-        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain)}"
+        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, system)}"
         return
     yield f"{chain.id}: {format_figure(chain.bound)}"
     yield ""

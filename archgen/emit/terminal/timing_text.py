@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.diagnostics.safe_text import make_visible, measure_width
+from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.timing_system import TimingSystem
 
 _VERDICT_WORDS = {"met": "met", "missed": "MISSED", "open": "open"}
 AlignedRow = Sequence[str]
@@ -19,7 +21,9 @@ AlignedRow = Sequence[str]
 
 def format_timing(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[LoopRound]) -> Iterator[str]:
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops."""
-    yield from _section_lines("Chains: largest reaction time (= largest data age)", _chain_rows(chains.values()))
+    yield from _section_lines(
+        "Chains: largest reaction time (= largest data age)", _chain_rows(analysis.system, chains.values())
+    )
     yield from _section_lines("Hosts", _host_rows(analysis))
     yield from _section_lines("Links", _link_rows(analysis))
     yield from _section_lines(
@@ -38,7 +42,7 @@ def _section_lines(title: str, rows: Iterable[AlignedRow]) -> Iterator[str]:
         yield ""
 
 
-def _chain_rows(chains: Iterable[ChainResult]) -> Iterator[AlignedRow]:
+def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator[AlignedRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
@@ -46,7 +50,7 @@ def _chain_rows(chains: Iterable[ChainResult]) -> Iterator[AlignedRow]:
             format_figure(result.bound),
             deadline,
             _VERDICT_WORDS[result.verdict] if result.deadline else "",
-            describe_gaps(result),
+            describe_gaps(result, system),
         )
 
 
@@ -111,10 +115,13 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
         yield f"diverged: no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+    if analysis.boundless_on_cores:
+        names = figure_wording.join_first_names(analysis.boundless_on_cores)
+        yield f"unbounded: no bound was found for {names}"
 
 
 def format_chain(
-    result: ChainResult, age: TimingValue, published: tuple[Fraction, Fraction] | None = None
+    result: ChainResult, system: TimingSystem, age: TimingValue, published: tuple[Fraction, Fraction] | None = None
 ) -> Iterator[str]:
     """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
@@ -122,10 +129,12 @@ def format_chain(
         yield from align_columns(_term_rows(result.terms))
         yield ""
     rows: list[AlignedRow] = [
-        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result))
+        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, system))
     ]
     if age != result.bound:
-        rows = [("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result))]
+        rows = [
+            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, system))
+        ]
         rows.append(("largest data age, until the next event's comes", format_figure(age), format_missing(age)))
     rows += [
         ("reduced reaction time (from the first sample on)", format_figure(result.reduced_reaction)),
@@ -167,43 +176,6 @@ def format_ways(
             yield f"  {title} {number}: {format_figure(way.bound)}   {' > '.join(way.through)}"
             if not way.bound.complete:
                 yield f"      no bound: {format_missing(way.bound)}"
-
-
-def describe_gaps(result: ChainResult) -> str:
-    """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
-    if result.bound.complete:
-        return ""
-    phrases = []
-    links = {name for term in result.terms for name in term.link.missing}
-    for quantity, values in (
-        ("period or rate", [term.sampling for term in result.terms]),
-        ("execution time", [term.response for term in result.terms]),
-        ("latency", [term.link for term in result.terms]),
-    ):
-        lacking = dict.fromkeys(name for value in values for name in value.missing if not value.complete)
-        # An unknown latency makes the waiting time unknown as well: it is named once, as a latency.
-        names = tuple(name for name in lacking if quantity != "period or rate" or name not in links)
-        if names:
-            phrases.append(f"{quantity} of {figure_wording.join_first_names(names)} unknown")
-    named_elements = {
-        name
-        for term in result.terms
-        for term_value in (term.sampling, term.response, term.link)
-        for name in term_value.missing
-    }
-    # The bound is the maximum over all ways, the terms are those of one of them.
-    elsewhere = tuple(name for name in result.bound.missing if name not in named_elements)
-    if elsewhere and result.terms:
-        phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
-    phrases += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
-    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}" if phrases else "no bound"
-
-
-def _describe_basis(result: ChainResult) -> str:
-    if result.bound.value is None:
-        return ""
-    values = [value for term in result.terms for value in (term.response, term.link)]
-    return "(what is known) " if any(value.value for value in values) else "(periods only) "
 
 
 def format_missing(value: TimingValue) -> str:

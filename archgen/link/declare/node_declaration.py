@@ -103,6 +103,8 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         implements_written=body.get("implements") is not None,
         at=entry.key_span,
         name_at=mapping_values.get_span(body, "name"),
+        kind_at=mapping_values.get_span(body, "kind"),
+        container_at=mapping_values.get_span(body, "container"),
     )
 
 

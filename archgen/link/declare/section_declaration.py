@@ -117,14 +117,17 @@ def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, L
         best, worst = sanity_checks.read_latency(
             mapping_values.get_mapping(body, "latency"), name, resolver.diagnostics
         )
+        connects = tuple(_resolve_plain_ids(body, "connects", "host", resolver, name))
         links_by_id[name] = Link(
             id=name,
             title=mapping_values.get_title(body, name),
-            connects=tuple(_resolve_plain_ids(body, "connects", "host", resolver, name)),
+            connects=connects,
             bandwidth=sanity_checks.read_positive(body, "bandwidth", "bandwidth", name, resolver.diagnostics),
             best=best,
             worst=worst,
             at=entry.key_span,
+            connects_at=mapping_values.get_span(body, "connects"),
+            unresolved=tuple(host for host in mapping_values.get_texts(body, "connects") if host not in connects),
         )
     return links_by_id
 

@@ -23,6 +23,8 @@ from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 
+UNLINKED_NOTE = "no link joins their hosts"
+"""The note of what is unknown because the hosts of two elements are not joined."""
 _ONE_CALL = Fraction(1)
 
 
@@ -157,11 +159,7 @@ def arriving_model(
     if response.value is None:
         return _downstream_cause(response.cause)
     if arc.worst is None:
-        return (
-            UnknownCause((arc.link,))
-            if arc.link
-            else UnknownCause((arc.source, arc.target), ("no link joins their hosts",))
-        )
+        return UnknownCause((arc.link,)) if arc.link else UnknownCause((arc.source, arc.target), (UNLINKED_NOTE,))
     return delay_streams(
         _completion_streams(source, response.value, event_model, from_start=from_start), arc.worst - (arc.best or 0)
     )

@@ -12,6 +12,7 @@ from archgen.model.component import Component, Group, Input, Output
 from archgen.model.node import Node, Topic
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
+from archgen.views.requirement_servers import describe_chain_state, name_chain
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,9 +269,11 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     if kind == "type":
         lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
     elif kind == "requirement":
-        lists.append(
-            ("served by", tuple(component.id for component in lookup.components_for_requirement.get(element_id, ())))
-        )
+        serving_components = lookup.components_for_requirement.get(element_id, ())
+        serving_chains = lookup.chains_for_requirement.get(element_id, ())
+        names = [component.id for component in serving_components]
+        names += [f"the chain {name_chain(lookup, chain)}" for chain in serving_chains]
+        lists.append(("served by", tuple(names)))
     elif kind == "partner":
         facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
         elements_by_kind = (
@@ -289,7 +292,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
         )
     elif kind == "chain":
-        lists.append(("through", tuple(point.id for point in architecture.chains[element_id].through)))
+        chain = architecture.chains[element_id]
+        facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]
+        lists.append(("through", tuple(point.id for point in chain.through)))
     return ElementCard(
         kind, element_id, getattr(element, "title", element_id), element.at, _known_facts(facts), tuple(lists)
     )

@@ -13,6 +13,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
+from archgen.views.requirement_servers import chain_link
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -236,7 +237,11 @@ def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
                 lookup, f"table:serving/{requirement.id}", "Components that serve it", serving_components
             )
         )
-    else:
+    serving_chains = lookup.chains_for_requirement.get(requirement.id, ())
+    if serving_chains:
+        blocks.append(Paragraph(inline_text.to_inlines(Text("Chains that serve it", strong=True))))
+        blocks.append(Bullets(tuple(chain_link(lookup, chain) for chain in serving_chains)))
+    if not serving_components and not serving_chains:
         blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
     crumb = ("Requirements", "page:requirements")
     section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))

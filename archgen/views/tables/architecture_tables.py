@@ -13,7 +13,7 @@ from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
-from archgen.views import inline_text
+from archgen.views import inline_text, requirement_servers
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text
@@ -150,16 +150,13 @@ def describe_mapping(conceptual_type: ConceptualType) -> str:
 
 
 def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requirement]) -> Table | None:
-    """List requirements with the components that serve them."""
+    """List requirements with the components and chains that serve them."""
     rows = tuple(
         (
             inline_text.to_inlines(Text(requirement.id, ref=f"requirement:{requirement.id}")),
             inline_text.to_inlines(requirement.title),
             inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
-            inline_text.join_inlines(
-                (inline_text.component_link(component),)
-                for component in lookup.components_for_requirement.get(requirement.id, ())
-            )
+            inline_text.join_inlines(requirement_servers.list_servers(lookup, requirement))
             or inline_text.to_inlines(Text("no component yet", muted=True)),
         )
         for requirement in selected_requirements
@@ -170,9 +167,7 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
         Column("Use cases", 1.0),
         Column("Served by", 1.8),
     )
-    return (
-        Table("table:requirements", "Requirements and the components that serve them", columns, rows) if rows else None
-    )
+    return Table("table:requirements", "Requirements and what serves them", columns, rows) if rows else None
 
 
 def use_case_link(lookup: Lookup, use_case_id: str) -> Inlines:

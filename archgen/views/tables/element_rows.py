@@ -99,8 +99,9 @@ def _type_rows(lookup: Lookup) -> Iterator[TextRow]:
 
 def _requirement_rows(lookup: Lookup) -> Iterator[TextRow]:
     for r in architecture_tables.shown_requirements(lookup):
-        component_ids = ", ".join(component.id for component in lookup.components_for_requirement.get(r.id, ()))
-        yield (r.id, r.title, ", ".join(r.use_cases), component_ids, str(r.at))
+        server_ids = [component.id for component in lookup.components_for_requirement.get(r.id, ())]
+        server_ids += [chain.id for chain in lookup.chains_for_requirement.get(r.id, ())]
+        yield (r.id, r.title, ", ".join(r.use_cases), ", ".join(server_ids), str(r.at))
 
 
 def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:

@@ -1,0 +1,38 @@
+"""What serves a requirement: components, and chains with what the timing analysis says of their deadlines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.model.architecture import Chain, Requirement
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Inlines, Text
+
+
+def describe_chain_state(lookup: Lookup, chain: Chain) -> str:
+    """Return whether a chain meets its deadline: met, missed, open or without a deadline; empty if nothing was analysed."""
+    results = lookup.timing.chains if lookup.timing else ()
+    verdict = next((result.verdict for result in results if result.id == chain.id), "")
+    return "without a deadline" if verdict and chain.deadline is None else verdict
+
+
+def chain_link(lookup: Lookup, chain: Chain) -> Inlines:
+    """Link to a chain by its title, with its state behind it; a deadline that is not met stands out."""
+    state = describe_chain_state(lookup, chain)
+    link = Text(chain.title, ref=f"chain:{chain.id}")
+    return (link, Text(f" ({state})", strong=state == "missed")) if state else (link,)
+
+
+def name_chain(lookup: Lookup, chain: Chain) -> str:
+    """Return a chain's id, with its state behind it."""
+    state = describe_chain_state(lookup, chain)
+    return f"{chain.id} ({state})" if state else chain.id
+
+
+def list_servers(lookup: Lookup, requirement: Requirement) -> Iterator[Inlines]:
+    """Yield links to the components that serve a requirement, then to the chains."""
+    for component in lookup.components_for_requirement.get(requirement.id, ()):
+        yield (inline_text.component_link(component),)
+    for chain in lookup.chains_for_requirement.get(requirement.id, ()):
+        yield (Text("chain "), *chain_link(lookup, chain))

@@ -1,0 +1,83 @@
+"""What a chain lacks is named as what it is: a figure that nobody wrote, a link that is missing, a search that failed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.emit.terminal.chain_gaps import describe_gaps
+from archgen.emit.terminal.timing_text import format_timing
+from archgen.pipeline import check_project
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
+
+ROBOT = """\
+hosts: {pc: {cores: 2}, auto: {cores: 1}, far: {}}
+links: {cable: {connects: [pc, far], latency: 1 ms}}
+groups:
+  g:
+    components:
+      s: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 30 Hz, wcet: 1 ms}}
+      e: {inputs: {i: s.o}, outputs: {o: std_msgs/msg/Empty}, timing: {wcet: 300 us}}
+      f: {inputs: {i: e.o}, outputs: {o: std_msgs/msg/Empty}, timing: {wcet: 1 ms}}
+      p: {outputs: {o: {type: std_msgs/msg/Empty, external: X}}, timing: {rate: 50 Hz, wcet: 1 ms}}
+nodes: {s: {implements: s, host: pc}, e: {implements: e, host: auto}, f: {implements: f, host: pc}, p: {implements: p, host: pc}}
+chains: {k: {through: [g.s, g.e, g.f], deadline: 200 ms}, after: {through: [g.e, g.f]}}
+"""
+
+
+def gaps_of(folder: Path, text: str, chain: str = "k") -> str:
+    (folder / "robot.yaml").write_text(text, encoding="utf-8")
+    architecture = check_project(folder / "robot.yaml").architecture
+    analysis = analyse_architecture(architecture)
+    return describe_gaps(bound_all_chains(analysis, architecture)[chain], analysis.system)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "gaps"),
+    [
+        ("", "", "no link joins auto and pc"),
+        ("wcet: 300 us", "rate: 10 Hz", "execution time of e unknown; no link joins auto and pc"),
+        ("connects: [pc, far]", "connects: [pc, auto]", ""),
+        ("connects: [pc, far], latency: 1 ms", "connects: [pc, auto]", "latency of cable unknown"),
+    ],
+)
+def test_a_missing_link_is_no_missing_execution_time(tmp_path: Path, old: str, new: str, gaps: str) -> None:
+    described_gaps = gaps_of(tmp_path, ROBOT.replace(old, new))
+    assert described_gaps.partition("no bound: ")[2] == gaps
+
+
+def test_a_chain_behind_a_missing_link_names_it(tmp_path: Path) -> None:
+    text = ROBOT.replace("host: auto", "host: pc").replace(
+        "s: {implements: s, host: pc}", "s: {implements: s, host: auto}"
+    )
+    assert gaps_of(tmp_path, text, "after").partition("no bound: ")[2] == "no link joins auto and pc"
+
+
+HEAVY = """\
+hosts: {pc: {cores: 1}}
+groups:
+  g:
+    components:
+      s: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 30 Hz, wcet: 8 ms}}
+      e: {inputs: {i: s.o}, outputs: {o: std_msgs/msg/Empty}, timing: {wcet: 8 ms}}
+      f: {inputs: {i: e.o}, outputs: {o: std_msgs/msg/Empty}, timing: {wcet: 8 ms}}
+      p: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 50 Hz, wcet: 1 ms}}
+      q: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 50 Hz, wcet: 1 ms}}
+nodes: {s: {implements: s, host: pc}, e: {implements: e, host: pc}, f: {implements: f, host: pc}, p: {implements: p, host: pc}, q: {implements: q, host: pc}}
+chains: {k: {through: [g.s, g.e, g.f], deadline: 200 ms}}
+"""
+
+
+def test_a_search_that_diverged_is_no_missing_execution_time(tmp_path: Path) -> None:
+    gaps = gaps_of(tmp_path, HEAVY)
+    assert (gaps.endswith("no bound: diverged"), "execution time" in gaps) == (True, False)
+
+
+@pytest.mark.parametrize(("cores", "word"), [(1, "diverged"), (2, "unbounded")])
+def test_where_no_bound_was_found_is_said_on_one_core_and_on_several(tmp_path: Path, cores: int, word: str) -> None:
+    (tmp_path / "robot.yaml").write_text(HEAVY.replace("cores: 1", f"cores: {cores}"), encoding="utf-8")
+    architecture = check_project(tmp_path / "robot.yaml").architecture
+    lines = list(format_timing(analyse_architecture(architecture), {}, ()))
+    assert lines[-1] == f"{word}: no bound was found for s, e, f, p, q"
