@@ -55,6 +55,7 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         "flow",
         (*subject_boxes, *topics.values(), *neighbour_boxes.values()),
         arrows,
+        direction=component.layout.direction or lookup.architecture.layout.direction,
         alt=_describe_implementation(component.title, sorted(subject_ids), [box.title for box in topics.values()]),
         asked=len(arrows),
         kind="implementation",
