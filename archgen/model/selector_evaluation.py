@@ -75,7 +75,7 @@ class SelectorEvaluator:
         refused_nodes = frozenset[str]().union(*(hit.nodes for hit in refused_hits if hit.only_nodes))
         components = frozenset[str]().union(*(hit.components for hit in wanted_hits)) - refused_components
         nodes = frozenset[str]().union(*(hit.nodes for hit in wanted_hits)) - refused_nodes
-        implements = {node: self.architecture.nodes[node].implements for node in nodes}
+        implements = {node: self.architecture.nodes[node].implements for node in sorted(nodes)}
         orphaned_nodes = {
             node
             for node in nodes
