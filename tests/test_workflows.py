@@ -195,10 +195,11 @@ def test_nobody_is_told_to_install_archgen_from_the_package_index_where_it_is_no
 
 def test_every_address_of_archgen_is_the_one_that_the_code_base_names() -> None:
     address = re.compile(r"(?:github\.com/|githubusercontent\.com/|uses: )([\w.-]+/archgen)\b")
+    own_name = re.compile(rf"(?<![\w.]){REPOSITORY}(?![\w.])")
     named = {(path, found) for path, text in texts_for_users() for found in address.findall(text)}
     assert named
     assert [(path, found) for path, found in sorted(named) if found != REPOSITORY] == []
     written = {
-        path for path, text in texts_for_users() if path.startswith(("archgen/", "start/")) and REPOSITORY in text
+        path for path, text in texts_for_users() if path.startswith(("archgen/", "start/")) and own_name.search(text)
     }
     assert written == {"archgen/resources.py"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -65,10 +64,11 @@ def print_findings(findings: Sequence[Diagnostic], checked_project: CheckedProje
 
 def print_excerpts(findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO) -> None:
     """Print findings with the lines of these sources."""
+    from archgen.diagnostics.text_columns import find_width
     from archgen.emit.terminal import findings_text
 
     colour = findings_text.wants_colour(stream, os.environ)
-    width = shutil.get_terminal_size().columns if stream.isatty() else findings_text.DEFAULT_WIDTH
+    width = find_width(stream)
     stream.writelines(
         f"{line}\n" for line in findings_text.render_findings_text(findings, sources, colour=colour, width=width)
     )

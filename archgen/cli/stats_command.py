@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
@@ -11,6 +12,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.common_wording import floor_percent
+from archgen.diagnostics.text_columns import find_width
 
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
@@ -89,22 +91,30 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
     elif form == "csv":
         click.echo(history_text.history_to_csv(project_history), nl=False)
     else:
-        click.echo(history_text.format_history(project_history), nl=False)
+        click.echo(history_text.format_history(project_history, find_width(sys.stdout)), nl=False)
 
 
 def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[ProgressCounts, ...], files: int) -> str:
     from archgen.diagnostics.safe_text import defuse_command, make_visible
+    from archgen.diagnostics.text_columns import format_table
     from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
 
     lines = [make_visible(title), ""]
     lines += [f"  {label:42}{value:>8}" for _, label, value in format_figures(project_size)]
     lines += [f"  {'Files':42}{files:>8}", ""]
-    populated_rows = [row for row in rows if row.components]
+    populated_rows = [
+        (
+            row.title,
+            str(row.components),
+            *(_format_share(getattr(row, step), row.components) for step in PROGRESS_STEPS),
+        )
+        for row in rows
+        if row.components
+    ]
     if populated_rows:
-        lines.append(f"  {'Progress':32}{'components':>11}" + "".join(f"{step:>11}" for step in PROGRESS_STEPS))
-    for row in populated_rows:
-        counts = "".join(f"{_format_share(getattr(row, step), row.components):>11}" for step in PROGRESS_STEPS)
-        lines.append(f"  {make_visible(row.title)[:31]:32}{row.components:>11}{counts}")
+        lines += format_table(
+            ("Progress", "components", *PROGRESS_STEPS), populated_rows, find_width(sys.stdout), has_figures=True
+        )
     return "\n".join(map(defuse_command, lines)) + "\n"
 
 
