@@ -98,13 +98,15 @@ def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -
     if selector_text is None:
         return None
     selection, problems = project_views.select_elements(checked_project, selector_text)
+    errors = []
     for problem in problems:
-        click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
-        if problem.help:
-            click.echo(make_visible(f"  = help: {problem.help}"), err=True)
-    if any(problem.severity == "error" for problem in problems):
-        msg = f"the selector '{make_visible(selector_text)}' cannot be used"
-        raise click.UsageError(msg)
+        text = f"{problem.message}; {problem.help}" if problem.help else problem.message
+        if problem.severity == "error":
+            errors.append(make_visible(text))
+        else:
+            print_warning(text)
+    if errors:
+        raise click.UsageError("\n".join(errors))
     return selection
 
 

@@ -30,26 +30,21 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     title in quotes.
     """
     from archgen.diagnostics.safe_text import make_visible
+    from archgen.timing.chains.word_resolution import unknown_name_text
     from archgen.views.elements import element_card
     from archgen.views.lookup import make_lookup
 
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
-    any_missing = False
+    unknown_words = []
     for word in words:
         matches = element_card.find_elements(lookup, word)
         for kind, name in matches:
             click.echo(format_card(element_card.make_card(lookup, kind, name), find_width(sys.stdout)))
         if not matches:
-            any_missing = True
-            from archgen.diagnostics.suggestions import did_you_mean
-
-            guess = did_you_mean(
-                word, [part for key in element_card.kinds_by_id(lookup) for part in (key, key.rpartition(".")[2])]
-            )
-            click.echo(f"archgen: nothing is called '{make_visible(word)}'" + (f"; {guess}" if guess else ""), err=True)
-    if any_missing:
-        raise click.exceptions.Exit(1)
+            unknown_words.append(unknown_name_text(word, element_card.kinds_by_id(lookup)))
+    if unknown_words:
+        raise click.UsageError(make_visible("\n".join(unknown_words)))
 
 
 def format_card(card: ElementCard, width: int | None = None) -> str:

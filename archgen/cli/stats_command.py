@@ -74,7 +74,7 @@ def _print_current(project: Path | None, form: str) -> None:
 
 def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None:
     from archgen import git
-    from archgen.diagnostics.safe_text import format_json
+    from archgen.diagnostics.safe_text import format_json, make_visible
     from archgen.emit.terminal import history_text
     from archgen.history import count_history
     from archgen.products import report_cache
@@ -84,6 +84,9 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
         project_history = count_history(
             project, by, cache=report_cache.cache_folder(), progress=command_support.make_progress_printer("reading")
         )
+    except git.NoRepositoryError as error:
+        msg = f"{make_visible(str(error))}; the history is read from its commits"
+        raise click.UsageError(msg) from None
     except (git.GitError, ProjectNotFoundError) as error:
         raise click.UsageError(str(error)) from None
     if form == "json":

@@ -48,7 +48,7 @@ def test_keep_going(run: Run, broken: Path) -> None:
     ("words", "said"),
     [
         (("pack", "--select", "lidar"), "--select goes with --resolved: a packed project is whole"),
-        (("pack", "--resolved", "--select", "lidr"), "the selector 'lidr' cannot be used"),
+        (("pack", "--resolved", "--select", "lidr"), "nothing is called `lidr`; did you mean `lidar`?"),
         (("diagram", "--format", "gif"), "--format takes svg, png, pdf, dot, separated by commas, not 'gif'"),
         (("report", "--level", "high"), "'high' is not one of 'functional', 'implementation'"),
     ],
