@@ -105,5 +105,5 @@ def output_option(target: str, default: str) -> Callable[[CommandFunction], Comm
         "-o",
         "--output",
         type=click.Path(path_type=Path),
-        help=f"{target} to write.  [default: archgen-out/{default} in the project]",
+        help=f"{target} to write; folders on the way are made.  [default: archgen-out/{default} in the project]",
     )
