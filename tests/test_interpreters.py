@@ -112,7 +112,7 @@ def python(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 def run(*words: str | Path) -> bytes:
     """Run a program with archgen from this checkout; give what it prints, and its exit status."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": ""}
     done = subprocess.run(  # noqa: S603 - our own program, pip or venv
         [*map(str, words)], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=600
     )

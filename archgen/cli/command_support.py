@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO
@@ -17,6 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.model.selector_evaluation import Selection
+    from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
 
 
@@ -92,12 +93,19 @@ def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedPr
 
 def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
     """Evaluate a selector from the command line. What names nothing is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.products import project_views
 
     if selector_text is None:
         return None
     selection, problems = project_views.select_elements(checked_project, selector_text)
+    report_selector_problems(problems)
+    return selection
+
+
+def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:
+    """Print what is odd about a selector; what is wrong is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+
     errors = []
     for problem in problems:
         text = f"{problem.message}; {problem.help}" if problem.help else problem.message
@@ -107,7 +115,6 @@ def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -
             print_warning(text)
     if errors:
         raise click.UsageError("\n".join(errors))
-    return selection
 
 
 def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -> NoReturn:

@@ -12,7 +12,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.common_wording import floor_percent
-from archgen.diagnostics.text_columns import find_width
+from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
@@ -102,9 +102,11 @@ def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[P
     from archgen.diagnostics.text_columns import format_table
     from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
 
-    lines = [make_visible(title), ""]
-    lines += [f"  {label:42}{value:>8}" for _, label, value in format_figures(project_size)]
-    lines += [f"  {'Files':42}{files:>8}", ""]
+    width = find_width(sys.stdout)
+    lines = [*wrap_line(make_visible(title), width), ""]
+    figures = [*((label, value) for _, label, value in format_figures(project_size)), ("Files", str(files))]
+    lines += [line for label, value in figures for line in wrap_line(f"  {label:42}{value:>8}", width)]
+    lines.append("")
     populated_rows = [
         (
             row.title,
@@ -115,9 +117,7 @@ def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[P
         if row.components
     ]
     if populated_rows:
-        lines += format_table(
-            ("Progress", "components", *PROGRESS_STEPS), populated_rows, find_width(sys.stdout), has_figures=True
-        )
+        lines += format_table(("Progress", "components", *PROGRESS_STEPS), populated_rows, width, has_figures=True)
     return "\n".join(map(defuse_command, lines)) + "\n"
 
 
