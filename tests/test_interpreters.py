@@ -96,13 +96,15 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(params=VERSIONS)
-def python(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+@pytest.fixture(scope="module", params=VERSIONS)
+def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Find a Python and give it the libraries that archgen stands on."""
     interpreter = find_interpreter(request.param)
     if interpreter is None:
         pytest.skip(f"no Python {request.param} was found here")
-    environment = tmp_path / "venv"
+    if interpreter == Path(sys.executable):
+        pytest.skip(f"Python {request.param} runs the tests: the others are held against it")
+    environment = tmp_path_factory.mktemp("environment") / "venv"
     run(interpreter, "-m", "venv", environment)
     program = environment / "bin" / "python"
     run(program, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
