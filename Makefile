@@ -26,9 +26,10 @@ demo: .make/run
 test: .make/test
 	$(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
 
-# The rest comes after, not among them: what builds or takes long would push others over their time limits.
+# The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
+# not tried here, such as a Python that is not installed.
 test-all: test
-	$(BIN)/python -m pytest -m "slow or build or ros" -n auto --dist worksteal $(TESTS)
+	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n auto --dist worksteal $(TESTS)
 
 check: lint test
 

@@ -5,8 +5,9 @@ The public Python API is `archgen.load(path)`; everything else hangs on the `Pro
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+# Known to type checkers by its name. Importing `typing` takes longer than all else here, and an interrupt in it shows a
+# traceback: nothing of archgen's can catch it yet.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from archgen.api import Project, load
 

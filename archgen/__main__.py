@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import gc
 import io
 import os
@@ -11,27 +10,10 @@ import sys
 
 def main() -> None:
     """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 interrupted."""
-    # A run is short, and its long-lived objects (trees, models) form no cycles: searching them for garbage again and
-    # again costs a fifth of the run.
-    gc.disable()
-    import click
-
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # the caller closed it: discard what is written
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
-    from archgen.cli import main as verbs
-
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
+    # All of it is inside: imports take most of the first tenth of a second, in which people press Ctrl-C, too.
     try:
-        try:
-            sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
-        finally:
-            sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled below
-    except click.ClickException as error:
-        error.show()
-        sys.exit(2)
-    except (click.Abort, KeyboardInterrupt):
+        _run_verb()
+    except KeyboardInterrupt:
         sys.stderr.write("archgen: stopped\n")
         sys.exit(130)
     except BrokenPipeError:
@@ -52,8 +34,36 @@ def main() -> None:
         sys.exit(2)
 
 
+def _run_verb() -> None:
+    # A run is short, and its long-lived objects (trees, models) form no cycles: searching them for garbage again and
+    # again costs a fifth of the run.
+    gc.disable()
+    import click
+
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # the caller closed it: discard what is written
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
+    from archgen.cli import main as verbs
+
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
+    try:
+        try:
+            sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
+        finally:
+            sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled by the caller
+    except click.ClickException as error:
+        error.show()
+        sys.exit(2)
+    except click.Abort:
+        raise KeyboardInterrupt from None
+
+
 def _leave_quietly() -> None:
     """Discard what is still buffered, so that Python's own flush at exit prints no error."""
+    # `contextlib` is imported here: it would lengthen the time in which nothing catches an interrupt.
+    import contextlib
+
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+REPOSITORY = "archgen/archgen"
+"""Where archgen will be published on GitHub: the one place for this name, from which every other is made or tested."""
+HOME_URL = f"https://github.com/{REPOSITORY}"
 _WORKER_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH", "SYSTEMROOT")
 """What an interpreter needs to start and to find its libraries as this one did."""
 _PACKAGE_FOLDER = Path(__file__).resolve().parent

@@ -22,7 +22,8 @@ def archgen(
     """Run a verb with the code of this checkout; what it leaves with another status is shown."""
     command = [sys.executable, "-m", "archgen", *map(str, words)]
     path = os.pathsep.join(filter(None, ((env or {}).get("PYTHONPATH"), str(ROOT))))
-    environment = {**os.environ, **(env or {}), "PYTHONPATH": path}
+    # As wide as it must be, unless a test says otherwise: pytest's workers set COLUMNS.
+    environment = {**os.environ, "COLUMNS": "", **(env or {}), "PYTHONPATH": path}
     done = subprocess.run(  # noqa: S603 - our own program
         command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=300
     )

@@ -81,7 +81,9 @@ def test_pictures_in_every_format_are_the_same_bytes(moved: Path, tmp_path: Path
 def test_what_is_printed_is_the_same_bytes(words: tuple[str, ...], moved: Path) -> None:
     project = (lambda path: ("-C", path)) if words[0] in {"list", "show"} else lambda path: (path,)
     first = archgen(*words, *project(RAMCIP), cwd=RAMCIP.parent).stdout
-    second = archgen(*words, *project(moved), cwd=moved, env={**ELSEWHERE, "PYTHONIOENCODING": "utf-8"}).stdout
+    second = archgen(
+        *words, *project(moved), cwd=moved, env={**ELSEWHERE, "COLUMNS": "", "PYTHONIOENCODING": "utf-8"}
+    ).stdout
     assert first.decode() == second.decode()
 
 

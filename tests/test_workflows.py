@@ -6,12 +6,14 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
+from archgen.resources import REPOSITORY
 from tests import repositories
 from tests.running import ROOT
 
@@ -162,3 +164,42 @@ def test_gitlab_runs_the_same_commands(tmp_path: Path, runner: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     wanted = template["archgen"]["artifacts"]["reports"]["junit"]
     assert (folder / wanted).exists()
+
+
+WORDS_FOR_USERS = (
+    "README.md",
+    "docs",
+    "start",
+    "ci",
+    "action.yml",
+    "comment",
+    ".pre-commit-hooks.yaml",
+    ".github",
+    "archgen",
+)
+
+
+def texts_for_users() -> Iterator[tuple[str, str]]:
+    """Give path and text of everything that tells people or servers where archgen is."""
+    for name in WORDS_FOR_USERS:
+        place = ROOT / name
+        for file in sorted(place.rglob("*")) if place.is_dir() else [place]:
+            if file.suffix in {".md", ".yml", ".yaml", ".j2", ".py"}:
+                yield file.relative_to(ROOT).as_posix(), file.read_text(encoding="utf-8")
+
+
+def test_nobody_is_told_to_install_archgen_from_the_package_index_where_it_is_not() -> None:
+    from_index = re.compile(r"pip install (--\S+ )*archgen\b|ARCHGEN_PACKAGE: archgen\b")
+    assert [path for path, text in texts_for_users() if from_index.search(text)] == []
+
+
+def test_every_address_of_archgen_is_the_one_that_the_code_base_names() -> None:
+    address = re.compile(r"(?:github\.com/|githubusercontent\.com/|uses: )([\w.-]+/archgen)\b")
+    own_name = re.compile(rf"(?<![\w.]){REPOSITORY}(?![\w.])")
+    named = {(path, found) for path, text in texts_for_users() for found in address.findall(text)}
+    assert named
+    assert [(path, found) for path, found in sorted(named) if found != REPOSITORY] == []
+    written = {
+        path for path, text in texts_for_users() if path.startswith(("archgen/", "start/")) and own_name.search(text)
+    }
+    assert written == {"archgen/resources.py"}

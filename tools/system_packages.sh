@@ -17,6 +17,8 @@ fi
 ${PYTHON:-python3} -c "import ensurepip, venv" 2>/dev/null || missing="$missing python3-venv"
 need_command git git
 if [ "$what" = test ]; then
+    # Playwright's own Node; ldd names it as the one library that nothing else here brings.
+    if command -v ldconfig >/dev/null 2>&1; then need_library libatomic.so.1 libatomic1; fi
     need_command chromium chromium
     need_command soffice libreoffice-writer-nogui
     need_command pdftoppm poppler-utils

@@ -164,9 +164,9 @@ def _find_readers_of_physical_outputs(architecture: Architecture) -> Iterator[Di
 
 def _suggest_common_type(architecture: Architecture, expected_type: str, output: Output) -> str | None:
     """Suggest to use one name where both types have the same message."""
-    messages = {_message_of_type(architecture, expected_type), architecture.message_of(output)}
-    if len(messages) == 1 and None not in messages:
-        return f"both travel as `{messages.pop()}`, but are two types: use one name if they mean the same"
+    message = architecture.message_of(output)
+    if message is not None and message == _message_of_type(architecture, expected_type):
+        return f"both travel as `{message}`, but are two types: use one name if they mean the same"
     return None
 
 

@@ -124,7 +124,7 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
     # An unused mapping beside a used type without one is most likely a misspelt name.
-    unmapped_names = [name for name in used_types if name and not _is_mapped(architecture, name)]
+    unmapped_names = {name for name in used_types if name and not _is_mapped(architecture, name)}
     for type_ in architecture.types.values():
         if type_.origin == "project" and type_.at != NO_SPAN and type_.name not in used_types:
             yield Diagnostic(

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO
@@ -18,6 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.model.selector_evaluation import Selection
+    from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
 
 
@@ -65,10 +65,11 @@ def print_findings(findings: Sequence[Diagnostic], checked_project: CheckedProje
 
 def print_excerpts(findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO) -> None:
     """Print findings with the lines of these sources."""
+    from archgen.diagnostics.text_columns import find_width
     from archgen.emit.terminal import findings_text
 
     colour = findings_text.wants_colour(stream, os.environ)
-    width = shutil.get_terminal_size().columns if stream.isatty() else findings_text.DEFAULT_WIDTH
+    width = find_width(stream)
     stream.writelines(
         f"{line}\n" for line in findings_text.render_findings_text(findings, sources, colour=colour, width=width)
     )
@@ -92,20 +93,28 @@ def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedPr
 
 def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
     """Evaluate a selector from the command line. What names nothing is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.products import project_views
 
     if selector_text is None:
         return None
     selection, problems = project_views.select_elements(checked_project, selector_text)
-    for problem in problems:
-        click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
-        if problem.help:
-            click.echo(make_visible(f"  = help: {problem.help}"), err=True)
-    if any(problem.severity == "error" for problem in problems):
-        msg = f"the selector '{make_visible(selector_text)}' cannot be used"
-        raise click.UsageError(msg)
+    report_selector_problems(problems)
     return selection
+
+
+def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:
+    """Print what is odd about a selector; what is wrong is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    errors = []
+    for problem in problems:
+        text = f"{problem.message}; {problem.help}" if problem.help else problem.message
+        if problem.severity == "error":
+            errors.append(make_visible(text))
+        else:
+            print_warning(text)
+    if errors:
+        raise click.UsageError("\n".join(errors))
 
 
 def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -> NoReturn:

@@ -25,12 +25,14 @@ def _read_versions(
 ) -> tuple[ProjectVersion, ProjectVersion]:
     """Read both versions. What cannot be found is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.git import GitError
+    from archgen.git import GitError, NoRepositoryError
     from archgen.products.compared_versions import read_versions
     from archgen.project import ProjectNotFoundError
 
     try:
         return read_versions(before, after, project)
+    except NoRepositoryError as error:
+        raise click.UsageError(make_visible(f"{error}, or name two folders or files to compare")) from None
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(str(error))) from None
 
@@ -40,7 +42,6 @@ def _select_changes(
 ) -> Comparison:
     """Keep what touches the selected part of either version. What only one version has is selected there alone."""
     from archgen.compare.select_changes import select_changes
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.model.selector_evaluation import Selection
     from archgen.products import project_views
 
@@ -53,13 +54,7 @@ def _select_changes(
     common_problems = [
         problem for problem in new_problems if problem.message in {each.message for each in old_problems}
     ]
-    for problem in common_problems:
-        click.echo(make_visible(f"{problem.severity}: {problem.message}"), err=True)
-        if problem.help:
-            click.echo(make_visible(f"  = help: {problem.help}"), err=True)
-    if any(problem.severity == "error" for problem in common_problems):
-        msg = f"the selector '{make_visible(selector)}' cannot be used"
-        raise click.UsageError(msg)
+    command_support.report_selector_problems(common_problems)
     return select_changes(comparison, old_selection or Selection(), new_selection or Selection())
 
 

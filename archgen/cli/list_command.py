@@ -11,6 +11,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.text_columns import find_width
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -56,12 +57,11 @@ def command(selector: tuple[str, ...], sort: str, form: str, project: Path | Non
         columns, rows = _list_backends(checked_project)
     else:
         columns, rows = _list_elements(checked_project, selector_text, sort)
-    write = {
-        "text": list_formats.format_columns,
-        "csv": list_formats.format_csv,
-        "json": list_formats.format_json_rows,
-    }[form]
-    sys.stdout.write(write(columns, rows))
+    if form == "text":
+        text = list_formats.format_columns(columns, rows, find_width(sys.stdout))
+    else:
+        text = {"csv": list_formats.format_csv, "json": list_formats.format_json_rows}[form](columns, rows)
+    sys.stdout.write(text)
     command_support.exit_by_findings(checked_project)
 
 

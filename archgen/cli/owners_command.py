@@ -12,9 +12,13 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.text_columns import find_width, format_table
 
 if TYPE_CHECKING:
     from archgen.views.partner_ownership import Ownership, OwnershipShare
+
+
+_TEXT_WIDTH = 96
 
 
 @click.command("owners")
@@ -39,7 +43,9 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
     else:
         checked_project = command_support.check_or_exit(project)
         command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
-        text = _format_ownership(code_ownership.find_ownership(checked_project))
+        text = _format_ownership(
+            code_ownership.find_ownership(checked_project), find_width(sys.stdout) if output is None else None
+        )
     if output is None:
         sys.stdout.write(text)
     else:
@@ -51,36 +57,34 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
     command_support.exit_by_findings(checked_project)
 
 
-def _format_ownership(ownership: Ownership) -> str:
+def _format_ownership(ownership: Ownership, width: int | None) -> str:
     from archgen.diagnostics.safe_text import defuse_command, make_visible
 
-    lines = [f"{'Partner':32}{'groups':>9}{'components':>12}{'nodes':>8}{'files':>8}  reviewers"]
     owned_parts = [
         *ownership.partners,
         *([ownership.nobody] if any(ownership.nobody.elements.values()) or ownership.nobody.files else []),
     ]
-    lines += [_format_owner_row(owned) for owned in owned_parts]
+    headings = ("Partner", *(f"{sort}s" for sort in ownership.nobody.elements), "files", "reviewers")
+    lines = list(format_table(headings, map(_make_owner_row, owned_parts), width, has_figures=True))
     for owned in owned_parts:
-        lines += ["", *_list_elements(owned)]
+        lines += ["", *_list_elements(owned, min(width or _TEXT_WIDTH, _TEXT_WIDTH))]
     return "".join(f"{defuse_command(make_visible(line))}\n" for line in lines)
 
 
-def _format_owner_row(owned: OwnershipShare) -> str:
+def _make_owner_row(owned: OwnershipShare) -> tuple[str, ...]:
     name = f"{owned.partner.title} ({owned.partner.id})" if owned.partner else "(nobody)"
-    counts = [len(each) for each in owned.elements.values()]
     reviewers = ", ".join(owned.partner.reviewers) if owned.partner else ""
-    figures = f"{counts[0]:>9}{counts[1]:>12}{counts[2]:>8}{len(owned.files):>8}"
-    return f"{name[:31]:32}{figures}  {reviewers}".rstrip()
+    return name, *(str(len(each)) for each in (*owned.elements.values(), owned.files)), reviewers
 
 
-def _list_elements(owned: OwnershipShare) -> Iterator[str]:
+def _list_elements(owned: OwnershipShare, width: int) -> Iterator[str]:
     yield f"{owned.partner.title}:" if owned.partner else "Nobody owns:"
     for name, items in (*((f"{sort}s", ids) for sort, ids in owned.elements.items()), ("files", owned.files)):
         if items:
             joined_items = ", ".join(items)
             yield from textwrap.wrap(
                 joined_items,
-                96,
+                width,
                 initial_indent=f"  {name + ':':12}",
                 subsequent_indent=" " * 14,
                 break_on_hyphens=False,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,15 +11,27 @@ import click
 
 CommandFunction = Callable[..., Any]
 
-project_argument = click.argument("project", required=False, type=click.Path(path_type=Path))
-"""A project's folder or a single file; left out: the project around the current folder."""
+_PROJECT_HELP = "The project's folder or single file.  [default: the project around the current folder]"
 
-project_option = click.option(
-    "-C",
-    "--project",
-    type=click.Path(path_type=Path),
-    help="The project's folder or single file.  [default: the project around the current folder]",
-)
+project_option = click.option("-C", "--project", type=click.Path(path_type=Path), help=_PROJECT_HELP)
+"""The project of a verb whose words by position mean something else."""
+
+
+def project_argument(function: CommandFunction) -> CommandFunction:
+    """Take the project by position or as `-C`, so that `-C` goes with every verb that reads a project."""
+
+    @functools.wraps(function)
+    def call(*, project: Path | None, named_project: Path | None, **others: object) -> object:
+        if project is not None and named_project is not None:
+            msg = f"the project is named twice: {project} and -C {named_project}"
+            raise click.UsageError(msg)
+        return function(project=project or named_project, **others)
+
+    option = click.option(
+        "-C", "--project", "named_project", type=click.Path(path_type=Path), help="The same as PROJECT."
+    )
+    return click.argument("project", required=False, type=click.Path(path_type=Path))(option(call))
+
 
 select_option = click.option(
     "--select",
@@ -92,5 +105,5 @@ def output_option(target: str, default: str) -> Callable[[CommandFunction], Comm
         "-o",
         "--output",
         type=click.Path(path_type=Path),
-        help=f"{target} to write.  [default: archgen-out/{default} in the project]",
+        help=f"{target} to write; folders on the way are made.  [default: archgen-out/{default} in the project]",
     )

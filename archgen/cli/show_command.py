@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import textwrap
 from dataclasses import replace
 from pathlib import Path
@@ -10,9 +11,14 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import measure_width
+from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
     from archgen.views.elements.element_card import ElementCard
+
+
+_TEXT_WIDTH = 96
 
 
 @click.command("show")
@@ -25,6 +31,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     title in quotes.
     """
     from archgen.diagnostics.safe_text import make_visible
+    from archgen.timing.chains.word_resolution import unknown_name_text
     from archgen.views.elements import element_card
     from archgen.views.lookup import make_lookup
 
@@ -38,33 +45,35 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
         chain_results = bound_all_chains(checked_project.analysis, checked_project.architecture).values()
         lookup = replace(lookup, timing=make_timing_lookup(checked_project.analysis, chain_results))
-    any_missing = False
+    unknown_words = []
     for word in words:
         matches = element_card.find_elements(lookup, word)
         for kind, name in matches:
-            click.echo(format_card(element_card.make_card(lookup, kind, name)))
+            click.echo(format_card(element_card.make_card(lookup, kind, name), find_width(sys.stdout)))
         if not matches:
-            any_missing = True
-            from archgen.diagnostics.suggestions import did_you_mean
-
-            guess = did_you_mean(
-                word, [part for key in element_card.kinds_by_id(lookup) for part in (key, key.rpartition(".")[2])]
-            )
-            click.echo(f"archgen: nothing is called '{make_visible(word)}'" + (f"; {guess}" if guess else ""), err=True)
-    if any_missing:
-        raise click.exceptions.Exit(1)
+            unknown_words.append(unknown_name_text(word, element_card.kinds_by_id(lookup)))
+    if unknown_words:
+        raise click.UsageError(make_visible("\n".join(unknown_words)))
 
 
-def format_card(card: ElementCard) -> str:
+def format_card(card: ElementCard, width: int | None = None) -> str:
     """Lay out a card for the terminal, with control characters made visible."""
     from archgen.diagnostics.safe_text import defuse_command, make_visible
 
+    text_width = min(width or _TEXT_WIDTH, _TEXT_WIDTH)
     span_text = f"   {card.span}" if card.span.file else ""
     title = f" - {card.title}" if card.title != card.id else ""
-    lines = [click.style(make_visible(f"{card.kind} {card.id}{title}"), bold=True) + make_visible(span_text)]
+    name, *further_lines = wrap_line(make_visible(f"{card.kind} {card.id}{title}"), width)
+    lines = [click.style(name, bold=True), *further_lines]
+    # The place stands behind the name where there is room for it, else below.
+    joined_line = f"{lines[-1]}{make_visible(span_text)}"
+    has_room = width is None or measure_width(further_lines[-1] if further_lines else name) + len(span_text) <= width
+    lines[-1:] = [joined_line] if has_room else [lines[-1], *wrap_line(make_visible(span_text), width)]
     for name, value in card.facts:
-        lines += textwrap.wrap(make_visible(value), 96, initial_indent=f"  {name + ':':16}", subsequent_indent=" " * 18)
+        lines += textwrap.wrap(
+            make_visible(value), text_width, initial_indent=f"  {name + ':':16}", subsequent_indent=" " * 18
+        )
     for name, items in card.lists:
         lines.append(f"  {name}:" + ("" if items else " none"))
-        lines += [f"    {make_visible(item)}" for item in items]
+        lines += [line for item in items for line in wrap_line(f"    {make_visible(item)}", width)]
     return "\n".join(map(defuse_command, lines)) + "\n"

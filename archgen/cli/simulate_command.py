@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from fractions import Fraction
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.text_columns import find_width, wrap_line
 
 
 @click.command("simulate")
@@ -57,10 +59,10 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
             )
         )
     else:
-        click.echo(
-            words.format_simulation(make_visible(architecture.project.title), observations, analysis, chain_results),
-            nl=False,
-        )
+        text = words.format_simulation(make_visible(architecture.project.title), observations, analysis, chain_results)
+        width = find_width(sys.stdout)
+        for line in text.splitlines():
+            click.echo("\n".join(wrap_line(line, width)))
     command_support.exit_by_findings(checked_project)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
@@ -11,6 +12,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.common_wording import floor_percent
+from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
@@ -72,7 +74,7 @@ def _print_current(project: Path | None, form: str) -> None:
 
 def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None:
     from archgen import git
-    from archgen.diagnostics.safe_text import format_json
+    from archgen.diagnostics.safe_text import format_json, make_visible
     from archgen.emit.terminal import history_text
     from archgen.history import count_history
     from archgen.products import report_cache
@@ -82,6 +84,9 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
         project_history = count_history(
             project, by, cache=report_cache.cache_folder(), progress=command_support.make_progress_printer("reading")
         )
+    except git.NoRepositoryError as error:
+        msg = f"{make_visible(str(error))}; the history is read from its commits"
+        raise click.UsageError(msg) from None
     except (git.GitError, ProjectNotFoundError) as error:
         raise click.UsageError(str(error)) from None
     if form == "json":
@@ -89,22 +94,30 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
     elif form == "csv":
         click.echo(history_text.history_to_csv(project_history), nl=False)
     else:
-        click.echo(history_text.format_history(project_history), nl=False)
+        click.echo(history_text.format_history(project_history, find_width(sys.stdout)), nl=False)
 
 
 def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[ProgressCounts, ...], files: int) -> str:
     from archgen.diagnostics.safe_text import defuse_command, make_visible
+    from archgen.diagnostics.text_columns import format_table
     from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
 
-    lines = [make_visible(title), ""]
-    lines += [f"  {label:42}{value:>8}" for _, label, value in format_figures(project_size)]
-    lines += [f"  {'Files':42}{files:>8}", ""]
-    populated_rows = [row for row in rows if row.components]
+    width = find_width(sys.stdout)
+    lines = [*wrap_line(make_visible(title), width), ""]
+    figures = [*((label, value) for _, label, value in format_figures(project_size)), ("Files", str(files))]
+    lines += [line for label, value in figures for line in wrap_line(f"  {label:42}{value:>8}", width)]
+    lines.append("")
+    populated_rows = [
+        (
+            row.title,
+            str(row.components),
+            *(_format_share(getattr(row, step), row.components) for step in PROGRESS_STEPS),
+        )
+        for row in rows
+        if row.components
+    ]
     if populated_rows:
-        lines.append(f"  {'Progress':32}{'components':>11}" + "".join(f"{step:>11}" for step in PROGRESS_STEPS))
-    for row in populated_rows:
-        counts = "".join(f"{_format_share(getattr(row, step), row.components):>11}" for step in PROGRESS_STEPS)
-        lines.append(f"  {make_visible(row.title)[:31]:32}{row.components:>11}{counts}")
+        lines += format_table(("Progress", "components", *PROGRESS_STEPS), populated_rows, width, has_figures=True)
     return "\n".join(map(defuse_command, lines)) + "\n"
 
 

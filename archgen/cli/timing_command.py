@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
@@ -114,14 +115,15 @@ def _print_summary(request: TimingRequest) -> None:
         if request.as_json:
             _print_json(timing_json.timing_to_json(*present))
         else:
-            _print_lines(timing_text.format_timing(*present, find_loop_rounds(CostNetwork.of_analysis(present[0]))))
+            loops = find_loop_rounds(CostNetwork.of_analysis(present[0]))
+            _print_lines(timing_text.format_timing(*present, loops, find_width(sys.stdout)))
         return
     changed = _analyse_chains(request.architecture)
     if request.as_json:
         documents = {"present": timing_json.timing_to_json(*present), "changed": timing_json.timing_to_json(*changed)}
         _print_json({"version": timing_json.VERSION, "set": list(request.overrides), **documents})
     else:
-        _print_lines(timing_answers.format_timing_changes(present, changed, request.overrides))
+        _print_lines(timing_answers.format_timing_changes(present, changed, request.overrides, find_width(sys.stdout)))
 
 
 def _print_chain(request: TimingRequest, chain_id: str) -> None:
@@ -139,7 +141,7 @@ def _print_chain(request: TimingRequest, chain_id: str) -> None:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, analysis.system, age, published))
+        _print_lines(timing_text.format_chain(result, analysis.system, age, published, find_width(sys.stdout)))
 
 
 def _print_reasons(request: TimingRequest, word: str) -> None:
@@ -200,7 +202,7 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
     if request.as_json:
         _print_json(timing_answers.sensitivity_to_json(result, ranking))
     else:
-        _print_lines(timing_answers.format_sensitivity(result, analysis.system, ranking))
+        _print_lines(timing_answers.format_sensitivity(result, analysis.system, ranking, find_width(sys.stdout)))
 
 
 def _print_measured(request: TimingRequest, file: Path) -> None:
@@ -225,7 +227,7 @@ def _print_measured(request: TimingRequest, file: Path) -> None:
     if request.as_json:
         _print_json(timing_answers.measured_to_json(compared))
     else:
-        _print_lines(timing_answers.format_measured(compared))
+        _print_lines(timing_answers.format_measured(compared, find_width(sys.stdout)))
     if problems:
         raise click.exceptions.Exit(1)
 
@@ -284,5 +286,6 @@ def _print_json(document: object) -> None:
 def _print_lines(lines: Iterable[str]) -> None:
     from archgen.diagnostics.safe_text import make_visible
 
+    width = find_width(sys.stdout)
     for line in lines:
-        click.echo(make_visible(line))
+        click.echo("\n".join(wrap_line(make_visible(line), width)))

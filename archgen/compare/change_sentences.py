@@ -38,11 +38,11 @@ def _describe_following_names(change: Change, versions: VersionPair) -> str:
     """Describe which topics, services and actions get another name because nobody named them."""
     if change.element_kind not in {"group", "component", "output"}:
         return ""
-    inner_outputs = (
+    inner_outputs = {
         port
         for port in versions.unnamed_outputs
         if port == change.element_id or port.startswith(f"{change.element_id}.")
-    )
+    }
     renamed_outputs = sorted(port for port in inner_outputs if ("output", port) in versions.elements_before)
     if not renamed_outputs:
         return ""

@@ -121,14 +121,15 @@ def settle_diagnostics(
     The severity is the project's setting for the rule (ignored for fixed rules), else the diagnostic's own, else the
     rule's default.
     """
-    settled_diagnostics = set[Diagnostic]()
+    # A mapping, since a set would give those that sort alike in the order of their hashes.
+    settled_diagnostics: dict[Diagnostic, None] = {}
     for diagnostic in diagnostics:
         rule = rules[diagnostic.rule]
         severity = diagnostic.severity or rule.severity
         if not rule.fixed:
             severity = settings.get(diagnostic.rule, severity)
         if severity is not Severity.OFF:
-            settled_diagnostics.add(replace(diagnostic, severity=severity))
+            settled_diagnostics[replace(diagnostic, severity=severity)] = None
     return tuple(sorted(settled_diagnostics, key=lambda d: d.sort_key))
 
 

@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+NAMES_HELP = "`archgen list` gives the names of all elements"
+"""What to do about a name that nothing has, and that resembles none."""
 _MAX_WORD_LENGTH = 200
 """The length of the longest possible name (a type's) in characters. Comparing longer words only takes time."""
 

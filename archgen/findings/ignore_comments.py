@@ -92,7 +92,9 @@ def apply_ignores(
         rule = rules[diagnostic.rule]
         has_read_errors = has_read_errors or (rule.fixed and (diagnostic.severity or rule.severity) is Severity.ERROR)
         # A comment counts at the line of the finding, and at the first line of its element.
-        lines = {(diagnostic.span.file, diagnostic.span.line), *first_lines.get(diagnostic.element or "", ())}
+        lines = dict.fromkeys(
+            ((diagnostic.span.file, diagnostic.span.line), *first_lines.get(diagnostic.element or "", ()))
+        )
         matching_ignores = (
             [matching for file, line in lines for matching in ignores_by_line.get((diagnostic.rule, file, line), ())]
             if not rule.fixed

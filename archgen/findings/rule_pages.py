@@ -8,11 +8,14 @@ import re
 import textwrap
 from typing import TYPE_CHECKING, NamedTuple
 
+from archgen.diagnostics.text_columns import wrap_line
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from archgen.diagnostics.diagnostic import Rule
 
+_TEXT_WIDTH = 100
 _SECTION_PATTERN = re.compile(r"^(Why|Bad|Good):[ ]?", re.MULTILINE)
 
 
@@ -38,14 +41,20 @@ def parse_rule_page(rule: Rule) -> RulePage:
     )
 
 
-def format_rule_page(rule: Rule, *, colour: bool = False) -> str:
-    """Return a rule's page as text for a terminal."""
+def format_rule_page(rule: Rule, *, colour: bool = False, width: int | None = None) -> str:
+    """Return a rule's page as text for a terminal; examples keep their lines."""
     rule_page = parse_rule_page(rule)
     bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
-    prose = (textwrap.fill(paragraph, 100) for paragraph in (rule_page.summary, *_fold_paragraphs(rule_page.why)))
+    text_width = min(width or _TEXT_WIDTH, _TEXT_WIDTH)
+    prose = (
+        textwrap.fill(paragraph, text_width) for paragraph in (rule_page.summary, *_fold_paragraphs(rule_page.why))
+    )
     blocks = [f"{bold[0]}{rule.name}{bold[1]} ({_describe_severity(rule)})", *prose]
     if rule.options:
-        blocks += [f"{bold[0]}Options:{bold[1]}", "\n".join(f"    {line}" for line in _describe_options(rule))]
+        blocks += [
+            f"{bold[0]}Options:{bold[1]}",
+            "\n".join(part for line in _describe_options(rule) for part in wrap_line(f"    {line}", width)),
+        ]
     for title, example in (("Reported:", rule_page.bad), ("Not reported:", rule_page.good)):
         if example:
             blocks += [f"{bold[0]}{title}{bold[1]}", "\n".join(f"    {line}".rstrip() for line in example.splitlines())]

@@ -66,7 +66,7 @@ def _explain_refusal(path: Path, error_text: str) -> str:
     """Return a message for users from git's own."""
     first_line = error_text.removeprefix("fatal: ").split("\n")[0]
     if first_line.startswith("not a git repository"):
-        return f"{path} is not in a git repository: name two folders or files to compare, or run `git init` first"
+        return f"{path} is not in a git repository: run `git init` first"
     if first_line.startswith("detected dubious ownership"):
         return f"the repository around {path} belongs to somebody else: `git config --global --add safe.directory` allows it"
     return f"the repository around {path} cannot be read: {first_line}"

@@ -64,8 +64,8 @@ def _findings_by_scope(checked_project: CheckedProject) -> dict[tuple[str, str],
     element_scopes = _find_scopes(checked_project.architecture)
     findings_of: dict[tuple[str, str], list[Diagnostic]] = {}
     for finding in checked_project.findings:
-        scopes = {("project", ""), *element_scopes.get(_known_element(finding.element, element_scopes), ())}
-        for scope in scopes:
+        findings_of.setdefault(("project", ""), []).append(finding)
+        for scope in sorted(element_scopes.get(_known_element(finding.element, element_scopes), ())):
             findings_of.setdefault(scope, []).append(finding)
     return findings_of
 

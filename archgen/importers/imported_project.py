@@ -174,7 +174,7 @@ class ImportedProject:
         component.outputs[name] = type_name
         path = (component.group, component.id, name)
         # Found by its name and by its type: tables list inputs by either.
-        for word in {fold_name(name), fold_name(type_name or name)}:
+        for word in dict.fromkeys((fold_name(name), fold_name(type_name or name))):
             self._producers.setdefault(word, {})[path] = None
 
     def find_producers(self, name: str) -> list[tuple[str, str, str]]:

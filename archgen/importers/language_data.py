@@ -58,7 +58,7 @@ def _report_left_out(project: ImportedProject, groups: dict[str, ImportedGroup])
 
 def _group_data(group: ImportedGroup, unique_ids: set[str]) -> dict[str, Any]:
     data: dict[str, Any] = {"title": "To be sorted" if group.id == UNSORTED else group.name, **group.values}
-    owners = {component.values.get("owner") for component in group.components.values()}
+    owners = dict.fromkeys(component.values.get("owner") for component in group.components.values())
     # An owner that all components share is written once, at the group.
     shared = next(iter(owners)) if len(owners) == 1 else None
     if shared and "owner" not in data:

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
 from archgen.frozen import dataclass
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
@@ -149,9 +149,7 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
         message = (
             f"`{element}` may mean {', '.join(components[:6])}" if components else f"nothing is called `{element}`"
         )
-        raise OverrideError(
-            message if components else f"{message}; {guess or '`archgen list` gives the names of all elements'}"
-        )
+        raise OverrideError(message if components else f"{message}; {guess or NAMES_HELP}")
     nodes: list[Node] = list(architecture.nodes_implementing(components[0]))
     if not nodes:
         msg = f"no node implements `{components[0]}`: its timing counts nowhere"

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
 from archgen.frozen import dataclass
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
@@ -75,7 +75,7 @@ class SelectorEvaluator:
         refused_nodes = frozenset[str]().union(*(hit.nodes for hit in refused_hits if hit.only_nodes))
         components = frozenset[str]().union(*(hit.components for hit in wanted_hits)) - refused_components
         nodes = frozenset[str]().union(*(hit.nodes for hit in wanted_hits)) - refused_nodes
-        implements = {node: self.architecture.nodes[node].implements for node in nodes}
+        implements = {node: self.architecture.nodes[node].implements for node in sorted(nodes)}
         orphaned_nodes = {
             node
             for node in nodes
@@ -211,7 +211,7 @@ class SelectorEvaluator:
             problems.append(SelectorProblem(message, atom.start, atom.end, help=remedy))
         elif not match.count:
             guess = self._guess_path(atom.value)
-            help_line = f"did you mean `{guess}`?" if guess else None
+            help_line = f"did you mean `{guess}`?" if guess else NAMES_HELP
             problems.append(SelectorProblem(f"nothing is called `{atom.value}`", atom.start, atom.end, help=help_line))
         return self._hit_of_elements(match.elements if match.count == 1 else ())
 

@@ -124,7 +124,7 @@ def _find_by_type(architecture: Architecture, pattern: str) -> Iterable[str]:
         if matches_wildcard(pattern, t.name) or _matches_any(pattern, (t.message,))
     }
     sent_outputs = {output.id for output in architecture.outputs.values() if output.type in names}
-    yield from (architecture.outputs[output].component for output in sent_outputs)
+    yield from (output.component for output in architecture.outputs.values() if output.id in sent_outputs)
     yield from (port.component for port in architecture.inputs.values() if port.type in names)
     yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sent_outputs)
 

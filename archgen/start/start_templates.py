@@ -44,6 +44,7 @@ def _make_environment() -> jinja2.Environment:
         "flow": yaml_writer.format_flow,
         "markdown": escape_markdown,
     }
+    environment.globals |= {"repository": resources.REPOSITORY, "home_url": resources.HOME_URL}
     return environment
 
 

@@ -126,7 +126,7 @@ def _read_message_type(text: str, package: str, *, ros1: bool) -> FieldType | Ty
         parts = [package, text]
     if len(parts) == 2 and _is_message_name(*parts, ros1=ros1):  # noqa: PLR2004  # pkg/Name
         return FieldType(f"{parts[0]}/msg/{parts[1]}", is_builtin=False)
-    type_names = (*list_literal_types(ros1=ros1), "time", "duration")
+    type_names = {*list_literal_types(ros1=ros1), "time", "duration"}
     form = "`Name` or `package/Name`" if ros1 else "`Name` or `package/Name`, letters and digits, a capital first"
     return TypeComplaint(f"`{text}` is no type", did_you_mean(text, type_names) or f"a message is written {form}")
 

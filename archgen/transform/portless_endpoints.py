@@ -27,7 +27,7 @@ def count_shared_keys(architecture: Architecture) -> SharedKeyCounts:
     """Count the nodes of each component that have an internal entry with the same key."""
     node_counts: dict[tuple[str, str], int] = defaultdict(int)
     for node in architecture.nodes.values():
-        for key in {use.key for use in node.uses if use.internal}:
+        for key in dict.fromkeys(use.key for use in node.uses if use.internal):
             for component in node.implements:
                 node_counts[component, key] += 1
     return node_counts

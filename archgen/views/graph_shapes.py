@@ -138,7 +138,8 @@ class Graph:
     boxes: tuple[Box, ...]
     arrows: tuple[Arrow, ...]
     clusters: tuple[Cluster, ...] = ()
-    direction: Literal["left-right", "top-bottom"] = "left-right"
+    direction: Literal["left-right", "top-bottom"] | None = None
+    """Which way the project wants the flow to run; None: as the layout reads best, `flow` and `group` to the right."""
     legend: tuple[str, ...] = ()
     """Which keys of the legend apply: names of styles, `width`, `colour`, `neighbour`, ..."""
     legend_colours: tuple[tuple[int, str], ...] = ()

@@ -47,7 +47,8 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
         code = stopped.value.code
         return Ran(code if isinstance(code, int) else 0, printed.out, printed.err)
 
-    monkeypatch.delenv("FORCE_COLOR", raising=False)
+    for name in ("FORCE_COLOR", "COLUMNS"):  # pytest's workers set COLUMNS
+        monkeypatch.delenv(name, raising=False)
     monkeypatch.delenv("GITHUB_WORKSPACE", raising=False)
     collecting = gc.isenabled()
     yield call

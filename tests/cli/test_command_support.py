@@ -55,7 +55,7 @@ def test_without_a_project_it_is_wrong_usage(tmp_path: Path) -> None:
 def test_a_selector_that_names_nothing_is_wrong_usage(first: Path, capsys: pytest.CaptureFixture[str]) -> None:
     checked = command_support.check_or_exit(first)
     assert command_support.select_or_exit(checked, None) is None
-    with pytest.raises(click.UsageError, match="the selector 'x␛y' cannot be used"):
+    with pytest.raises(click.UsageError, match="nothing is called `x␛y`; `archgen list` gives"):
         command_support.select_or_exit(checked, "x\x1by")
     assert "\x1b" not in capsys.readouterr().err
 

@@ -81,7 +81,7 @@ def test_exit_codes(run: Run, robot: Path) -> None:
         (["mian"], "there is no revision `mian`: did you mean `main`?"),
         (["./nothing"], "nothing does not exist"),
         (["main", "main", "-C", "/nowhere"], "/nowhere does not exist"),
-        (["--select", "nobody"], "the selector 'nobody' cannot be used"),
+        (["--select", "nobody"], "nothing is called `nobody`; `archgen list` gives the names of all elements"),
     ],
 )
 def test_wrong_usage(run: Run, robot: Path, words: list[str], said: str) -> None:
@@ -94,7 +94,7 @@ def test_wrong_usage(run: Run, robot: Path, words: list[str], said: str) -> None
 def test_outside_of_a_repository(run: Run, first: Path) -> None:
     ran = run("diff", "-C", first)
     assert ran.status == 2
-    assert "is not in a git repository: name two folders or files to compare" in ran.err
+    assert "is not in a git repository: run `git init` first, or name two folders or files to compare" in ran.err
     assert run("diff", first, first).out == "no changes\n"
 
 

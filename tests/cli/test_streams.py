@@ -14,7 +14,13 @@ from tests.cli.conftest import ROOT
 
 def _shell(script: str, project: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run a shell script in which `$archgen` is archgen and `$project` the project."""
-    known = {**os.environ, "archgen": f"{sys.executable} -m archgen", "project": str(project), "PYTHONPATH": str(ROOT)}
+    known = {
+        **os.environ,
+        "archgen": f"{sys.executable} -m archgen",
+        "project": str(project),
+        "PYTHONPATH": str(ROOT),
+        "COLUMNS": "",
+    }
     return subprocess.run(  # noqa: S603 - the scripts below
         ["bash", "-c", script],  # noqa: S607 - the shell of the machine
         env={**known, **environment},
@@ -62,3 +68,56 @@ def test_a_stream_that_is_not_utf_8(broken: Path) -> None:
     assert (ran.stdout.splitlines(), ran.stderr) == (["1"] * 5, "")
     assert "Colour image ?" in (broken / "text").read_text("ascii")
     assert "Colour image ☃" in (broken / "junit").read_text("utf-8")
+
+
+INTERRUPTED = """
+import sys
+
+class Finder:
+    def find_spec(self, name, *_):
+        if name == MODULE:
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Finder())
+from archgen.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["click", "archgen.cli", "archgen.cli.check_command", "archgen.pipeline"])
+def test_an_interrupt_while_archgen_is_imported_shows_no_traceback(broken: Path, module: str, tmp_path: Path) -> None:
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED.replace("MODULE", repr(module)))
+    ran = _shell(f"{sys.executable} {tmp_path / 'interrupted.py'} check $project", broken)
+    assert (ran.returncode, ran.stdout, ran.stderr.lstrip()) == (130, "", "archgen: stopped\n")
+
+
+def test_hardly_anything_is_imported_before_an_interrupt_is_caught(broken: Path) -> None:
+    program = (
+        "import sys; before = set(sys.modules); import archgen.__main__; print(*sorted(set(sys.modules) - before))"
+    )
+    ran = _shell(f"cd {ROOT} && {sys.executable} -c '{program}'", broken)
+    assert set(ran.stdout.split()) <= {"__future__", "archgen", "archgen.__main__", "gc"}
+
+
+@pytest.mark.parametrize("columns", ["40", "60", "200"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        "timing $example", "timing $example --chain fall_to_call", "timing $example --sensitivity fall_to_call",
+        "list -C $example", "list --of connections -C $example", "list --of hosts -C $example", "explain",
+        "owners $example", "stats $example", "show object_recognition -C $example", "check $project",
+    ],
+)  # fmt: skip
+def test_nothing_is_wider_than_columns_says(broken: Path, verb: str, columns: str) -> None:
+    ran = _shell(f"$archgen {verb}", broken, COLUMNS=columns, example=str(ROOT / "example_ramcip"))
+    assert len(ran.stdout.splitlines()) > 5
+    assert max(map(len, ran.stdout.splitlines())) <= int(columns)
+
+
+@pytest.mark.parametrize("verb", ["timing $example", "list --of connections -C $example", "explain", "check $project"])
+def test_a_pipe_gets_every_row_on_one_line(broken: Path, verb: str) -> None:
+    example = str(ROOT / "example_ramcip")
+    narrow, full = (_shell(f"$archgen {verb}", broken, COLUMNS=width, example=example).stdout for width in ("50", ""))
+    assert len(narrow.splitlines()) > len(full.splitlines())
+    assert max(map(len, full.splitlines())) > 80
+    assert full == _shell(f"$archgen {verb}", broken, COLUMNS="1000", example=example).stdout

@@ -48,7 +48,7 @@ def test_keep_going(run: Run, broken: Path) -> None:
     ("words", "said"),
     [
         (("pack", "--select", "lidar"), "--select goes with --resolved: a packed project is whole"),
-        (("pack", "--resolved", "--select", "lidr"), "the selector 'lidr' cannot be used"),
+        (("pack", "--resolved", "--select", "lidr"), "nothing is called `lidr`; did you mean `lidar`?"),
         (("diagram", "--format", "gif"), "--format takes svg, png, pdf, dot, separated by commas, not 'gif'"),
         (("report", "--level", "high"), "'high' is not one of 'functional', 'implementation'"),
     ],
@@ -95,3 +95,10 @@ def test_a_packed_file_does_not_replace_its_project(run: Run, first: Path) -> No
     # What is packed already may be packed in place: nothing changes.
     assert run("pack", first, "-o", first / "packed" / "p.yaml").status == 0
     assert run("pack", first / "packed" / "p.yaml", "-o", first / "packed" / "p.yaml").status == 0
+
+
+def test_folders_on_the_way_are_made_and_the_file_is_named(run: Run, first: Path) -> None:
+    ran = run("pack", first, "-o", first / "new" / "folder" / "x.yaml")
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out == f"wrote {first / 'new' / 'folder' / 'x.yaml'}\n"
+    assert (first / "new" / "folder" / "x.yaml").read_text(encoding="utf-8").startswith("archgen: 1\n")

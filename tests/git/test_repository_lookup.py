@@ -23,7 +23,7 @@ def test_the_root_and_the_prefix(tmp_path: Path) -> None:
 
 
 def test_no_repository(tmp_path: Path) -> None:
-    with pytest.raises(git.NoRepositoryError, match="is not in a git repository: name two folders"):
+    with pytest.raises(git.NoRepositoryError, match="is not in a git repository: run `git init` first"):
         git.find_repository(tmp_path)
 
 

@@ -17,6 +17,7 @@ from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.source_span import Span
 from archgen.emit.data.repository_path import path_in_repository
 from archgen.findings import rule_pages
+from archgen.resources import HOME_URL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
 
 _SCHEMA_URL = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-_HOME_URL = "https://github.com/archgen/archgen"
 _ROOT_ID = "%SRCROOT%"
 _FINGERPRINT_KEY = "archgenIdentity/v1"
 _BRACKET_PATTERN, _BRACKET_ESCAPED = re.compile(r"([\[\]\\])"), r"\\\1"
@@ -49,7 +49,7 @@ def format_sarif(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], s
     """Return settled findings as a SARIF document."""
     findings = tuple(diagnostics)
     rule_index = {name: index for index, name in enumerate(sorted({diagnostic.rule for diagnostic in findings}))}
-    driver = {"name": "archgen", "informationUri": _HOME_URL, "version": scan.version, "semanticVersion": scan.version}
+    driver = {"name": "archgen", "informationUri": HOME_URL, "version": scan.version, "semanticVersion": scan.version}
     run: dict[str, Any] = {
         "tool": {"driver": driver | {"rules": [_rule_to_sarif(rules[name]) for name in rule_index]}},
         "automationDetails": {"id": f"archgen/{scan.project}/"},
@@ -89,7 +89,7 @@ def _rule_to_sarif(rule: Rule) -> dict[str, Any]:
         "name": "".join(word.capitalize() for word in rule.name.split("-")),
         "shortDescription": {"text": page.summary},
         "fullDescription": {"text": " ".join(page.why.split()) or page.summary},
-        "helpUri": f"{_HOME_URL}/blob/main/docs/rules/{rule.name}.md",
+        "helpUri": f"{HOME_URL}/blob/main/docs/rules/{rule.name}.md",
         "help": {"text": rule_pages.format_rule_page(rule), "markdown": rule_pages.rule_page_to_markdown(rule)},
         "defaultConfiguration": {"level": _severity_to_level(rule.severity)},
         "properties": {

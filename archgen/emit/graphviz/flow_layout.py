@@ -62,7 +62,7 @@ def _layout_settings(styled_graph: StyledGraph, nodesep: float) -> str:
     )
     labels = bool(styled_graph.label_attributes)
     ranksep = min(0.45 + 0.02 * most_arrows_in + 0.01 * len(styled_graph.graph.arrows), 1.0) if labels else 0.6
-    direction = "LR" if styled_graph.graph.direction == "left-right" else "TB"
+    direction = "TB" if styled_graph.graph.direction == "top-bottom" else "LR"
     return f'rankdir="{direction}" nodesep="{nodesep}" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'
 
 

@@ -62,7 +62,7 @@ def _lay_out_part(styled_graph: StyledGraph, boxes: Sequence[Box], arrows: Seque
         name = styled_graph.dot_names[boxes[0].id]
         ((width, height),) = measure_nodes([styled_graph.box_attributes[name]])
         return Scene(parts=(ScenePart(name, styled_graph.box_attributes[name], width / 2, height / 2, width, height),))
-    direction = "LR" if styled_graph.graph.direction == "left-right" else "TB"
+    direction = "TB" if styled_graph.graph.direction == "top-bottom" else "LR"
     statements = [styled_graph.write_node(box) for box in boxes]
     statements += [
         styled_graph.write_edge(at, arrow, with_text=False)

@@ -22,14 +22,14 @@ from archgen.emit.graphviz.styled_graph import (
 
 _CLUSTER_MARGIN = 14
 _SCREEN_SIZE = (1000.0, 700.0)
-_DIRECTIONS = {"left-right": ("LR", "TB"), "top-bottom": ("TB", "LR")}
-"""Directions to try by the one that is asked for, which comes first: it is taken where both are as good."""
+_DIRECTIONS = {None: ("LR", "TB"), "left-right": ("LR",), "top-bottom": ("TB",)}
+"""Directions to try by the one that the project asks for; the first is taken where both are as good."""
 
 
 def lay_out_framed(styled_graph: StyledGraph) -> Scene:
-    """Lay out boxes in frames, then place the labels on the arrows. Try two directions and return the better scene."""
+    """Lay out boxes in frames, then place the labels on the arrows. Of two directions the better is taken, unless one is asked for."""
     scenes = [_lay_out_direction(styled_graph, direction) for direction in _DIRECTIONS[styled_graph.graph.direction]]
-    # `min` returns the first of equals: the direction that was asked for.
+    # `min` returns the first of equals.
     return min(scenes, key=lambda scene: (_count_lost_labels(styled_graph, scene), _screen_overflow(scene)))
 
 

@@ -2,7 +2,7 @@
 them.
 
 No graph that dot gets has frames and labels at once: it cannot lay these out. The outer graph is tried in several ways:
-as dot likes it, downwards and to the right, and folded into two to seven rows or columns in the order in which least
+as dot likes it, downwards and to the right (one of them, where the project says which), and folded into two to seven rows or columns in the order in which least
 flows backwards. The scene that reads best on a page is taken: large text, few crossings, short arrows. On an
 architecture of RAMCIP's shape (61 components, 138 connections) one run of dot with clusters gave about 340 crossings,
 two steps, with merged arrows, 3.
@@ -34,6 +34,8 @@ from archgen.views.graph_shapes import Arrow
 
 _PAGE_SIZE = (1105.0, 728.0)
 """A landscape A3 page without its margins, in points: the text size of a scene is judged on it."""
+_DIRECTIONS = {None: ("TB", "LR"), "left-right": ("LR",), "top-bottom": ("TB",)}
+"""Directions to try by the one that the project asks for."""
 _TURNED_PENALTY = 1.2
 _TILE_MARGIN = 12.0
 _INVISIBLE_NODE = {"style": '"invis"', "label": '""', "shape": '"point"'}
@@ -134,7 +136,7 @@ def _candidate_layouts(
     ]
     label_lines = max((item.label.count("\n") + 1 for _, item in arrows if item.label), default=0)
     # Labels beside vertical arrows need height for their lines, beside horizontal ones width for their longest words.
-    for direction in ("TB", "LR"):
+    for direction in _DIRECTIONS[styled_graph.graph.direction]:
         ranksep = 0.5 + 0.16 * label_lines if direction == "TB" else 0.5 + 0.9 * bool(label_lines)
         settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain_edges

@@ -47,7 +47,7 @@ def write_flowchart(graph: Graph, *, has_stable_names: bool = False) -> Iterator
     boxes = {box.id: make_identifier(box.id) if has_stable_names else f"n{at}" for at, box in enumerate(graph.boxes)}
     # Arrows of large pictures lead from frame to frame.
     names = {**frames, **boxes}
-    yield f"flowchart {'LR' if graph.direction == 'left-right' else 'TB'}"
+    yield f"flowchart {'TB' if graph.direction == 'top-bottom' else 'LR'}"
     yield from (f"  {_write_box(box, names)}" for box in graph.boxes if box.cluster not in frames)
     for cluster in graph.clusters:
         yield f'  subgraph {frames[cluster.id]}["{_label_text(cluster.title)}"]'

@@ -16,13 +16,13 @@ _COLUMNS = ("when", "groups", "components", "connections", "nodes", *PROGRESS_ST
 _CSV_COLUMNS = ("commit", "day", "scope", "id", "title", "components", *PROGRESS_STEPS, "errors", "warnings", "notes")
 
 
-def format_history(history: History) -> str:
+def format_history(history: History, width: int | None = None) -> str:
     """Return a line for each point, newest last, then how each group and partner changed."""
     if not history.points:
         return "no commit holds this project yet\n"
     rows = [_history_row(point, history) for point in history.points]
     shallow_note = "" if history.whole else f"{_SHALLOW_NOTE}\n\n"
-    return shallow_note + list_formats.format_columns(_COLUMNS, rows) + _format_changes(history)
+    return shallow_note + list_formats.format_columns(_COLUMNS, rows, width) + _format_changes(history, width)
 
 
 def _history_row(point: HistoryPoint, history: History) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ def _history_row(point: HistoryPoint, history: History) -> tuple[str, ...]:
     )
 
 
-def _format_changes(history: History) -> str:
+def _format_changes(history: History, width: int | None) -> str:
     first, last = history.points[0], history.points[-1]
     first_rows = {(row.scope, row.id): row for row in first.rows}
     rows = []
@@ -53,7 +53,7 @@ def _format_changes(history: History) -> str:
     if not rows:
         return ""
     return f"\nfrom {name_point(first, history)} to {name_point(last, history)}\n" + list_formats.format_columns(
-        ("of", "components", *PROGRESS_STEPS, "findings"), rows
+        ("of", "components", *PROGRESS_STEPS, "findings"), rows, width
     )
 
 

@@ -7,18 +7,15 @@ import io
 from collections.abc import Sequence
 
 from archgen.diagnostics.safe_text import defuse_command, format_json, make_visible
+from archgen.diagnostics.text_columns import format_table
 
 TextRows = Sequence[Sequence[str]]
 
 
-def format_columns(columns: Sequence[str], rows: TextRows) -> str:
-    """Return columns aligned for the terminal; control characters are made visible."""
-    cleaned = [[make_visible(cell.replace("\n", "; ")) for cell in row] for row in [columns, *rows]]
-    widths = [max(len(row[column]) for row in cleaned) for column in range(len(columns))]
-    return "".join(
-        defuse_command("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()) + "\n"
-        for row in cleaned
-    )
+def format_columns(columns: Sequence[str], rows: TextRows, width: int | None = None) -> str:
+    """Return columns aligned for the terminal, no wider than it is; control characters are made visible."""
+    cleaned_rows = [[cell.replace("\n", "; ") for cell in row] for row in rows]
+    return "".join(f"{defuse_command(line)}\n" for line in format_table(columns, cleaned_rows, width))
 
 
 def format_csv(columns: Sequence[str], rows: TextRows) -> str:

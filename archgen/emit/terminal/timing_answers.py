@@ -8,9 +8,10 @@ from typing import Any
 
 from archgen.diagnostics.common_wording import format_transition
 from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.emit.terminal.timing_text import AlignedRow, align_columns, format_figure
+from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity
 from archgen.timing.chains.figure_explanations import ReasonLine
@@ -37,7 +38,10 @@ def reasoning_to_json(element: str, lines: Iterable[ReasonLine]) -> AnswerJson:
 
 
 def format_timing_changes(
-    old_timing: tuple[Analysis, ChainResults], new_timing: tuple[Analysis, ChainResults], changed_figures: Iterable[str]
+    old_timing: tuple[Analysis, ChainResults],
+    new_timing: tuple[Analysis, ChainResults],
+    changed_figures: Iterable[str],
+    width: int | None = None,
 ) -> Iterator[str]:
     """Yield what some changed figures would change: all chains, and the hosts and elements that differ."""
     (old_analysis, old_chains), (new_analysis, new_chains) = old_timing, new_timing
@@ -46,7 +50,7 @@ def format_timing_changes(
     rows = list(_changed_chain_rows(old_chains, new_chains))
     if rows:
         yield "Chains"
-        yield from align_columns(rows)
+        yield from align_rows(rows, width)
         yield ""
     for title, table_rows in (
         ("Hosts", _changed_host_rows(old_analysis, new_analysis)),
@@ -55,11 +59,11 @@ def format_timing_changes(
         rows = list(table_rows)
         if rows:
             yield f"{title} that differ"
-            yield from align_columns(rows)
+            yield from align_rows(rows, width)
             yield ""
 
 
-def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> Iterator[AlignedRow]:
+def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> Iterator[TextRow]:
     for name, old_chain in old_chains.items():
         new_chain = new_chains[name]
         yield (
@@ -70,7 +74,7 @@ def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> I
         )
 
 
-def _changed_host_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[AlignedRow]:
+def _changed_host_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[TextRow]:
     for name, old_load in old_analysis.hosts.items():
         new_load = new_analysis.hosts[name]
         if old_load != new_load:
@@ -81,7 +85,7 @@ def _changed_host_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterat
             )
 
 
-def _changed_element_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[AlignedRow]:
+def _changed_element_rows(old_analysis: Analysis, new_analysis: Analysis) -> Iterator[TextRow]:
     for name in old_analysis.system.activities:
         old_rates, new_rates = old_analysis.paces[name], new_analysis.paces[name]
         old_response, new_response = old_analysis.responses[name].worst, new_analysis.responses[name].worst
@@ -117,7 +121,9 @@ def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
     return f"({sign}{figure_wording.format_duration(abs(new_value.value - old_value.value))})"
 
 
-def format_sensitivity(chain: ChainResult, system: TimingSystem, ranking: ChainSensitivity) -> Iterator[str]:
+def format_sensitivity(
+    chain: ChainResult, system: TimingSystem, ranking: ChainSensitivity, width: int | None = None
+) -> Iterator[str]:
     """Yield a ranking of what decides a chain."""
     if not chain.terms:
         yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, system)}"
@@ -126,10 +132,11 @@ def format_sensitivity(chain: ChainResult, system: TimingSystem, ranking: ChainS
     yield ""
     if ranking.gains:
         yield "Improved by 10 %, each figure takes off"
-        yield from align_columns(
+        rows = (
             (figure_wording.format_duration(gain.gain), gain.figure, f"now {gain.written}", _span_text(gain.at))
             for gain in ranking.gains
         )
+        yield from align_rows(rows, width)
     elif not ranking.gaps:
         yield "No single figure, improved by 10 %, shortens the chain."
     if ranking.untried:
@@ -137,7 +144,7 @@ def format_sensitivity(chain: ChainResult, system: TimingSystem, ranking: ChainS
     if ranking.gaps:
         yield ""
         yield "Not known; to be measured in this order"
-        yield from align_columns(
+        gap_rows = (
             (
                 f"{gap.what} of {gap.element}",
                 f"in {gap.terms} term{'s' if gap.terms != 1 else ''}",
@@ -146,6 +153,7 @@ def format_sensitivity(chain: ChainResult, system: TimingSystem, ranking: ChainS
             )
             for gap in ranking.gaps
         )
+        yield from align_rows(gap_rows, width)
 
 
 def _span_text(span: object) -> str:
@@ -174,11 +182,11 @@ def sensitivity_to_json(chain: ChainResult, ranking: ChainSensitivity) -> Answer
     }
 
 
-def format_measured(comparisons: Iterable[MeasuredComparison]) -> Iterator[str]:
+def format_measured(comparisons: Iterable[MeasuredComparison], width: int | None = None) -> Iterator[str]:
     """Yield designed beside measured figures, and the outliers by name."""
     rows = list(comparisons)
     if rows:
-        yield from align_columns([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)])
+        yield from align_rows([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)], width)
     outliers = [row for row in rows if row.verdict == "outlier"]
     yield ""
     figures = f"{len(rows)} figure{'s' if len(rows) != 1 else ''} measured"
@@ -189,7 +197,7 @@ def format_measured(comparisons: Iterable[MeasuredComparison]) -> Iterator[str]:
         yield from (make_visible(f"  {row.id}: {row.key} {row.why}") for row in outliers)
 
 
-def _measured_row(row: MeasuredComparison) -> AlignedRow:
+def _measured_row(row: MeasuredComparison) -> TextRow:
     write = figure_wording.format_rate if row.key == "rate" else figure_wording.format_duration
     ratio = f" ({figure_wording.format_number(100 * row.ratio)} %)" if row.ratio is not None else ""
     mark = "OUTLIER" if row.verdict == "outlier" else row.verdict

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics.safe_text import make_visible, measure_width
+from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
@@ -16,33 +16,34 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import TimingSystem
 
 _VERDICT_WORDS = {"met": "met", "missed": "MISSED", "open": "open"}
-AlignedRow = Sequence[str]
 
 
-def format_timing(analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[LoopRound]) -> Iterator[str]:
-    """Yield the whole picture: chains first, then hosts, links, services, elements, loops."""
-    yield from _section_lines(
-        "Chains: largest reaction time (= largest data age)", _chain_rows(analysis.system, chains.values())
+def format_timing(
+    analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[LoopRound], width: int | None = None
+) -> Iterator[str]:
+    """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
+    sections = (
+        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis.system, chains.values())),
+        ("Hosts", _host_rows(analysis)),
+        ("Links", _link_rows(analysis)),
+        ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
+        ("Elements", _element_rows(analysis)),
+        ("Loops: latency of one round", _loop_rows(loops)),
     )
-    yield from _section_lines("Hosts", _host_rows(analysis))
-    yield from _section_lines("Links", _link_rows(analysis))
-    yield from _section_lines(
-        "Services and actions: longest time from a call until it is worked off", _service_rows(analysis)
-    )
-    yield from _section_lines("Elements", _element_rows(analysis))
-    yield from _section_lines("Loops: latency of one round", _loop_rows(loops))
+    for title, rows in sections:
+        yield from _section_lines(title, rows, width)
     yield from _fault_lines(analysis)
 
 
-def _section_lines(title: str, rows: Iterable[AlignedRow]) -> Iterator[str]:
+def _section_lines(title: str, rows: Iterable[TextRow], width: int | None) -> Iterator[str]:
     section_rows = list(rows)
     if section_rows:
         yield title
-        yield from align_columns(section_rows)
+        yield from align_rows(section_rows, width)
         yield ""
 
 
-def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator[AlignedRow]:
+def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
@@ -54,7 +55,7 @@ def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator
         )
 
 
-def _host_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.hosts.items():
         cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
         load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
@@ -71,7 +72,7 @@ def _format_bounds(load: HostLoad) -> str:
     return f"priorities by rate are sure to do up to {figure_wording.format_share(rounded_down)}, deadlines up to {figure_wording.format_share(deadline_bound)}"
 
 
-def _link_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+def _link_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.links.items():
         traffic = format_figure(load.traffic, lambda count: f"{figure_wording.format_size(count)}/s")
         share = (
@@ -82,7 +83,7 @@ def _link_rows(analysis: Analysis) -> Iterator[AlignedRow]:
         yield name, traffic, share, format_missing(load.traffic)
 
 
-def _service_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+def _service_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.services.items():
         caller_count = len(load.callers)
         yield (
@@ -93,7 +94,7 @@ def _service_rows(analysis: Analysis) -> Iterator[AlignedRow]:
         )
 
 
-def _element_rows(analysis: Analysis) -> Iterator[AlignedRow]:
+def _element_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name in analysis.system.activities:
         rates, response = analysis.paces[name], analysis.responses[name]
         behaviour_text = describe_behaviour(analysis.system.activities[name], rates)
@@ -101,7 +102,7 @@ def _element_rows(analysis: Analysis) -> Iterator[AlignedRow]:
         yield name, behaviour_text, rate, f"gap {gap}", f"response {format_figure(response.worst)} ({response.tier})"
 
 
-def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[AlignedRow]:
+def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[TextRow]:
     for loop in loops:
         steps = len(loop.through) - 1
         group_note = f"one round of {loop.members} elements that feed one another" if loop.members > steps else ""
@@ -121,14 +122,18 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
 
 
 def format_chain(
-    result: ChainResult, system: TimingSystem, age: TimingValue, published: tuple[Fraction, Fraction] | None = None
+    result: ChainResult,
+    system: TimingSystem,
+    age: TimingValue,
+    published: tuple[Fraction, Fraction] | None = None,
+    width: int | None = None,
 ) -> Iterator[str]:
     """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
     if result.terms:
-        yield from align_columns(_term_rows(result.terms))
+        yield from align_rows(_term_rows(result.terms), width)
         yield ""
-    rows: list[AlignedRow] = [
+    rows: list[TextRow] = [
         ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, system))
     ]
     if age != result.bound:
@@ -151,12 +156,12 @@ def format_chain(
         rows.append(("    reduced data age", figure_wording.format_duration(published[1])))
     if result.deadline:
         rows.append(("deadline", format_figure(result.deadline), _VERDICT_WORDS[result.verdict]))
-    yield from align_columns(rows)
+    yield from align_rows(rows, width)
     for assumption in result.bound.assumptions if result.terms else ():
         yield f"  assumes: {assumption}"
 
 
-def _term_rows(terms: Iterable[ChainTerm]) -> Iterator[AlignedRow]:
+def _term_rows(terms: Iterable[ChainTerm]) -> Iterator[TextRow]:
     yield "element", "link", "waits", "response", "why"
     for term in terms:
         place = f" ({term.at})" if term.at.file else ""
@@ -192,17 +197,3 @@ def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = 
         return f"unbounded ({reason})" if reason == "overload" else reason
     sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
     return sign + write(value.value)
-
-
-def align_columns(rows: Iterable[AlignedRow]) -> Iterator[str]:
-    """Yield rows in aligned columns; the last cell of a row needs no width."""
-    # Made visible before it is measured: replacements may have another width.
-    cleaned = [[make_visible(cell) for cell in row] for row in rows]
-    columns = max((len(row) for row in cleaned), default=0)
-    widths = [
-        max((measure_width(row[column]) for row in cleaned if column < len(row) - 1), default=0)
-        for column in range(columns)
-    ]
-    for row in cleaned:
-        cells = [cell + " " * (widths[column] - measure_width(cell)) for column, cell in enumerate(row[:-1])]
-        yield ("  " + "  ".join([*cells, row[-1]])).rstrip()

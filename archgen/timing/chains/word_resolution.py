@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from archgen.diagnostics.suggestions import did_you_mean, find_closest
+from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean, find_closest
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -52,7 +52,7 @@ def unknown_name_text(word: str, known_names: Iterable[str]) -> str:
     """Say that a word names nothing, with a guess at what was meant."""
     names = {part: name for name in known_names for part in (name.rpartition(".")[2], name)}
     guess = did_you_mean(word, names) if find_closest(word, names) else None
-    return f"nothing is called `{word}`; {guess or '`archgen list` gives the names of all elements'}"
+    return f"nothing is called `{word}`; {guess or NAMES_HELP}"
 
 
 def _format_alternatives(matches: list[str], limit: int = 6) -> str:

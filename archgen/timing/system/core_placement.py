@@ -172,7 +172,7 @@ def _cores_sharing_threads(
         if len(positions) > (system.threads.get(container) or len(positions)):
             for position in positions:
                 neighbours[position] += [
-                    other_position for other_position in set(positions) if other_position != position
+                    other_position for other_position in dict.fromkeys(positions) if other_position != position
                 ]
     return neighbours
 

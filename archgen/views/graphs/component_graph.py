@@ -37,7 +37,7 @@ def draw_component(lookup: Lookup, component_id: str) -> Graph:
         "flow",
         (_subject_box(lookup, component), *neighbours.values()),
         arrows,
-        direction="left-right",
+        direction=component.layout.direction or lookup.architecture.layout.direction,
         notes=("Neighbours are folded: a box for each group.",) if is_folded else (),
         alt=_describe_component(component, [box.title for box in neighbours.values()]),
         asked=sum(arrow.count for arrow in arrows),

@@ -43,7 +43,8 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
     outer_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] != drawn_ids[arrow.head]]
     hidden_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] == drawn_ids[arrow.head]]
     flows_within = {
-        name: sum(arrow.count for arrow in hidden_arrows if drawn_ids[arrow.tail] == name) for name in cluster_ids
+        name: sum(arrow.count for arrow in hidden_arrows if drawn_ids[arrow.tail] == name)
+        for name in sorted(cluster_ids)
     }
     boxes = [box for box in graph.boxes if box.cluster not in cluster_ids]
     boxes += [

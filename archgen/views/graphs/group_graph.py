@@ -45,7 +45,7 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
         ),
         arrows,
         (element_boxes.group_frame(lookup, group_id),),
-        direction=group.layout.direction or lookup.architecture.layout.direction or "left-right",
+        direction=group.layout.direction or lookup.architecture.layout.direction,
         notes=("Neighbours are folded: a box for each group, with the number of flows.",) if is_folded else (),
         alt=_describe_group(lookup, group_id, touching_flows, own_ids),
         asked=len(touching_flows),

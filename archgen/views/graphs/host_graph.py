@@ -29,7 +29,7 @@ def draw_hosts(lookup: Lookup) -> Graph:
         (*_draw_processes(lookup), *(_link_hub(link) for link in links if len(_linked_hosts(lookup, link)) > 2)),  # noqa: PLR2004
         arrows,
         frames,
-        direction=architecture.layout.direction or "left-right",
+        direction=architecture.layout.direction,
         alt=f"{count_noun(len(architecture.hosts), 'host')} with {count_noun(len(architecture.containers), 'container')} "
         f"and {count_noun(len(links), 'link')}: {', '.join(host.title for host in architecture.hosts.values())}.",
         asked=len(arrows),

@@ -55,6 +55,7 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         "flow",
         (*subject_boxes, *topics.values(), *neighbour_boxes.values()),
         arrows,
+        direction=component.layout.direction or lookup.architecture.layout.direction,
         alt=_describe_implementation(component.title, sorted(subject_ids), [box.title for box in topics.values()]),
         asked=len(arrows),
         kind="implementation",
@@ -101,12 +102,14 @@ def _find_stars(lookup: Lookup, topic_arrows: list[_TopicArrow]) -> dict[str, st
         node = neighbour[1:]
         published = {e.name for e in lookup.endpoints_of.get(node, ()) if e.use == "publishes" and not e.internal}
         drawn_topics = {end.topic for end in topic_arrows if end.node == neighbour and end.style == "data"}
-        nodes_of_topic = {name: {end.node for end in topic_arrows if end.topic == name} for name in drawn_topics}
+        nodes_of_topic = {
+            name: {end.node for end in topic_arrows if end.topic == name} for name in sorted(drawn_topics)
+        }
         same_nodes = all(user == next(iter(nodes_of_topic.values())) for user in nodes_of_topic.values())
         # All of the neighbour's topics, and each used by the same nodes: else the asterisk would show flows that are
         # not there.
         if len(published) >= _MIN_STARRED and published == drawn_topics and same_nodes:
-            star_of_topic.update(dict.fromkeys(sorted(drawn_topics), f"* {node}"))
+            star_of_topic.update(dict.fromkeys(nodes_of_topic, f"* {node}"))
     return star_of_topic
 
 

@@ -42,7 +42,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
         tuple(replace(_node_box(lookup, node), cluster=home_frames[node.id]) for node in chosen_nodes),
         arrows,
         frames,
-        direction=lookup.architecture.layout.direction or "left-right",
+        direction=lookup.architecture.layout.direction,
         alt=f"{count_noun(len(chosen_nodes), 'node')} in {count_noun(len(frames), 'frame')}; "
         f"{count_noun(len(node_flows), 'flow')} over topics, services and actions among them.",
         asked=len(node_flows),

@@ -44,7 +44,7 @@ def draw_functional_part(lookup: Lookup, graph_id: str, title: str, component_id
                 graph,
                 id=graph_id,
                 title=title,
-                direction=lookup.architecture.layout.direction or "left-right",
+                direction=lookup.architecture.layout.direction,
                 alt=f"{summary}{', ...' if len(components) > 12 else ''}. {count_noun(len(neighbour_ids), 'neighbour')} in grey.",  # noqa: PLR2004
             )
         )
@@ -174,7 +174,7 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
             *neighbour_boxes,
         ),
         tuple(arrows.values()),
-        direction=lookup.architecture.layout.direction or "left-right",
+        direction=lookup.architecture.layout.direction,
         alt=f"{count_noun(len(chosen_boxes), 'node')} with {count_noun(len(topics), 'topic')} and {count_noun(len(neighbour_boxes), 'neighbour')} in grey.",
         asked=len(arrows),
         kind="ros",

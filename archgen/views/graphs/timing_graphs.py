@@ -65,7 +65,7 @@ def _draw_all_activities(graph_data: TimingGraphData) -> Graph:
         ),
         _merge_flows(lookup, graph_data.flows, graph_data.home_frames),
         tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(graph_data.home_frames.values())),
-        direction=lookup.architecture.layout.direction or "left-right",
+        direction=lookup.architecture.layout.direction,
         notes=note_bounds(timed, activities),
         alt=describe_periods(timed, list(activities), "All activities"),
         asked=sum(len(run.arcs) for run in graph_data.flows),
@@ -103,7 +103,7 @@ def _draw_selected_nodes(graph_data: TimingGraphData, node_ids: Collection[str])
         # Only arrows that come from a frame of the selection have a hue; all others are drawn pale.
         tuple(replace(each, faded=each.colour is None) for each in _merge_flows(lookup, touching_flows, home_frames)),
         tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames[name] for name in own_activities)),
-        direction=lookup.architecture.layout.direction or "left-right",
+        direction=lookup.architecture.layout.direction,
         notes=note_bounds(timed, own_activities),
         alt=describe_periods(timed, tuple(own_activities), "The selected part"),
         asked=sum(len(run.arcs) for run in touching_flows),
@@ -147,7 +147,7 @@ def _draw_group(graph_data: TimingGraphData, group_id: str) -> Graph:
         ),
         _draw_arrows(graph_data, own_activities, is_folded=is_folded),
         (element_boxes.group_frame(lookup, group_id),),
-        direction=group.layout.direction or lookup.architecture.layout.direction or "left-right",
+        direction=group.layout.direction or lookup.architecture.layout.direction,
         notes=note_bounds(timed, own_activities)
         + (("Neighbours are folded: a box for each group.",) if is_folded else ()),
         alt=describe_periods(timed, tuple(own_activities), group.title),

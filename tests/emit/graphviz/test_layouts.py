@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
@@ -12,7 +13,7 @@ from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing
 from archgen.emit.graphviz.box_styles import style_box
 from archgen.emit.graphviz.framed_layout import lay_out_framed
-from archgen.emit.graphviz.placed_scene import Scene, overlapping_parts, rectangles_meet
+from archgen.emit.graphviz.placed_scene import Scene, ScenePart, overlapping_parts, rectangles_meet
 from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
@@ -198,8 +199,6 @@ def test_views_of_the_project_in_either_size() -> None:
 
 
 def test_meetings_are_found() -> None:
-    from archgen.emit.graphviz.placed_scene import ScenePart
-
     parts = (
         ScenePart("a", {}, 0, 0, 10, 10),
         ScenePart("b", {}, 6, 6, 10, 10, "label"),
@@ -225,3 +224,18 @@ def test_a_box_with_ports_shows_status_and_subject_in_its_frame() -> None:
     assert head(replace(plain, status="planned")) == '<<TABLE STYLE="ROUNDED,DASHED" BORDER="1" '
     assert head(replace(plain, status="adapted")) == '<<TABLE STYLE="ROUNDED,DOTTED" BORDER="1" '
     assert head(replace(plain, change="added")) == '<<TABLE STYLE="ROUNDED" BORDER="3" '
+
+
+@pytest.mark.parametrize("layout", ["flow", "two-step", "overview", "framed"])
+def test_the_flow_runs_the_way_that_the_project_asks_for(
+    layout: Literal["flow", "two-step", "overview", "framed"],
+) -> None:
+    boxes = (Box("a", "The first"), Box("b", "The second"))
+    graph = Graph("g", "G", layout, boxes, (Arrow("ab", "a", "b"),), kind="overview")
+    for direction in ("left-right", "top-bottom"):
+        drafted, scene = graph_drawing.lay_out_graph(replace(graph, direction=direction), {})
+        parts = {part.name: part for part in scene.parts}
+        one, two = (parts[drafted.dot_names[name]] for name in "ab")
+        right, down = two.x - one.x, one.y - two.y
+        onwards, aside = (right, down) if direction == "left-right" else (down, right)
+        assert onwards > abs(aside) + 30, direction

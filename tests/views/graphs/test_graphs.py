@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture, PortEdge, ProjectInfo, View
@@ -29,6 +31,7 @@ from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
 from tests.architectures import generated, robot, topics
+from tests.timings import timed
 
 
 def make(groups: str, wires: str, types: str = "") -> Architecture:
@@ -392,3 +395,29 @@ def test_every_graph_says_what_it_shows() -> None:
         ("hosts", False, "hosts"),
         ("views", True, "view"),
     }
+
+
+ONE_TURNED_BACK = """\
+archgen: 1
+layout: {direction: top-bottom}
+hosts: {pc: {cores: 2}}
+groups:
+  g: {components: {a: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 1 Hz, wcet: 1 ms}}}}
+  h:
+    layout: {direction: left-right}
+    components: {b: {inputs: {i: a.o}}, c: {inputs: {i: a.o}, layout: {direction: left-right}}}
+nodes: {a: {implements: a, host: pc}, b: {implements: b, host: pc}, c: {implements: c, host: pc}}
+views: {v: {show: g}, w: {show: g, layout: {direction: left-right}}}
+"""
+
+
+def test_every_picture_runs_as_the_project_says_unless_its_element_says_otherwise(tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(ONE_TURNED_BACK)
+    architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
+    graphs = make_all_graphs(architecture, timed=timed(architecture))
+    assert {graph.kind for graph in graphs} >= {
+        *("overview", "components", "group", "component", "implementation", "ros", "hosts", "timing", "view"),
+    }
+    assert [graph.id for graph in graphs if graph.direction != "top-bottom"] == [
+        *("groups/h", "components/h.c", "implementation/h.c", "timing/h", "views/w"),
+    ]

@@ -90,7 +90,7 @@ def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Gra
         tuple(_draw_boxes(overlay, shown_components)),
         bundle_arrows(drawn_lines),
         tuple(_draw_frames(overlay, shown_components)),
-        direction=after.layout.direction or "left-right",
+        direction=after.layout.direction,
         notes=notes,
         alt=_alternative_text(overlay),
         kind="component-changes",

@@ -63,7 +63,7 @@ def draw_node_changes(comparison: Comparison, budget: PictureBudget) -> Graph | 
         "flow",
         tuple(_draw_box(overlay, box_id) for box_id in sorted(box_ids)),
         bundle_arrows(drawn_lines),
-        direction=comparison.after.architecture.layout.direction or "left-right",
+        direction=comparison.after.architecture.layout.direction,
         notes=("Only what changed is drawn.",) if len(drawn_lines) < len(_surrounding_lines(overlay)) else (),
         alt="; ".join(f"{CHANGE_SIGNS[change_kind]} {name}" for name, change_kind in sorted(change_kinds.items()))
         + ".",

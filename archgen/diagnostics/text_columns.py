@@ -1,0 +1,162 @@
+"""Tables and long lines for a terminal, no wider than it is: cells are wrapped, and nothing is cut off.
+
+Without a width (a file, a pipe) each row stays on one line, for grep, and is as wide as it must be.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TextIO
+
+from archgen.diagnostics.safe_text import make_visible, measure_width
+
+TextRow = Sequence[str]
+_GAP = "  "
+_NARROWEST_TERMINAL = 20
+_NARROWEST_COLUMN = 20
+"""In narrower columns names of elements become unreadable: a table shows each row as a list of its cells then."""
+_NARROWEST_TEXT = 24
+"""Where less room than this is left for the last cell of a row, it goes below the others."""
+_PIECE_PATTERN = re.compile(r"[^\s./_:,>-]*[./_:,>-]*")
+"""The parts of a word that is too long for a line: names break after their separators."""
+
+
+def find_width(stream: TextIO) -> int | None:
+    """Return the columns to write in: those that COLUMNS sets, else the terminal's; None where there is no terminal."""
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isascii() and columns.isdigit() and int(columns):
+        return max(int(columns), _NARROWEST_TERMINAL)
+    return max(shutil.get_terminal_size().columns, _NARROWEST_TERMINAL) if stream.isatty() else None
+
+
+def wrap_line(line: str, width: int | None, hanging: int = 4) -> list[str]:
+    """Wrap a visible line; the lines that follow are indented by `hanging` more than it is."""
+    if width is None or measure_width(line) <= width:
+        return [line]
+    indent = len(line) - len(line.lstrip(" "))
+    indent = min(indent, width // 2)
+    hanging = min(indent + hanging, width // 2)
+    first, *others = wrap_cell(line.strip(), width - indent, width - hanging)
+    return [" " * indent + first, *(" " * hanging + other for other in others)]
+
+
+def wrap_cell(text: str, width: int, later_width: int | None = None) -> list[str]:
+    """Wrap a visible text at blanks; words that are too long break after their separators, at last anywhere."""
+    if measure_width(text) <= width:
+        return [text]
+    lines, room = [""], width
+    for word in text.split():
+        for number, piece in enumerate(_split_word(word, width if later_width is None else later_width)):
+            joined = f"{lines[-1]} {piece}" if lines[-1] and not number else lines[-1] + piece
+            if lines[-1] and measure_width(joined) > room:
+                lines.append(piece)
+                room = width if later_width is None else later_width
+            else:
+                lines[-1] = joined
+    return lines
+
+
+def _split_word(word: str, width: int) -> Iterator[str]:
+    """Yield a word whole if it fits into a line, else its parts."""
+    if measure_width(word) <= width:
+        yield word
+        return
+    for piece in _PIECE_PATTERN.findall(word):
+        part = ""
+        for character in piece:
+            if measure_width(part + character) > width:
+                yield part
+                part = ""
+            part += character
+        if part:
+            yield part
+
+
+def align_rows(rows: Iterable[TextRow], width: int | None = None, indent: str = _GAP) -> Iterator[str]:
+    """Yield rows in aligned columns. The last cell of a row needs no width of its own: it is the one to be wrapped."""
+    # Made visible before it is measured: replacements may have another width.
+    cleaned = [[make_visible(cell) for cell in row] for row in rows]
+    widths = _measure_columns([row[:-1] for row in cleaned])
+    if width is not None:
+        widths = _shrink_columns(widths, width - len(indent) - len(_GAP) * max(len(widths) - 1, 0))
+    for row in cleaned:
+        yield from _align_row(row, widths[: len(row) - 1], width, indent)
+
+
+def _align_row(row: list[str], widths: list[int], width: int | None, indent: str) -> Iterator[str]:
+    used = len(indent) + sum(each + len(_GAP) for each in widths)
+    last_width = measure_width(row[-1]) if width is None else width - used
+    # A short last cell is wrapped beside the others, if at all; a text that has no room there goes below.
+    if last_width >= min(measure_width(row[-1]), _NARROWEST_TEXT):
+        yield from _join_cells(row, [*widths, max(last_width, 1)], indent)
+        return
+    yield from _join_cells(row[:-1], widths, indent)
+    if row[-1]:
+        yield from wrap_line(f"{indent}    {row[-1]}", width, hanging=0)
+
+
+def format_table(
+    headings: TextRow, rows: Iterable[TextRow], width: int | None = None, *, has_figures: bool = False
+) -> Iterator[str]:
+    """Yield a table below its headings. On a terminal that is too narrow for it each row is a list of its cells.
+
+    `has_figures`: columns of figures are set flush right.
+    """
+    cleaned = [[make_visible(cell) for cell in row] for row in (headings, *rows)]
+    widths = _measure_columns(cleaned)
+    if has_figures:
+        flush_columns = {at for at in range(len(headings)) if all(row[at][:1].isdigit() for row in cleaned[1:])}
+        cleaned = [
+            [cell.rjust(widths[at]) if at in flush_columns else cell for at, cell in enumerate(row)] for row in cleaned
+        ]
+    if width is not None:
+        shrunk = _shrink_columns(widths, width - len(_GAP) * (len(widths) - 1))
+        if any(new < min(old, _NARROWEST_COLUMN) for new, old in zip(shrunk, widths, strict=True)):
+            yield from _list_cells(cleaned, width)
+            return
+        widths = shrunk
+    for row in cleaned:
+        yield from _join_cells(row, widths, "")
+
+
+def _list_cells(table: list[list[str]], width: int) -> Iterator[str]:
+    """Yield each row as its first cell and, below it, the others with their headings; empty ones are left out."""
+    headings, *rows = table
+    name_width = max(measure_width(heading) for heading in headings[1:])
+    for row in rows:
+        yield from wrap_line(row[0], width)
+        for heading, cell in zip(headings[1:], row[1:], strict=True):
+            if cell.strip():
+                label = heading.strip() + ":"
+                yield from align_rows([(label.ljust(name_width + 1), cell.strip())], width)
+
+
+def _measure_columns(rows: list[list[str]]) -> list[int]:
+    count = max((len(row) for row in rows), default=0)
+    return [max((measure_width(row[at]) for row in rows if at < len(row)), default=0) for at in range(count)]
+
+
+def _shrink_columns(widths: list[int], room: int) -> list[int]:
+    """Return widths that fit into the room: the widest columns give first, down to one common width."""
+    if sum(widths) <= room:
+        return widths
+    limit = max((each for each in range(1, max(widths) + 1) if sum(min(w, each) for w in widths) <= room), default=1)
+    spare = room - sum(min(width, limit) for width in widths)
+    shrunk = []
+    for width in widths:
+        extra = 1 if width > limit and spare > 0 else 0
+        spare -= extra
+        shrunk.append(min(width, limit) + extra)
+    return shrunk
+
+
+def _join_cells(row: list[str], widths: list[int], indent: str) -> Iterator[str]:
+    """Yield the lines of one row, each cell wrapped into its column."""
+    wrapped = [wrap_cell(cell, width) for cell, width in zip(row, widths, strict=True)]
+    for number in range(max(map(len, wrapped), default=0)):
+        cells = [lines[number] if number < len(lines) else "" for lines in wrapped]
+        padded = (cell + " " * (width - measure_width(cell)) for cell, width in zip(cells, widths, strict=True))
+        yield (indent + _GAP.join(padded)).rstrip()

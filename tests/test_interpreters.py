@@ -1,0 +1,137 @@
+"""Every Python that archgen supports makes the same bytes: partners and build servers need not agree on one.
+
+Interpreters are looked for on the path and among pyenv's and uv's. Each gets an environment of its own, with the libraries
+of the one that runs the tests in the same versions (from the package index), and archgen from this checkout.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from tests.running import RAMCIP, REVISION, ROOT, contents
+
+pytestmark = pytest.mark.build
+VERSIONS = ("3.11", "3.12", "3.13", "3.14")
+OTHER = Path("other")
+"""Stands for the changed copy of the case study."""
+PRINTED = (
+    ("check", "--format", "json", RAMCIP),
+    ("check", "--strict", "examples/first_robot"),
+    ("timing", "--format", "json", RAMCIP),
+    ("timing", RAMCIP),
+    ("timing", "--sensitivity", "fall_to_call", RAMCIP),
+    ("timing", "--format", "json", "examples/reference_system"),
+    ("simulate", "--seconds", "2", "--seeds", "2", "--format", "json", RAMCIP),
+    ("diff", "--format", "json", RAMCIP, OTHER),
+    ("diff", OTHER, RAMCIP),
+    ("list", "--of", "connections", "--format", "csv", "-C", RAMCIP),
+    ("stats", "--format", "json", RAMCIP),
+    ("owners", RAMCIP),
+    ("explain",),
+)
+EDITS = {
+    "groups/environment_state.yaml": ("object_recognition:", "recognition_of_objects:"),
+    "timing.yaml": ("deadline: 350 ms", "deadline: 90 ms"),
+    "nodes/action.yaml": ("planner_server:", "route_server:"),
+}
+
+
+def find_interpreter(version: str) -> Path | None:
+    """Find a Python of a version, the one that runs the tests first."""
+    homes = (
+        Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv") / "versions",
+        Path.home() / ".local" / "share" / "uv" / "python",
+    )
+    named = shutil.which(f"python{version}")
+    candidates = [
+        Path(sys.executable),
+        *(file for home in homes for file in sorted(home.glob("*/bin/python3"))),
+        *([Path(named)] if named else []),
+    ]
+    return next((python for python in candidates if version_of(python) == version), None)
+
+
+def version_of(python: Path) -> str:
+    """Ask an interpreter for its version; a shim of one that is not installed answers with an error."""
+    words = (python, "-c", "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])")
+    done = subprocess.run(words, capture_output=True, text=True, check=False)  # noqa: S603 - an interpreter
+    return done.stdout.strip()
+
+
+def pinned_libraries() -> Iterator[str]:
+    """Name the libraries that archgen stands on, directly or not, in the versions that the tests run with."""
+    waiting, seen = ["archgen"], set[str]()
+    while waiting:
+        for requirement in metadata.requires(waiting.pop()) or ():
+            name = re.split(r"[^\w.-]", requirement, maxsplit=1)[0]
+            if "extra ==" in requirement or name in seen:
+                continue
+            seen.add(name)
+            try:
+                version = metadata.version(name)
+            except metadata.PackageNotFoundError:  # of another system or another Python
+                continue
+            waiting.append(name)
+            yield f"{name}=={version}"
+
+
+@pytest.fixture(scope="module")
+def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Copy the case study, with some changes."""
+    folder = tmp_path_factory.mktemp("changed") / "ramcip"
+    shutil.copytree(RAMCIP, folder, ignore=shutil.ignore_patterns("archgen-out"))
+    for name, (old, new) in EDITS.items():
+        text = (folder / name).read_text(encoding="utf-8")
+        assert old in text
+        (folder / name).write_text(text.replace(old, new), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module", params=VERSIONS)
+def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Find a Python and give it the libraries that archgen stands on."""
+    interpreter = find_interpreter(request.param)
+    if interpreter is None:
+        pytest.skip(f"no Python {request.param} was found here")
+    if interpreter == Path(sys.executable):
+        pytest.skip(f"Python {request.param} runs the tests: the others are held against it")
+    environment = tmp_path_factory.mktemp("environment") / "venv"
+    run(interpreter, "-m", "venv", environment)
+    program = environment / "bin" / "python"
+    run(program, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
+    assert version_of(program) == request.param
+    return program
+
+
+def run(*words: str | Path) -> bytes:
+    """Run a program with archgen from this checkout; give what it prints, and its exit status."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": ""}
+    done = subprocess.run(  # noqa: S603 - our own program, pip or venv
+        [*map(str, words)], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=600
+    )
+    assert done.returncode in {0, 1}, done.stdout.decode()[-3000:] + done.stderr.decode()[-3000:]
+    return b"%b\nstatus %d" % (done.stdout + done.stderr, done.returncode)
+
+
+def test_every_python_makes_the_same_files(python: Path, ramcip: Path, tmp_path: Path) -> None:
+    words = ("build", RAMCIP, "--backend", "wiki", "--revision", REVISION, "--no-history", "-o", tmp_path / "out")
+    cache_of_its_own = ("env", f"XDG_CACHE_HOME={tmp_path / 'cache'}")
+    run(*cache_of_its_own, python, "-m", "archgen", *words)
+    made, expected = contents(tmp_path / "out"), contents(ramcip)
+    assert sorted(made) == sorted(expected)
+    assert [path for path, data in expected.items() if made[path] != data] == []
+
+
+def test_every_python_prints_the_same(python: Path, other: Path) -> None:
+    for words in PRINTED:
+        call = ("-m", "archgen", *(other if word == OTHER else word for word in words))
+        assert run(python, *call) == run(sys.executable, *call), words
