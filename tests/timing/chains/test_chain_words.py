@@ -49,6 +49,8 @@ def test_duerr_by_hand() -> None:
         ("a @p: period: 10 ms, wcet: 1 ms", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
         ("a @p: period: 10 ms, response: 1 ms", "b @q: period: 20 ms, response: 2 ms", None),
         ("a: period: 10 ms, response: 1 ms", "b: trigger: [a], response: 2 ms", None),
+        # An overload has no response, though nothing is missing of it.
+        ("a @p: period: 10 ms, wcet: 11 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
         ("a: period: 10 ms, response: 1 ms", "b: behaviour: periodic, response: 2 ms", None),
         ("a: period: 10 ms, response: 1 ms", "b: period: 20 ms", None),
     ],

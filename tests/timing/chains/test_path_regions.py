@@ -73,6 +73,13 @@ def test_of_parallel_arcs_the_extreme_one_counts() -> None:
     ]
 
 
+@pytest.mark.parametrize("longest", [True, False])
+def test_of_equal_parallel_arcs_the_first_one_is_named(longest: bool) -> None:  # noqa: FBT001 - a parameter of the test
+    graph = _graph(2, [(0, 1, 3), (0, 1, 3)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1]))]
+    assert [path.arcs for path in find_paths(graph, [0, 0], route, longest=longest).best_paths(9)] == [(0,)]
+
+
 def test_a_start_costs_what_its_vertex_costs() -> None:
     graph = _graph(3, [(0, 2, 1), (1, 2, 1)])
     route = [RouteRegion(frozenset([0, 1])), RouteRegion(frozenset([2]))]

@@ -7,11 +7,14 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import response_times
+from archgen.timing.load import link_queueing, response_times
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
 from archgen.timing.load.link_queueing import longest_queueing, settle_links
 from archgen.timing.system.system_builder import build_system
-from tests.timing.printed import show_ms
+from archgen.timing.system.trigger_graph import find_triggers
+from tests.timing.printed import MS, show_ms
 from tests.timing.sketches import analyse_sketch, read_sketch
 
 
@@ -105,3 +108,28 @@ def test_a_wait_of_more_than_twenty_seconds_is_not_given(bandwidth: str, respons
     analysis = analyse_sketch({"a @p": "period: 100 s, wcet: 0 ms, bcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest)
     jitter = analysis.paces["b"].jitter
     assert show_ms(jitter) == (response or "none ?lan")
+
+
+def test_what_has_not_settled_in_so_many_turns_is_given_up_and_the_rest_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1 kB takes 8 ms on `lan` from the first turn on. That makes `b` 8 late, so that two of its messages, 4 ms each on `wan`, may
+    follow 2 ms apart: 8 ms instead of 4 from the second turn on.
+    """
+    nodes = {"a @p": "period: 10 ms, wcet: 0 ms", "b @q": "wcet: 0 ms", "c @r": "wcet: 0 ms"}
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}}\n"
+        "links: {lan: {connects: [p, q], bandwidth: 1 Mbit/s}, wan: {connects: [q, r], bandwidth: 2 Mbit/s}}"
+    )
+    for turns, jitters in ((24, ["0", "8", "16"]), (2, ["0", "8", "none ?wan"]), (1, ["0", "none ?lan", "none ?lan"])):
+        monkeypatch.setattr(link_queueing, "_MAX_TURNS", turns)
+        paces = analyse_sketch(nodes, "a>b b>c", rest).paces.values()
+        assert [show_ms(pace.jitter) for pace in paces] == jitters
+
+
+def test_one_budget_bounds_all_searches() -> None:
+    """Nothing may be looked at: no response is found, though 1 + 2 would do."""
+    nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "period: 10 ms, wcet: 2 ms"}
+    system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 1}}"))
+    for budget, causes in ((SearchBudget(0), ["diverged", "diverged"]), (None, [3, 3])):
+        state = propagate_events(system, find_triggers(system), budget)
+        found = [time.cause.notes[0] if time.value is None else time.value for time in state.responses.values()]
+        assert found == [cause if isinstance(cause, str) else cause * MS / system.tick for cause in causes]

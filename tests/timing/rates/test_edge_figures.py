@@ -43,3 +43,22 @@ def test_readers_that_poll() -> None:
         "forty>hundred: loss 0, rereads 5/2, beat 50, queue 1",
         "sometimes>rare: loss 3/4 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue 5",
     ]
+
+
+def test_equal_rates_lose_nothing_as_far_as_they_are_sure() -> None:
+    """100 Hz read at 100 Hz. Where one of both is only an upper bound, the figures rest on what it assumes."""
+    analysis = analyse_sketch(
+        {
+            "sure": "period: 10 ms, wcet: 0 ms, bcet: 0 ms",
+            "rare": "period: 10 ms, wcet: 0 ms, bcet: 0 ms, outputs: {out: {conditional: true}}",
+            "poll": "period: 10 ms, wcet: 0 ms",
+            "both": "trigger: {all: [rare, sure]}, wcet: 0 ms",
+        },
+        "sure>poll rare>poll sure>both rare>both",
+    )
+    assert list_edges(analysis) == [
+        "sure>poll: loss 0, rereads 1, beat 0, queue 1",
+        "sure>both: loss 0 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue none [unbounded; assuming a dedicated core]",
+        "rare>poll: loss 0 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue 1",
+        "rare>both: loss 0 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue none [unbounded; assuming a dedicated core]",
+    ]
