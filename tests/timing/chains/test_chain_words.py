@@ -210,3 +210,55 @@ def test_an_element_stands_for_activities(kind: str, id_: str, activities: tuple
     system = analyse_architecture(POINTS).system
     (point,) = resolve_points(system, POINTS, (Waypoint(kind, id_),))  # type: ignore[arg-type]
     assert (point.activities, point.output) == (activities, output)
+
+
+@pytest.mark.parametrize(
+    ("through", "gap"),
+    [
+        ("[a, b, lone]", "no way leads from `b` to `lone`"),
+        ("[lone, a, b]", "no way leads from `lone` to `a`"),
+        ("[a, b, c, lone]", "no way leads from `c` to `lone`"),
+    ],
+)
+def test_the_first_two_elements_that_nothing_joins_are_named(through: str, gap: str) -> None:
+    nodes = dict.fromkeys(("a", "b", "c", "lone"), "period: 10 ms, wcet: 1 ms")
+    model = read_sketch(nodes, "a>b b>c", f"chains: {{way: {{through: {through}}}}}")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.bound.assumptions == (gap,)
+
+
+def test_of_equal_ways_the_one_with_an_unknown_figure_is_shown() -> None:
+    """By `b` nothing is added, by `c` nobody knows how much: 10 + 10 is the least that there is."""
+    nodes = {
+        "a": "period: 10 ms, wcet: 0 ms, bcet: 0 ms",
+        "b": "wcet: 0 ms",
+        "c": "",
+        "d": "period: 10 ms, wcet: 0 ms",
+    }
+    for wires in ("a>b a>c b>d c>d", "a>c a>b c>d b>d"):
+        model = read_sketch(nodes, wires, "chains: {way: {through: [a, d]}}")
+        (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+        assert (chain.through, show_ms(chain.bound)) == (
+            ("a", "c", "d"),
+            ">= 20 ?c [assuming a dedicated core]",
+        )
+
+
+def test_an_output_is_left_at_once() -> None:
+    """Two nodes do the work of `a`, each of which reads what both send: a chain that begins with the output leaves it at once,
+    10 + 1 + 2, one through the component may go from the one node to the other first, 10 more.
+    """
+    model = architecture("""
+groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/Empty}, inputs: {back: a.out}},
+  b: {inputs: {i: a.out}}}}}
+nodes:
+  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  b: {implements: b, timing: {wcet: 1 ms}}
+chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
+""")
+    chains = bound_all_chains(analyse_architecture(model), model)
+    assert [(chain.id, len(chain.through)) for chain in chains.values()] == [("output", 2), ("component", 3)]
+    # Two messages may wait for b at once: 2 ms.
+    assert [chain.bound.value for chain in chains.values()] == [13 * MS, 24 * MS]

@@ -163,3 +163,9 @@ def test_arcs_that_lead_back_are_cut_once() -> None:
     assert (nothing.hops, none) == ([[], [], [], []], ())
     part, arcs = cut_returns(_state_graph(LOOP, 4), [0, 1, 3])
     assert ([[hop.arc for hop in hops] for hops in part.hops], arcs) == ([[0], [], [], []], ())
+
+
+def test_an_arc_back_to_the_start_is_cut() -> None:
+    """0 > 1 > 2 is left; of the ring of 0 and 1 the arc that leads back to where the path began goes."""
+    cut, arcs = cut_returns(_state_graph(((0, 1, 1), (1, 0, 1), (1, 2, 1)), 3), range(3))
+    assert ([[hop.arc for hop in hops] for hops in cut.hops], arcs) == ([[0], [2], []], (1,))

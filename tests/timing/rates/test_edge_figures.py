@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
+from archgen.timing.run_analysis import analyse_architecture, analyse_for_chains
+from tests.timing.printed import show
+from tests.timing.random_systems import architecture
 from tests.timing.sketches import analyse_sketch, list_edges
 
 
@@ -62,3 +67,58 @@ def test_equal_rates_lose_nothing_as_far_as_they_are_sure() -> None:
         "rare>poll: loss 0 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue 1",
         "rare>both: loss 0 [conditional: between none and this], rereads 1 [conditional: between none and this], beat 0, queue none [unbounded; assuming a dedicated core]",
     ]
+
+
+def test_what_only_is_read_is_no_part_of_what_a_throttle_leaves_out() -> None:
+    """Of 100 Hz each third fires, for 25 > 2 x 10; the 200 Hz that are read along fire nothing."""
+    analysis = analyse_sketch(
+        {
+            "a": "period: 10 ms, wcet: 0 ms, bcet: 0 ms",
+            "b": "period: 5 ms, wcet: 0 ms, bcet: 0 ms",
+            "r": "trigger: [a], throttle: 25 ms, wcet: 0 ms",
+        },
+        "a>r b>r",
+    )
+    assert [show(fit.loss) for fit in analysis.edges] == ["2/3", "5/6"]
+
+
+def test_nothing_is_said_of_rates_without_a_bound() -> None:
+    """A ring that runs for ever has no rate; neither has, to be compared, what reads it as often."""
+    analysis = analyse_sketch(
+        {"s": "period: 10 ms, wcet: 1 ms", "a": "wcet: 1 ms", "poll": "period: 20 ms, wcet: 1 ms"}, "s>a a>a a>poll"
+    )
+    assert [line for line in list_edges(analysis) if line.startswith("a>poll")] == [
+        "a>poll: loss none [unbounded], rereads none [unbounded], beat none [unbounded], queue none ?a [a ring of triggers]"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("timing", "depth", "judged"),
+    [
+        # Rules look at queues that somebody asked for, where they are read in one go or message by message ...
+        ("period: 20 ms", 5, "a"),
+        ("period: 20 ms", None, ""),
+        ("trigger: [a]", 5, "a"),
+        ("trigger: [a]", None, ""),
+        # ... not at those that are read along, or that only some other event empties.
+        ("trigger: [b]", 5, ""),
+        # All-of loses what has no partner, however long its queues are.
+        ("trigger: {all: [a, b]}", None, "a b"),
+        ("trigger: {all: [a, b]}", 5, "a b"),
+        ("trigger: {all: [b]}", None, "b"),
+        ("trigger: {all: [b]}", 5, "b"),
+    ],
+)
+def test_rules_look_at_written_queues_and_at_all_of(timing: str, depth: int | None, judged: str) -> None:
+    queue = "" if depth is None else f", subscribes: {{a: {{qos: {{depth: {depth}}}}}}}"
+    text = f"""
+groups: {{g: {{components: {{a: {{outputs: {{out: Data}}}}, b: {{outputs: {{out: Data}}}}, r: {{inputs: {{a: a.out, b: b.out}}}}}}}}}}
+nodes:
+  a: {{implements: a, timing: {{period: 10 ms}}}}
+  b: {{implements: b, timing: {{period: 10 ms}}}}
+  r: {{implements: r, timing: {{{timing}}}{queue}}}
+types: {{Data: {{message: std_msgs/msg/String, size: 1 kB}}}}
+"""
+    model = architecture(text)
+    assert " ".join(fit.arc.source for fit in analyse_for_chains(model).edges) == judged
+    assert " ".join(fit.arc.source for fit in analyse_architecture(model).edges) == "a b"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.timing.run_analysis import analyse_architecture
-from tests.timing.printed import show
+from tests.timing.printed import show, show_ms
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import (
     analyse_sketch,
@@ -466,6 +466,53 @@ def test_inputs_that_nothing_feeds_and_inputs_that_two_feed() -> None:
         "kept none ?kept..1 [assuming a dedicated core] dedicated",
     ]
     assert analysis.deadlocked == (("need",),)
+    # Two different sources need no topic beside their names.
+    assert [reason.text for reason in analysis.paces["kept"].reasons[2:]] == [
+        "g.kept.i brings 100 Hz from a, at most 10 ms apart",
+        "g.kept.i brings 0 Hz from start",
+    ]
+
+
+def test_two_outputs_of_one_source_on_one_input_are_told_apart_by_their_topics() -> None:
+    text = """
+groups: {g: {components: {
+  a: {outputs: {out: Data, more: Data}},
+  b: {outputs: {out: Data}},
+  r: {inputs: {i: [a.out, a.more, b.out]}}}}}
+nodes:
+  a: {implements: a, timing: {period: 10 ms, wcet: 1 ms, bcet: 1 ms}}
+  b: {implements: b, timing: {period: 20 ms, wcet: 1 ms, bcet: 1 ms}}
+  r: {implements: r, timing: {wcet: 1 ms}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    pace = analyse_architecture(architecture(text)).paces["r"]
+    assert sorted(reason.text for reason in pace.reasons) == [
+        "g.r.i brings 100 Hz from a on /g/a/more, at most 10 ms apart",
+        "g.r.i brings 100 Hz from a on /g/a/out, at most 10 ms apart",
+        "g.r.i brings 50 Hz from b on /g/b/out, at most 20 ms apart",
+    ]
+    assert (show(pace.rate), show_ms(pace.gap)) == ("250", "10")
+
+
+def test_a_ring_that_runs_for_ever_and_one_that_dies_out() -> None:
+    """Each event of `a` fires `b` and so another of `a`; of two in the other ring one is left, for how long nobody knows."""
+    analysis = analyse_sketch(
+        {
+            "s": "period: 10 ms, wcet: 1 ms",
+            "a": "wcet: 1 ms",
+            "b": "wcet: 1 ms",
+            "c": "every: 2, wcet: 1 ms",
+            "d": "wcet: 1 ms",
+        },
+        "s>a b>a a>b s>c d>c c>d",
+    )
+    assert {name: show(pace.rate) for name, pace in analysis.paces.items()} == {
+        "s": "100",
+        "a": "none [unbounded]",
+        "b": "none [unbounded]",
+        "c": "none ?c [a ring of triggers]",
+        "d": "none ?d [a ring of triggers]",
+    }
 
 
 def test_all_of_what_may_come_irregularly_is_an_upper_bound() -> None:

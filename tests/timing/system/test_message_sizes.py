@@ -231,3 +231,16 @@ def test_a_topic_has_the_size_of_its_largest_sample() -> None:
     }
     found = message_sizes.find_topic_sizes(Architecture(ProjectInfo("p", "P"), topics=topics, interfaces=held))
     assert found == {"/a": 12, "/b": None, "/c": None}
+
+
+@pytest.mark.parametrize(
+    ("size", "text"),
+    [
+        (message_sizes.MessageSize(52, exact=True, why=""), "52 B (computed)"),
+        (message_sizes.MessageSize(52, exact=False, why=""), "at most 52 B (computed)"),
+        (message_sizes.MessageSize(52, exact=True, why="", written=True), "52 B"),
+        (message_sizes.MessageSize(None, exact=False, why=""), ""),
+    ],
+)
+def test_a_size_in_words(size: message_sizes.MessageSize, text: str) -> None:
+    assert str(size) == text

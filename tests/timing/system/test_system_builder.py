@@ -157,3 +157,37 @@ def test_figures_are_in_ticks() -> None:
         None,
         frozenset(),
     )
+
+
+def test_what_belongs_to_no_component_is_the_first_ones() -> None:
+    text = """
+groups: {g: {components: {a: {outputs: {out: Data}}, c: {outputs: {out: Data}}}}}
+nodes:
+  n: {implements: [a, c], internal: {publishes: {debug: {topic: ~/debug, message: std_msgs/msg/String}}}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    assert {name: activity.outputs for name, activity in _system(text).activities.items()} == {
+        "n.a": ("g.a.out", "/n/debug"),
+        "n.c": ("g.c.out",),
+    }
+
+
+def test_an_arc_is_where_its_input_names_the_output_else_where_it_is_read() -> None:
+    """Both write on one topic, so that each reader has both; a node that nobody wrote reads at its input."""
+    text = """groups: {g: {components: {
+  a: {outputs: {out: Data}},
+  c: {outputs: {out: Data}},
+  b: {inputs: {x: a.out}},
+  d: {inputs: {x: c.out}}}}}
+nodes:
+  a: {implements: a, publishes: {out: {topic: /t}}}
+  c: {implements: c, publishes: {out: {topic: /t}}}
+  d: {implements: d, subscribes: {x: {topic: /t}}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    assert [f"{arc.source}>{arc.target} {arc.at.line}:{arc.at.column}" for arc in _system(text).arcs] == [
+        "a>d 9:35",
+        "c>d 5:19",
+        "a>b 4:19",
+        "c>b 4:16",
+    ]
