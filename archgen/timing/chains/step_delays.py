@@ -160,8 +160,7 @@ class StepDelays:
                 self.arrivals.thinning_wait(reader),
             )
             return others_gap if thinning_wait is ZERO_VALUE else sum_bounds((others_gap, thinning_wait))
-        if reader.behaviour is None or reader.behaviour == "once":
-            return _undefined_delay(reader).value
+        # Of what works once, or nobody knows when, the gap is unbounded or unknown as well.
         return self.arrivals.activation_gap(reader.id)
 
     def _condition_wait(self, arc: Arc) -> TimingValue:

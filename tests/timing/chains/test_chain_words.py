@@ -262,3 +262,53 @@ chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
     assert [(chain.id, len(chain.through)) for chain in chains.values()] == [("output", 2), ("component", 3)]
     # Two messages may wait for b at once: 2 ms.
     assert [chain.bound.value for chain in chains.values()] == [13 * MS, 24 * MS]
+
+
+@pytest.mark.parametrize(
+    ("deadline", "margin", "is_late"),
+    [
+        # Bound are 10 + 1 + 2 = 13 ms. Half of 26 ms must stay free: 13 are left.
+        ("26 ms", Fraction(1, 2), False),
+        ("26 ms", Fraction(51, 100), True),
+        ("13 ms", Fraction(0), False),
+        ("13 ms", Fraction(1, 1000), True),
+        ("12.999 ms", Fraction(0), True),
+    ],
+)
+def test_a_margin_is_a_share_of_the_deadline(deadline: str, margin: Fraction, is_late: object) -> None:
+    nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": "wcet: 2 ms"}
+    model = read_sketch(nodes, "a>b", f"chains: {{way: {{through: [a, b], deadline: {deadline}}}}}")
+    missed = [late.chain.id for late in find_missed_chains(analyse_architecture(model), model, margin)]
+    assert missed == (["way"] if is_late else [])
+
+
+@pytest.mark.parametrize(
+    ("b", "c", "through", "bound"),
+    [
+        # 30 Hz is 33 1/3 ms, 29 Hz 34 14/29 ms: fractions are compared exactly.
+        ("rate: 30 Hz", "period: 33 ms", "b", Fraction(100, 3)),
+        ("rate: 30 Hz", "period: 34 ms", "c", 34),
+        ("rate: 30 Hz", "rate: 29 Hz", "c", Fraction(1000, 29)),
+        ("period: 33.333333 ms", "rate: 30 Hz", "c", Fraction(100, 3)),
+        # What has no bound outweighs everything else, whatever it is.
+        ("period: 1000 s", "behaviour: once", "c", None),
+    ],
+)
+def test_the_longer_of_two_ways_is_found(b: str, c: str, through: str, bound: Fraction | None) -> None:
+    nodes = {"a": "period: 1 ms", "b": b, "c": c, "d": "period: 1 ms"}
+    nodes = {name: f"{timing}, wcet: 0 ms, bcet: 0 ms" for name, timing in nodes.items()}
+    for wires in ("a>b a>c b>d c>d", "a>c a>b c>d b>d"):
+        model = read_sketch(nodes, wires, "chains: {way: {through: [a, d]}}")
+        (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+        assert chain.through == ("a", through, "d")
+        assert chain.bound.value == (None if bound is None else (1 + bound + 1) * MS)
+
+
+def test_a_gap_that_is_no_bound_is_not_told() -> None:
+    """What fires `r` is sent each 10 ms, and up to an unknown time later: that it reads `a` each 10 ms, nobody can say."""
+    nodes = {"a": "period: 5 ms, wcet: 1 ms, bcet: 1 ms", "dark": "period: 10 ms", "r": "trigger: [dark], wcet: 1 ms"}
+    model = read_sketch(nodes, "a>r dark>r", "chains: {way: {through: [a, r]}}")
+    analysis = analyse_architecture(model)
+    assert show_ms(analysis.paces["r"].gap) == ">= 10 ?dark"
+    (chain,) = bound_all_chains(analysis, model).values()
+    assert [term.why for term in chain.terms] == ["samples the world every 5 ms at the latest", "reads /g/a/out"]

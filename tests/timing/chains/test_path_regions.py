@@ -169,3 +169,16 @@ def test_an_arc_back_to_the_start_is_cut() -> None:
     """0 > 1 > 2 is left; of the ring of 0 and 1 the arc that leads back to where the path began goes."""
     cut, arcs = cut_returns(_state_graph(((0, 1, 1), (1, 0, 1), (1, 2, 1)), 3), range(3))
     assert ([[hop.arc for hop in hops] for hops in cut.hops], arcs) == ([[0], [2], []], (1,))
+
+
+def test_an_arc_from_an_element_to_itself_is_no_step() -> None:
+    """1 is an end though an arc leads from it to itself, be it the first of all arcs."""
+    graph = _graph(3, [(1, 1, 9), (0, 1, 5), (0, 2, 1)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1, 2]))]
+    assert [path.arcs for path in find_paths(graph, [0] * 3, route, longest=True).best_paths(9)] == [(1,), (2,)]
+
+
+def test_from_what_regions_share_a_path_passes_over_what_may_be_skipped() -> None:
+    graph = _graph(4, [(0, 1, 4), (1, 2, 1), (1, 3, 7), (3, 2, 7)])
+    route = [RouteRegion(frozenset([0, 1])), RouteRegion(None, optional=True), RouteRegion(frozenset([1, 2]))]
+    assert [path.arcs for path in find_paths(graph, [0] * 4, route, longest=True).best_paths(9)] == [(0, 1)]

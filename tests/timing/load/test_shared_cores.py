@@ -368,3 +368,24 @@ def test_a_thread_for_each_member_needs_no_waiting(threads: str, responses: list
     nodes = {"a +box": "period: 10 ms, wcet: 1 ms", "b +box": "period: 10 ms, wcet: 2 ms"}
     analysis = analyse_sketch(nodes, "", f"containers: {{box: {{{threads}}}}}")
     assert [f"{show_ms(time.worst)} {time.tier}" for time in analysis.responses.values()] == responses
+
+
+@pytest.mark.parametrize(
+    ("threads", "responses"),
+    [
+        # With a thread for each member, written or not, priorities alone count: 1, 1 + 2, 1 + 2 + 3.
+        ("", ["1", "3", "6"]),
+        ("threads: 3", ["1", "3", "6"]),
+        # With fewer, each may wait for one that the least urgent member holds.
+        ("threads: 2", ["6", "6", "6"]),
+        ("threads: 1", ["6", "6", "6"]),
+    ],
+)
+def test_members_wait_for_each_other_only_where_threads_are_fewer(threads: str, responses: list[str]) -> None:
+    nodes = {
+        "a +box": "period: 100 ms, wcet: 1 ms, priority: 3",
+        "b +box": "period: 100 ms, wcet: 2 ms, priority: 2",
+        "c +box": "period: 100 ms, wcet: 3 ms, priority: 1",
+    }
+    rest = f"hosts: {{pc: {{cores: 1}}}}\ncontainers: {{box: {{{threads and f'{threads}, '}host: pc}}}}"
+    assert [show_ms(time.worst) for time in analyse_sketch(nodes, "", rest).responses.values()] == responses
