@@ -206,6 +206,10 @@ def test_what_passes_between_writers_and_readers() -> None:
     types = {"Grams": ConceptualType("Grams", "demo_msgs/srv/Weigh", size=Quantity(Fraction(801, 2), "400.5 B"))}
     ask = message_sizes.make_writer_query(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))
 
+    assert message_sizes.make_size_query(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))(
+        "demo_msgs/srv/Weigh", "Grams"
+    ) == message_sizes.MessageSize(401, exact=True, why="written at the type `Grams`", written=True)
+
     def end(flow: FlowKind, message: str | None, type_: str | None = None) -> Endpoint:
         return Endpoint("n", "serves", "/x", flow, None, None, message, type_)
 
