@@ -126,8 +126,6 @@ class StepDelays:
         ticks = arc.worst if worst else arc.best
         if ticks is None:
             return TimingValue(None, complete=False, missing=self.arrivals.missing_link_names(arc))
-        if arc.link is None and not ticks:
-            return ZERO_VALUE
         key = (arc.link if worst else None, ticks)
         if key not in self._latencies:
             self._latencies[key] = self._latency_with_notes(arc, ticks, worst=worst)

@@ -312,3 +312,29 @@ def test_a_gap_that_is_no_bound_is_not_told() -> None:
     assert show_ms(analysis.paces["r"].gap) == ">= 10 ?dark"
     (chain,) = bound_all_chains(analysis, model).values()
     assert [term.why for term in chain.terms] == ["samples the world every 5 ms at the latest", "reads /g/a/out"]
+
+
+@pytest.mark.parametrize(
+    ("latency", "bound", "notes"),
+    [
+        # 1 kB takes 1 ms, twice as two readers each have a copy; what is written counts, be it nothing.
+        ("0 ms", 10 + 0 + 2, ["link lan keeps its written latency, though 2 ms of traffic can wait for it"]),
+        (
+            "1.9 ms",
+            10 + Fraction(19, 10) + 2,
+            ["link lan keeps its written latency, though 2 ms of traffic can wait for it"],
+        ),
+        ("2 ms", 10 + 2 + 2, ["queueing on link lan (up to 2 ms) is within its latency"]),
+    ],
+)
+def test_a_written_latency_counts_with_a_note_on_what_can_wait(latency: str, bound: Fraction, notes: list[str]) -> None:
+    nodes = {"a @p": "period: 10 ms, wcet: 0 ms, bcet: 0 ms", "b @q": "response: 2 ms", "c @q": "response: 2 ms"}
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}}\n"
+        f"links: {{lan: {{connects: [p, q], bandwidth: 8 Mbit/s, latency: {latency}}}}}\n"
+        "chains: {way: {through: [a, b]}}"
+    )
+    model = read_sketch(nodes, "a>b a>c", rest)
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.bound.value == bound * MS
+    assert [note for note in chain.bound.assumptions if "lan" in note] == notes
