@@ -191,3 +191,17 @@ types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
         "a>b 4:19",
         "c>b 4:16",
     ]
+
+
+def test_an_activity_is_where_its_timing_is_written_else_its_node_else_its_component() -> None:
+    text = """groups: {g: {components: {
+  a: {outputs: {out: Data}},
+  b: {inputs: {x: a.out}, timing: {period: 10 ms}},
+  c: {inputs: {x: a.out}}}}}
+nodes:
+  c: {implements: c}
+  d: {}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    places = {name: f"{activity.at.line}:{activity.at.column}" for name, activity in _system(text).activities.items()}
+    assert places == {"a": "2:3", "b": "3:27", "c": "6:3", "d": "7:3"}
