@@ -338,3 +338,20 @@ def test_a_written_latency_counts_with_a_note_on_what_can_wait(latency: str, bou
     (chain,) = bound_all_chains(analyse_architecture(model), model).values()
     assert chain.bound.value == bound * MS
     assert [note for note in chain.bound.assumptions if "lan" in note] == notes
+
+
+def test_ways_that_meet_in_no_activity_are_no_way() -> None:
+    """`a` reaches `b` on the one node, and `c` is fed by `b` on the other: nothing passes between both."""
+    model = architecture("""
+groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/Empty}},
+  b: {inputs: {i: a.out}, outputs: {out: std_msgs/msg/Empty}},
+  c: {inputs: {i: b.out}}}}}
+nodes:
+  one: {implements: b, subscribes: {i: /g/a/out}, publishes: {out: /one}}
+  two: {implements: b, subscribes: {i: /nobody}, publishes: {out: /two}}
+  c: {implements: c, subscribes: {i: /two}}
+chains: {way: {through: [a, b, c], deadline: 1 s}}
+""")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert (show_ms(chain.bound), chain.verdict) == ("none ? [no way leads through all elements]", "open")

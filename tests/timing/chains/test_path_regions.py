@@ -73,6 +73,13 @@ def test_of_parallel_arcs_the_extreme_one_counts() -> None:
     ]
 
 
+@pytest.mark.parametrize(("longest", "arcs"), [(True, (3,)), (False, (2,))])
+def test_the_extreme_one_counts_wherever_it_stands(longest: bool, arcs: tuple[int]) -> None:  # noqa: FBT001 - a parameter of the test
+    graph = _graph(2, [(0, 1, 5), (0, 1, 5), (0, 1, 3), (0, 1, 7), (0, 1, 4)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1]))]
+    assert [path.arcs for path in find_paths(graph, [0, 0], route, longest=longest).best_paths(9)] == [arcs]
+
+
 @pytest.mark.parametrize("longest", [True, False])
 def test_of_equal_parallel_arcs_the_first_one_is_named(longest: bool) -> None:  # noqa: FBT001 - a parameter of the test
     graph = _graph(2, [(0, 1, 3), (0, 1, 3)])

@@ -292,3 +292,26 @@ def test_what_is_asked_for_responses_is_not_written_to(derived: Derived) -> None
     assert first.response_of
     again = AnalysisEffort(SearchBudget(), None, tuple(first.threads))
     assert find_responses(system, resource, state.event_models, state.responses, again).response_of == {}
+
+
+@pytest.mark.parametrize(
+    ("stale", "found"),
+    [
+        # What has another event model than before bears on itself and on what is less urgent; what has no priority waits
+        # for everything.
+        ("a", "a b c d"),
+        ("b", "b c d"),
+        ("c", "c d"),
+        ("d", "d"),
+        ("", "d"),
+        ("a c", "a b c d"),
+    ],
+)
+def test_only_what_something_stale_bears_on_is_looked_at_again(derived: Derived, stale: str, found: str) -> None:
+    rows = {name: periodic("10", "1") for name in "abc"} | {"d": periodic("10", "1", "jitter: 0 ms")}
+    system, _, state = settle_links(build_system(derived(tasks(rows)))[0])
+    (resource,) = find_resources(system)
+    effort = AnalysisEffort(SearchBudget(), frozenset(stale.split()))
+    again = find_responses(system, resource, state.event_models, state.responses, effort)
+    assert " ".join(sorted(again.response_of)) == found
+    assert all(again.response_of[name] == state.responses[name] for name in again.response_of)

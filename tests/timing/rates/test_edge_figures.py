@@ -93,24 +93,27 @@ def test_nothing_is_said_of_rates_without_a_bound() -> None:
 
 
 @pytest.mark.parametrize(
-    ("timing", "depth", "judged"),
+    ("timing", "qos", "judged"),
     [
         # Rules look at queues that somebody asked for, where they are read in one go or message by message ...
-        ("period: 20 ms", 5, "a"),
-        ("period: 20 ms", None, ""),
-        ("trigger: [a]", 5, "a"),
-        ("trigger: [a]", None, ""),
+        ("period: 20 ms", "depth: 5", "a"),
+        ("period: 20 ms", "", ""),
+        ("trigger: [a]", "depth: 5", "a"),
+        ("trigger: [a]", "", ""),
+        # (ten is what everybody has),
+        ("period: 20 ms", "depth: 10", ""),
+        ("period: 20 ms", "reliability: best_effort", ""),
         # ... not at those that are read along, or that only some other event empties.
-        ("trigger: [b]", 5, ""),
+        ("trigger: [b]", "depth: 5", ""),
         # All-of loses what has no partner, however long its queues are.
-        ("trigger: {all: [a, b]}", None, "a b"),
-        ("trigger: {all: [a, b]}", 5, "a b"),
-        ("trigger: {all: [b]}", None, "b"),
-        ("trigger: {all: [b]}", 5, "b"),
+        ("trigger: {all: [a, b]}", "", "a b"),
+        ("trigger: {all: [a, b]}", "depth: 5", "a b"),
+        ("trigger: {all: [b]}", "", "b"),
+        ("trigger: {all: [b]}", "depth: 5", "b"),
     ],
 )
-def test_rules_look_at_written_queues_and_at_all_of(timing: str, depth: int | None, judged: str) -> None:
-    queue = "" if depth is None else f", subscribes: {{a: {{qos: {{depth: {depth}}}}}}}"
+def test_rules_look_at_written_queues_and_at_all_of(timing: str, qos: str, judged: str) -> None:
+    queue = qos and f", subscribes: {{a: {{qos: {{{qos}}}}}}}"
     text = f"""
 groups: {{g: {{components: {{a: {{outputs: {{out: Data}}}}, b: {{outputs: {{out: Data}}}}, r: {{inputs: {{a: a.out, b: b.out}}}}}}}}}}
 nodes:

@@ -244,6 +244,7 @@ def test_what_is_not_known_of_a_link() -> None:
         ("9 ms", "1500", "4"),
         ("10 ms", "2000", "4"),
         ("20 ms", "3000", "6"),
+        ("30 ms", "4000", "8"),
         # Two at once, and the third half way through the first of them: 2000 - 500 + 1000.
         ("19 ms", "2500", "6"),
     ],
