@@ -17,7 +17,7 @@ from archgen.timing.chains.chain_bounds import (
     judge_deadline,
     list_bounded_paths,
 )
-from archgen.timing.chains.chain_regions import resolve_points
+from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
 from archgen.timing.figures.timing_values import TimingValue
@@ -355,3 +355,32 @@ chains: {way: {through: [a, b, c], deadline: 1 s}}
 """)
     (chain,) = bound_all_chains(analyse_architecture(model), model).values()
     assert (show_ms(chain.bound), chain.verdict) == ("none ? [no way leads through all elements]", "open")
+
+
+def test_without_elements_or_activities_there_is_no_route() -> None:
+    network = CostNetwork.of_analysis(analyse_sketch({"a": "period: 10 ms", "b": "wcet: 1 ms"}, "a>b"))
+    a, b, gone = ChainPoint(("a",)), ChainPoint(("b",)), ChainPoint(())
+    assert lay_out_chain(network, ()) == ()
+    assert lay_out_chain(network, (a, gone)) == lay_out_chain(network, (gone, b)) == ()
+    assert len(lay_out_chain(network, (a, b))) == 2
+
+
+@pytest.mark.parametrize(
+    ("timing", "why"),
+    [
+        ("", "triggered by /g/a/out"),
+        ("every: 1", "triggered by /g/a/out"),
+        ("every: 2", "triggered by /g/a/out; fires only once for 2 triggers"),
+        ("throttle: 5 ms", "triggered by /g/a/out; keeps a smallest gap"),
+        ("jitter: 1 ms", "triggered by /g/a/out; starts late by its jitter"),
+        (
+            "every: 3, throttle: 5 ms, jitter: 1 ms",
+            "triggered by /g/a/out; fires only once for 3 triggers, keeps a smallest gap, starts late by its jitter",
+        ),
+    ],
+)
+def test_why_a_trigger_waits(timing: str, why: str) -> None:
+    nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": timing}
+    model = read_sketch(nodes, "a>b", "chains: {way: {through: [a, b]}}")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.terms[1].why == why

@@ -125,3 +125,22 @@ types: {{Data: {{message: std_msgs/msg/String, size: 1 kB}}}}
     model = architecture(text)
     assert " ".join(fit.arc.source for fit in analyse_for_chains(model).edges) == judged
     assert " ".join(fit.arc.source for fit in analyse_architecture(model).edges) == "a b"
+
+
+@pytest.mark.parametrize(
+    ("more", "wires", "loss"),
+    [
+        # What never fires loses nothing; of what comes without a bound, or is called without a bound, nothing is known.
+        ({"s": "trigger: {all: [s]}"}, "s>s s>r", "0"),
+        ({"s": "wcet: 0 ms", "t": "period: 10 ms"}, "t>s s>s s>r", "none [unbounded]"),
+        (
+            {"s": "period: 10 ms, wcet: 0 ms, bcet: 0 ms", "ring": "behaviour: event, wcet: 0 ms"},
+            "s>ring ring>ring ring?r s>r",
+            "none [what fires it is taken to come regularly; unbounded]",
+        ),
+    ],
+)
+def test_what_a_throttle_leaves_out_of_what_has_no_rate(more: dict[str, str], wires: str, loss: str) -> None:
+    reader = {"r": "behaviour: event, trigger: [s], throttle: 25 ms, wcet: 0 ms"}
+    edges = analyse_sketch({**more, **reader}, wires).edges
+    assert [show(fit.loss) for fit in edges if (fit.arc.source, fit.arc.target) == ("s", "r")] == [loss]

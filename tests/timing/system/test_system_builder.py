@@ -164,12 +164,16 @@ def test_what_belongs_to_no_component_is_the_first_ones() -> None:
 groups: {g: {components: {a: {outputs: {out: Data}}, c: {outputs: {out: Data}}}}}
 nodes:
   n: {implements: [a, c], internal: {publishes: {debug: {topic: ~/debug, message: std_msgs/msg/String}}}}
+  m: {internal: {subscribes: {debug: {topic: /n/debug, message: std_msgs/msg/String}}}}
 types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
 """
-    assert {name: activity.outputs for name, activity in _system(text).activities.items()} == {
+    system = _system(text)
+    assert {name: activity.outputs for name, activity in system.activities.items()} == {
         "n.a": ("g.a.out", "/n/debug"),
         "n.c": ("g.c.out",),
+        "m": (),
     }
+    assert [(arc.source, arc.target, arc.topic) for arc in system.arcs] == [("n.a", "m", "/n/debug")]
 
 
 def test_an_arc_is_where_its_input_names_the_output_else_where_it_is_read() -> None:
