@@ -69,6 +69,9 @@ def test_a_reason_is_put_into_words_when_it_is_asked() -> None:
         # A server that somebody else calls as well answers this one not each time; nor does one that has a clock.
         ("a?s b?s", "", "answer"),
         ("a?k", "", "answer"),
+        # What a server only reads does not activate it; what fires it does.
+        ("a?s b>s", "", ""),
+        ("a?e b>e", "", "answer"),
         # A condition without a promise.
         ("a>b", "outputs: {out: {conditional: true}}", "data"),
         ("a>b", "outputs: {out: {conditional: true, max_gap: 1 s}}", ""),
@@ -81,6 +84,7 @@ def test_what_an_activation_may_not_send(wires: str, timing: str, selective: str
         "b": "period: 20 ms",
         "s": "wcet: 1 ms",
         "k": "period: 5 ms",
+        "e": "behaviour: event, wcet: 1 ms",
     }
     system, _ = build_system(read_sketch(nodes, wires))
     found = [arc.role for arc in system.arcs if "a" in {arc.source, arc.target} and is_selective_arc(system, arc)]
