@@ -126,8 +126,6 @@ class StepDelays:
         ticks = arc.worst if worst else arc.best
         if ticks is None:
             return TimingValue(None, complete=False, missing=self.arrivals.missing_link_names(arc))
-        if arc.link is None and not ticks:
-            return ZERO_VALUE
         key = (arc.link if worst else None, ticks)
         if key not in self._latencies:
             self._latencies[key] = self._latency_with_notes(arc, ticks, worst=worst)
@@ -160,8 +158,7 @@ class StepDelays:
                 self.arrivals.thinning_wait(reader),
             )
             return others_gap if thinning_wait is ZERO_VALUE else sum_bounds((others_gap, thinning_wait))
-        if reader.behaviour is None or reader.behaviour == "once":
-            return _undefined_delay(reader).value
+        # Of what works once, or nobody knows when, the gap is unbounded or unknown as well.
         return self.arrivals.activation_gap(reader.id)
 
     def _condition_wait(self, arc: Arc) -> TimingValue:

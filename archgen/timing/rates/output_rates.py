@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
 
 from archgen.timing.analysis import EventPace, Reason, ResponseTime
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
@@ -113,10 +112,9 @@ def _delayed_shape(
     rates: RateTable, activity: Activity, pace: EventPace, spread: TimingValue
 ) -> tuple[TimingValue, TimingValue]:
     """Return jitter and smallest gap of what comes up to `spread` later; in ticks, where everything is known."""
-    event_model, worst = rates.state.event_models[activity.id], rates.state.responses[activity.id].value
-    if isinstance(event_model, UnknownCause) or not event_model or worst is None:
-        return add_values((pace.jitter, spread)), _reduced_distance(pace, spread)
-    delay = max(worst - (activity.bcet or 0), 0)
+    event_model, delay = rates.state.event_models[activity.id], _longest_delay(rates, activity)
+    if isinstance(event_model, UnknownCause) or not event_model or delay is None:
+        return add_values((pace.jitter, spread)), _unsure_distance(pace)
     stream = collapse_streams(event_model)
     distance = stream.min_spacing if len(event_model) == 1 else 0
     return rates.duration_value(stream.jitter + delay), rates.duration_value(max(distance - delay, 0))
@@ -166,15 +164,19 @@ def _promised_gap(promised_gap: TimingValue, gap: TimingValue, spread: TimingVal
 
 
 def _response_spread(rates: RateTable, activity: Activity) -> TimingValue:
-    """Return how much later than the earliest an output can be, R - B. A best case that nobody wrote counts as 0."""
-    ticks = rates.state.responses[activity.id].value
-    if ticks is None:
-        return replace(rates.responses[activity.id].worst, value=None)
-    return rates.duration_value(max(ticks - (activity.bcet or 0), 0))
+    """Return how much later than the earliest an output can be, in ns, or what is missing of it."""
+    delay = _longest_delay(rates, activity)
+    return replace(rates.responses[activity.id].worst, value=None) if delay is None else rates.duration_value(delay)
 
 
-def _reduced_distance(pace: EventPace, spread: TimingValue) -> TimingValue:
-    """Return the smallest gap, reduced by a spread."""
+def _longest_delay(rates: RateTable, activity: Activity) -> int | None:
+    """Return R - B in ticks, None where there is no response. A best case that nobody wrote counts as 0."""
+    worst = rates.state.responses[activity.id].value
+    return None if worst is None else max(worst - (activity.bcet or 0), 0)
+
+
+def _unsure_distance(pace: EventPace) -> TimingValue:
+    """Return the smallest gap of what comes later by an unknown time: none, unless nothing or who knows what comes."""
     if pace.distance.value is None:
         return UNKNOWN_VALUE if not pace.distance.complete else pace.distance
-    return ZERO_VALUE if spread.value is None else TimingValue(max(pace.distance.value - spread.value, Fraction(0)))
+    return ZERO_VALUE

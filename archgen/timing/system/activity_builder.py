@@ -46,20 +46,16 @@ def endpoint_key(endpoint: Endpoint) -> str:
 
 
 def endpoints_by_activity(architecture: Architecture, activity_names: ActivityNames) -> dict[str, list[Endpoint]]:
-    """Return the endpoints of each activity; those that belong to no component are the first component's."""
+    """Return the endpoints of each activity; those that belong to no port are the first component's."""
     grouped_endpoints: dict[str, list[Endpoint]] = {name: [] for name in activity_names.values()}
     for endpoint in architecture.endpoints:
-        grouped_endpoints[activity_of_endpoint(architecture, activity_names, endpoint)].append(endpoint)
+        grouped_endpoints[activity_of_endpoint(activity_names, endpoint)].append(endpoint)
     return grouped_endpoints
 
 
-def activity_of_endpoint(architecture: Architecture, activity_names: ActivityNames, endpoint: Endpoint) -> str:
+def activity_of_endpoint(activity_names: ActivityNames, endpoint: Endpoint) -> str:
     """Return the id of the activity that uses an endpoint."""
-    name = activity_names.get((endpoint.node, endpoint.component))
-    if name is not None:
-        return name
-    components = architecture.nodes[endpoint.node].implements
-    return activity_names[endpoint.node, components[0] if components else None]
+    return activity_names[endpoint.node, endpoint.component]
 
 
 def build_activities(

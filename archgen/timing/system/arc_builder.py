@@ -71,9 +71,7 @@ class _ArcJoiner:
 
     def _data_arc(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
         """Return the arc from a writer to a reader."""
-        source, target = (
-            activity_of_endpoint(self.architecture, self.activity_names, endpoint) for endpoint in (writer, reader)
-        )
+        source, target = (activity_of_endpoint(self.activity_names, endpoint) for endpoint in (writer, reader))
         link, best, worst = self.find_route(self.activities_by_id[source].host, self.activities_by_id[target].host)
         port = self.architecture.inputs.get(reader.port or "")
         qos = reader.qos

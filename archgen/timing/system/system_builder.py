@@ -41,14 +41,13 @@ def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason
             for link in architecture.links.values()
         },
         served_outputs=frozenset(
-            (activity_of_endpoint(architecture, activity_names, endpoint), endpoint_key(endpoint))
+            (activity_of_endpoint(activity_names, endpoint), endpoint_key(endpoint))
             for endpoint in architecture.endpoints
             if endpoint.use == "serves"
         ),
         topic_writers={
             name: tuple(
-                (activity_of_endpoint(architecture, activity_names, endpoint), endpoint_key(endpoint))
-                for endpoint in topic.writers
+                (activity_of_endpoint(activity_names, endpoint), endpoint_key(endpoint)) for endpoint in topic.writers
             )
             for name, topic in architecture.topics.items()
             if topic.flow == "topic"

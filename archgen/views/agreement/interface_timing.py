@@ -42,7 +42,7 @@ def timing_facts(
             suffix = f" of {endpoint.node}" if len(written_givers) > 1 else ""
             yield from _rate_facts(
                 timed,
-                activity_builder.activity_of_endpoint(lookup.architecture, activity_names, endpoint),
+                activity_builder.activity_of_endpoint(activity_names, endpoint),
                 endpoint,
                 suffix,
             )
@@ -123,8 +123,7 @@ def find_chains_through(
         return
     giver_keys = {activity_builder.endpoint_key(endpoint) for endpoint in interface.giver_endpoints}
     taking_activities = {
-        activity_builder.activity_of_endpoint(lookup.architecture, activity_names, endpoint)
-        for endpoint in interface.taker_endpoints
+        activity_builder.activity_of_endpoint(activity_names, endpoint) for endpoint in interface.taker_endpoints
     }
     system = lookup.timing.analysis.system
     for result in lookup.timing.chains:

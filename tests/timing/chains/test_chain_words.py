@@ -17,7 +17,7 @@ from archgen.timing.chains.chain_bounds import (
     judge_deadline,
     list_bounded_paths,
 )
-from archgen.timing.chains.chain_regions import resolve_points
+from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
 from archgen.timing.figures.timing_values import TimingValue
@@ -49,6 +49,8 @@ def test_duerr_by_hand() -> None:
         ("a @p: period: 10 ms, wcet: 1 ms", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
         ("a @p: period: 10 ms, response: 1 ms", "b @q: period: 20 ms, response: 2 ms", None),
         ("a: period: 10 ms, response: 1 ms", "b: trigger: [a], response: 2 ms", None),
+        # An overload has no response, though nothing is missing of it.
+        ("a @p: period: 10 ms, wcet: 11 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
         ("a: period: 10 ms, response: 1 ms", "b: behaviour: periodic, response: 2 ms", None),
         ("a: period: 10 ms, response: 1 ms", "b: period: 20 ms", None),
     ],
@@ -208,3 +210,177 @@ def test_an_element_stands_for_activities(kind: str, id_: str, activities: tuple
     system = analyse_architecture(POINTS).system
     (point,) = resolve_points(system, POINTS, (Waypoint(kind, id_),))  # type: ignore[arg-type]
     assert (point.activities, point.output) == (activities, output)
+
+
+@pytest.mark.parametrize(
+    ("through", "gap"),
+    [
+        ("[a, b, lone]", "no way leads from `b` to `lone`"),
+        ("[lone, a, b]", "no way leads from `lone` to `a`"),
+        ("[a, b, c, lone]", "no way leads from `c` to `lone`"),
+    ],
+)
+def test_the_first_two_elements_that_nothing_joins_are_named(through: str, gap: str) -> None:
+    nodes = dict.fromkeys(("a", "b", "c", "lone"), "period: 10 ms, wcet: 1 ms")
+    model = read_sketch(nodes, "a>b b>c", f"chains: {{way: {{through: {through}}}}}")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.bound.assumptions == (gap,)
+
+
+def test_of_equal_ways_the_one_with_an_unknown_figure_is_shown() -> None:
+    """By `b` nothing is added, by `c` nobody knows how much: 10 + 10 is the least that there is."""
+    nodes = {
+        "a": "period: 10 ms, wcet: 0 ms, bcet: 0 ms",
+        "b": "wcet: 0 ms",
+        "c": "",
+        "d": "period: 10 ms, wcet: 0 ms",
+    }
+    for wires in ("a>b a>c b>d c>d", "a>c a>b c>d b>d"):
+        model = read_sketch(nodes, wires, "chains: {way: {through: [a, d]}}")
+        (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+        assert (chain.through, show_ms(chain.bound)) == (
+            ("a", "c", "d"),
+            ">= 20 ?c [assuming a dedicated core]",
+        )
+
+
+def test_an_output_is_left_at_once() -> None:
+    """Two nodes do the work of `a`, each of which reads what both send: a chain that begins with the output leaves it at once,
+    10 + 1 + 2, one through the component may go from the one node to the other first, 10 more.
+    """
+    model = architecture("""
+groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/Empty}, inputs: {back: a.out}},
+  b: {inputs: {i: a.out}}}}}
+nodes:
+  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  b: {implements: b, timing: {wcet: 1 ms}}
+chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
+""")
+    chains = bound_all_chains(analyse_architecture(model), model)
+    assert [(chain.id, len(chain.through)) for chain in chains.values()] == [("output", 2), ("component", 3)]
+    # Two messages may wait for b at once: 2 ms.
+    assert [chain.bound.value for chain in chains.values()] == [13 * MS, 24 * MS]
+
+
+@pytest.mark.parametrize(
+    ("deadline", "margin", "is_late"),
+    [
+        # Bound are 10 + 1 + 2 = 13 ms. Half of 26 ms must stay free: 13 are left.
+        ("26 ms", Fraction(1, 2), False),
+        ("26 ms", Fraction(51, 100), True),
+        ("13 ms", Fraction(0), False),
+        ("13 ms", Fraction(1, 1000), True),
+        ("12.999 ms", Fraction(0), True),
+    ],
+)
+def test_a_margin_is_a_share_of_the_deadline(deadline: str, margin: Fraction, is_late: object) -> None:
+    nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": "wcet: 2 ms"}
+    model = read_sketch(nodes, "a>b", f"chains: {{way: {{through: [a, b], deadline: {deadline}}}}}")
+    missed = [late.chain.id for late in find_missed_chains(analyse_architecture(model), model, margin)]
+    assert missed == (["way"] if is_late else [])
+
+
+@pytest.mark.parametrize(
+    ("b", "c", "through", "bound"),
+    [
+        # 30 Hz is 33 1/3 ms, 29 Hz 34 14/29 ms: fractions are compared exactly.
+        ("rate: 30 Hz", "period: 33 ms", "b", Fraction(100, 3)),
+        ("rate: 30 Hz", "period: 34 ms", "c", 34),
+        ("rate: 30 Hz", "rate: 29 Hz", "c", Fraction(1000, 29)),
+        ("period: 33.333333 ms", "rate: 30 Hz", "c", Fraction(100, 3)),
+        # What has no bound outweighs everything else, whatever it is.
+        ("period: 1000 s", "behaviour: once", "c", None),
+    ],
+)
+def test_the_longer_of_two_ways_is_found(b: str, c: str, through: str, bound: Fraction | None) -> None:
+    nodes = {"a": "period: 1 ms", "b": b, "c": c, "d": "period: 1 ms"}
+    nodes = {name: f"{timing}, wcet: 0 ms, bcet: 0 ms" for name, timing in nodes.items()}
+    for wires in ("a>b a>c b>d c>d", "a>c a>b c>d b>d"):
+        model = read_sketch(nodes, wires, "chains: {way: {through: [a, d]}}")
+        (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+        assert chain.through == ("a", through, "d")
+        assert chain.bound.value == (None if bound is None else (1 + bound + 1) * MS)
+
+
+def test_a_gap_that_is_no_bound_is_not_told() -> None:
+    """What fires `r` is sent each 10 ms, and up to an unknown time later: that it reads `a` each 10 ms, nobody can say."""
+    nodes = {"a": "period: 5 ms, wcet: 1 ms, bcet: 1 ms", "dark": "period: 10 ms", "r": "trigger: [dark], wcet: 1 ms"}
+    model = read_sketch(nodes, "a>r dark>r", "chains: {way: {through: [a, r]}}")
+    analysis = analyse_architecture(model)
+    assert show_ms(analysis.paces["r"].gap) == ">= 10 ?dark"
+    (chain,) = bound_all_chains(analysis, model).values()
+    assert [term.why for term in chain.terms] == ["samples the world every 5 ms at the latest", "reads /g/a/out"]
+
+
+@pytest.mark.parametrize(
+    ("latency", "bound", "notes"),
+    [
+        # 1 kB takes 1 ms, twice as two readers each have a copy; what is written counts, be it nothing.
+        ("0 ms", 10 + 0 + 2, ["link lan keeps its written latency, though 2 ms of traffic can wait for it"]),
+        (
+            "1.9 ms",
+            10 + Fraction(19, 10) + 2,
+            ["link lan keeps its written latency, though 2 ms of traffic can wait for it"],
+        ),
+        ("2 ms", 10 + 2 + 2, ["queueing on link lan (up to 2 ms) is within its latency"]),
+    ],
+)
+def test_a_written_latency_counts_with_a_note_on_what_can_wait(latency: str, bound: Fraction, notes: list[str]) -> None:
+    nodes = {"a @p": "period: 10 ms, wcet: 0 ms, bcet: 0 ms", "b @q": "response: 2 ms", "c @q": "response: 2 ms"}
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}}\n"
+        f"links: {{lan: {{connects: [p, q], bandwidth: 8 Mbit/s, latency: {latency}}}}}\n"
+        "chains: {way: {through: [a, b]}}"
+    )
+    model = read_sketch(nodes, "a>b a>c", rest)
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.bound.value == bound * MS
+    assert [note for note in chain.bound.assumptions if "lan" in note] == notes
+
+
+def test_ways_that_meet_in_no_activity_are_no_way() -> None:
+    """`a` reaches `b` on the one node, and `c` is fed by `b` on the other: nothing passes between both."""
+    model = architecture("""
+groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/Empty}},
+  b: {inputs: {i: a.out}, outputs: {out: std_msgs/msg/Empty}},
+  c: {inputs: {i: b.out}}}}}
+nodes:
+  one: {implements: b, subscribes: {i: /g/a/out}, publishes: {out: /one}}
+  two: {implements: b, subscribes: {i: /nobody}, publishes: {out: /two}}
+  c: {implements: c, subscribes: {i: /two}}
+chains: {way: {through: [a, b, c], deadline: 1 s}}
+""")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert (show_ms(chain.bound), chain.verdict) == ("none ? [no way leads through all elements]", "open")
+
+
+def test_without_elements_or_activities_there_is_no_route() -> None:
+    network = CostNetwork.of_analysis(analyse_sketch({"a": "period: 10 ms", "b": "wcet: 1 ms"}, "a>b"))
+    a, b, gone = ChainPoint(("a",)), ChainPoint(("b",)), ChainPoint(())
+    assert lay_out_chain(network, ()) == ()
+    assert lay_out_chain(network, (a, gone)) == lay_out_chain(network, (gone, b)) == ()
+    assert len(lay_out_chain(network, (a, b))) == 2
+
+
+@pytest.mark.parametrize(
+    ("timing", "why"),
+    [
+        ("", "triggered by /g/a/out"),
+        ("every: 1", "triggered by /g/a/out"),
+        ("every: 2", "triggered by /g/a/out; fires only once for 2 triggers"),
+        ("throttle: 5 ms", "triggered by /g/a/out; keeps a smallest gap"),
+        ("jitter: 1 ms", "triggered by /g/a/out; starts late by its jitter"),
+        (
+            "every: 3, throttle: 5 ms, jitter: 1 ms",
+            "triggered by /g/a/out; fires only once for 3 triggers, keeps a smallest gap, starts late by its jitter",
+        ),
+    ],
+)
+def test_why_a_trigger_waits(timing: str, why: str) -> None:
+    nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": timing}
+    model = read_sketch(nodes, "a>b", "chains: {way: {through: [a, b]}}")
+    (chain,) = bound_all_chains(analyse_architecture(model), model).values()
+    assert chain.terms[1].why == why

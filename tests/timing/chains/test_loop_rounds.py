@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from archgen.timing.chains.chain_bounds import bound_all_chains, find_data_age
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.loop_rounds import find_loop_rounds
@@ -34,3 +36,16 @@ def test_data_of_an_event_is_the_newest_until_the_next_event_comes() -> None:
     age = find_data_age(network, from_event)
     assert (from_event.bound.value, age.value) == (ms(42).value, ms(42 + 105).value)
     assert find_data_age(network, from_world) == from_world.bound
+
+
+def test_the_shortest_round_leads_neither_outside_nor_along_an_answer() -> None:
+    """From `a` both `b` and `c` are one step away, so that `b > c` is no part of the shortest round; `d` is outside."""
+    names = ("a", "b", "c", "d")
+    links = [arc("a", "b"), arc("a", "d"), arc("a", "c"), arc("b", "c"), arc("c", "a")]
+    for answered, rounds in (((), ("a", "c", "a")), (("a>c",), ("a", "b", "c", "a"))):
+        arcs = [replace(one, role="answer") if f"{one.source}>{one.target}" in answered else one for one in links]
+        found = analysis(
+            [periodic(name, 10) for name in names], arcs, dict.fromkeys(names, 1), dict.fromkeys(names, 10)
+        )
+        (only,) = find_loop_rounds(CostNetwork.of_analysis(found))
+        assert (only.through, only.members) == (rounds, 3)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import pytest
+
 from archgen.project.observation_reading import read_observations
 from archgen.timing.analysis import EventPace
-from archgen.timing.chains.measured_comparison import compare_measured
+from archgen.timing.chains.measured_comparison import MeasuredComparison, compare_measured
 from archgen.timing.figures.timing_values import TimingValue
-from tests.timing.made import MS, analysis, arc, ms, periodic
+from tests.timing.made import MS, analysis, arc, event, ms, periodic
 
 YAML = """measured:
   cam:
@@ -124,3 +126,53 @@ def test_what_is_sent_at_most_so_often_may_come_as_rarely_as_it_likes() -> None:
     assert _verdicts(conditional, "{period: 80 ms}") == [
         ("period", "outlier", "faster than designed by more than 10 %")
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict", "ratio"),
+    [
+        # Designed are 10 Hz: up to a tenth more or less is as designed.
+        ("rate: 11 Hz", "as designed", Fraction(11, 10)),
+        ("rate: 11.001 Hz", "outlier", Fraction(11001, 10000)),
+        ("rate: 9 Hz", "as designed", Fraction(9, 10)),
+        ("rate: 8.999 Hz", "outlier", Fraction(8999, 10000)),
+        ("period: 110 ms", "as designed", Fraction(11, 10)),
+        ("period: 90 ms", "as designed", Fraction(9, 10)),
+        ("period: 111 ms", "outlier", Fraction(111, 100)),
+        ("period: 89 ms", "outlier", Fraction(89, 100)),
+        # A bound holds where it is just reached.
+        ("max_period: 100 ms", "as designed", 1),
+        ("max_period: 101 ms", "outlier", Fraction(101, 100)),
+        ("min_period: 95 ms", "as designed", 1),
+        ("min_period: 94 ms", "outlier", Fraction(94, 95)),
+        ("wcet: 10 ms", "as designed", 1),
+        ("wcet: 11 ms", "outlier", Fraction(11, 10)),
+        ("bcet: 5 ms", "as designed", 1),
+        ("bcet: 4 ms", "outlier", Fraction(4, 5)),
+        ("response: 20 ms", "as designed", 1),
+        ("response: 21 ms", "outlier", Fraction(21, 20)),
+    ],
+)
+def test_where_a_measured_figure_becomes_an_outlier(text: str, verdict: str, ratio: Fraction) -> None:
+    (row,) = _rows("cam", text)
+    assert (row.verdict, row.ratio) == (verdict, ratio)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["rate: 1 Hz", "period: 1 s", "max_period: 1 s", "min_period: 1 s", "wcet: 1 s", "bcet: 1 s", "response: 1 s"],
+)
+def test_beside_what_nobody_designed_stands_no_ratio(text: str) -> None:
+    (row,) = _rows("dark", text)
+    assert (row.verdict, row.ratio) == ("not designed", None)
+
+
+def _rows(name: str, text: str) -> tuple[MeasuredComparison, ...]:
+    """Compare one figure of `cam`, of which everything is designed, or of `dark`, of which nothing is."""
+    made = analysis([periodic("cam", 100, wcet=10 * MS, bcet=5 * MS), event("dark")], [], {"cam": 20}, {"cam": 100})
+    pace = EventPace("periodic", TimingValue(Fraction(10)), ms(100), distance=ms(95))
+    observed, problems = read_observations("run.yaml", f"measured: {{{name}: {{{text}}}}}\n")
+    assert not problems
+    compared, unknown = compare_measured(replace(made, paces={**made.paces, "cam": pace}), observed)
+    assert not unknown
+    return compared

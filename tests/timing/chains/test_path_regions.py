@@ -73,6 +73,20 @@ def test_of_parallel_arcs_the_extreme_one_counts() -> None:
     ]
 
 
+@pytest.mark.parametrize(("longest", "arcs"), [(True, (3,)), (False, (2,))])
+def test_the_extreme_one_counts_wherever_it_stands(longest: bool, arcs: tuple[int]) -> None:  # noqa: FBT001 - a parameter of the test
+    graph = _graph(2, [(0, 1, 5), (0, 1, 5), (0, 1, 3), (0, 1, 7), (0, 1, 4)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1]))]
+    assert [path.arcs for path in find_paths(graph, [0, 0], route, longest=longest).best_paths(9)] == [arcs]
+
+
+@pytest.mark.parametrize("longest", [True, False])
+def test_of_equal_parallel_arcs_the_first_one_is_named(longest: bool) -> None:  # noqa: FBT001 - a parameter of the test
+    graph = _graph(2, [(0, 1, 3), (0, 1, 3)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1]))]
+    assert [path.arcs for path in find_paths(graph, [0, 0], route, longest=longest).best_paths(9)] == [(0,)]
+
+
 def test_a_start_costs_what_its_vertex_costs() -> None:
     graph = _graph(3, [(0, 2, 1), (1, 2, 1)])
     route = [RouteRegion(frozenset([0, 1])), RouteRegion(frozenset([2]))]
@@ -156,3 +170,22 @@ def test_arcs_that_lead_back_are_cut_once() -> None:
     assert (nothing.hops, none) == ([[], [], [], []], ())
     part, arcs = cut_returns(_state_graph(LOOP, 4), [0, 1, 3])
     assert ([[hop.arc for hop in hops] for hops in part.hops], arcs) == ([[0], [], [], []], ())
+
+
+def test_an_arc_back_to_the_start_is_cut() -> None:
+    """0 > 1 > 2 is left; of the ring of 0 and 1 the arc that leads back to where the path began goes."""
+    cut, arcs = cut_returns(_state_graph(((0, 1, 1), (1, 0, 1), (1, 2, 1)), 3), range(3))
+    assert ([[hop.arc for hop in hops] for hops in cut.hops], arcs) == ([[0], [2], []], (1,))
+
+
+def test_an_arc_from_an_element_to_itself_is_no_step() -> None:
+    """1 is an end though an arc leads from it to itself, be it the first of all arcs."""
+    graph = _graph(3, [(1, 1, 9), (0, 1, 5), (0, 2, 1)])
+    route = [RouteRegion(frozenset([0]), inside=False), RouteRegion(frozenset([1, 2]))]
+    assert [path.arcs for path in find_paths(graph, [0] * 3, route, longest=True).best_paths(9)] == [(1,), (2,)]
+
+
+def test_from_what_regions_share_a_path_passes_over_what_may_be_skipped() -> None:
+    graph = _graph(4, [(0, 1, 4), (1, 2, 1), (1, 3, 7), (3, 2, 7)])
+    route = [RouteRegion(frozenset([0, 1])), RouteRegion(None, optional=True), RouteRegion(frozenset([1, 2]))]
+    assert [path.arcs for path in find_paths(graph, [0] * 4, route, longest=True).best_paths(9)] == [(0, 1)]

@@ -157,3 +157,11 @@ def test_an_element_is_named_where_a_figure_names_nothing() -> None:
     assert not name_missing_element(DIVERGED, "a").complete
     for value in (TWO, GONE, OVERLOAD, AT_LEAST, OPEN_AT_MOST):
         assert name_missing_element(value, "a") is value
+
+
+def test_the_smallest_may_be_nothing() -> None:
+    """Of bounds 0 is less than 1/2; of figures that may be larger the least is all that is known."""
+    bounds = (TimingValue(Fraction(1, 2)), TimingValue(Fraction(0)))
+    assert smallest_value(bounds).value == smallest_value(bounds[::-1]).value == 0
+    unsure = tuple(TimingValue(Fraction(figure), complete=False, side="at least") for figure in (5, 0))
+    assert smallest_value(unsure).value == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.timing.sketches import analyse_sketch, list_hosts, list_reasons, list_responses
 
 
@@ -275,3 +277,17 @@ def test_what_a_verdict_rests_on() -> None:
         "  hot (1) 0",
         "  cast 0",
     ]
+
+
+@pytest.mark.parametrize(
+    ("cores", "loads"),
+    [
+        # With one core there is nothing to pin; with two, one is kept for what is pinned to it.
+        ("cores: 1", ["  pc (1) 3/10"]),
+        ("", ["  pc (1) 3/10"]),
+        ("cores: 2", ["  pc core 0 (1) 1/10, pc (1) 1/5"]),
+    ],
+)
+def test_a_pin_needs_a_second_core(cores: str, loads: list[str]) -> None:
+    nodes = {"a @pc": "period: 10 ms, wcet: 1 ms, core: 0", "b @pc": "period: 10 ms, wcet: 2 ms"}
+    assert list_hosts(analyse_sketch(nodes, "", f"hosts: {{pc: {{{cores}}}}}"))[1:2] == loads

@@ -7,11 +7,16 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import response_times
+from archgen.timing.load import link_queueing, response_times
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_propagation import propagate_events
+from archgen.timing.load.event_streams import written_streams
 from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
 from archgen.timing.load.link_queueing import longest_queueing, settle_links
+from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
-from tests.timing.printed import show_ms
+from archgen.timing.system.trigger_graph import find_triggers
+from tests.timing.printed import MS, show_ms
 from tests.timing.sketches import analyse_sketch, read_sketch
 
 
@@ -105,3 +110,60 @@ def test_a_wait_of_more_than_twenty_seconds_is_not_given(bandwidth: str, respons
     analysis = analyse_sketch({"a @p": "period: 100 s, wcet: 0 ms, bcet: 0 ms", "b @q": "wcet: 0 ms"}, "a>b", rest)
     jitter = analysis.paces["b"].jitter
     assert show_ms(jitter) == (response or "none ?lan")
+
+
+def test_what_has_not_settled_in_so_many_turns_is_given_up_and_the_rest_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1 kB takes 8 ms on `lan` from the first turn on. That makes `b` 8 late, so that two of its messages, 4 ms each on `wan`, may
+    follow 2 ms apart: 8 ms instead of 4 from the second turn on.
+    """
+    nodes = {"a @p": "period: 10 ms, wcet: 0 ms", "b @q": "wcet: 0 ms", "c @r": "wcet: 0 ms"}
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}}\n"
+        "links: {lan: {connects: [p, q], bandwidth: 1 Mbit/s}, wan: {connects: [q, r], bandwidth: 2 Mbit/s}}"
+    )
+    for turns, jitters in ((24, ["0", "8", "16"]), (2, ["0", "8", "none ?wan"]), (1, ["0", "none ?lan", "none ?lan"])):
+        monkeypatch.setattr(link_queueing, "_MAX_TURNS", turns)
+        paces = analyse_sketch(nodes, "a>b b>c", rest).paces.values()
+        assert [show_ms(pace.jitter) for pace in paces] == jitters
+
+
+def test_one_budget_bounds_all_searches() -> None:
+    """Nothing may be looked at: no response is found, though 1 + 2 would do."""
+    nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "period: 10 ms, wcet: 2 ms"}
+    system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 1}}"))
+    for budget, causes in ((SearchBudget(0), ["diverged", "diverged"]), (None, [3, 3])):
+        state = propagate_events(system, find_triggers(system), budget)
+        found = [time.cause.notes[0] if time.value is None else time.value for time in state.responses.values()]
+        assert found == [cause if isinstance(cause, str) else cause * MS / system.tick for cause in causes]
+
+
+@pytest.mark.parametrize(
+    ("cores", "shares", "others", "causes"),
+    [
+        # In percent of a core. 80 + (20 + 20) / 2 fills one: no search is needed to know it; 19 and 20 + (80 + 19) / 2 do not.
+        (2, (80, 20, 20), 0, "unbounded diverged diverged"),
+        (2, (80, 20, 19), 0, "diverged diverged diverged"),
+        # 80 + (20 + 20 + 20) / 3; without 1 of it there is room left.
+        (3, (80, 20, 20, 20), 0, "unbounded diverged diverged diverged"),
+        (3, (79, 20, 20, 20), 0, "diverged diverged diverged diverged"),
+        # Two threads of a container on three cores: 50 + (50 + 30) / 2 + 30 / 3; one less, and there is room left.
+        (3, (50, 50, 30), 30, "unbounded unbounded diverged diverged"),
+        (3, (50, 50, 29), 30, "diverged diverged diverged diverged"),
+        (3, (50, 50, 30), 29, "diverged diverged diverged diverged"),
+    ],
+)
+def test_what_a_full_core_is_known_by_without_a_search(
+    cores: int, shares: tuple[int, ...], others: int, causes: str
+) -> None:
+    """Nothing may be searched here, so that whatever is not known to be full is given up."""
+    place = "+box" if others else "@pc"
+    nodes = {f"c{index} {place}": f"period: 100 ms, wcet: {share} ms" for index, share in enumerate(shares)}
+    nodes |= {"other @pc": f"period: 100 ms, wcet: {others} ms"} if others else {}
+    rest = f"hosts: {{pc: {{cores: {cores}}}}}\ncontainers: {{box: {{threads: 2, host: pc}}}}"
+    system, _ = build_system(read_sketch(nodes, "", rest))
+    (resource,) = find_resources(system)
+    event_models = {name: written_streams(activity) or () for name, activity in system.activities.items()}
+    found = response_times.find_responses(
+        system, resource, event_models, {}, response_times.AnalysisEffort(SearchBudget(0))
+    )
+    assert " ".join(response.cause.notes[0] for response in found.response_of.values()) == causes

@@ -20,6 +20,7 @@ from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
+from tests.timing.sketches import analyse_sketch
 from tests.timing.task_sets import MS, periodic, tasks, worst
 
 Derived = Callable[[str], Architecture]
@@ -292,3 +293,36 @@ def test_what_is_asked_for_responses_is_not_written_to(derived: Derived) -> None
     assert first.response_of
     again = AnalysisEffort(SearchBudget(), None, tuple(first.threads))
     assert find_responses(system, resource, state.event_models, state.responses, again).response_of == {}
+
+
+@pytest.mark.parametrize(
+    ("stale", "found"),
+    [
+        # What has another event model than before bears on itself and on what is less urgent; what has no priority waits
+        # for everything.
+        ("a", "a b c d"),
+        ("b", "b c d"),
+        ("c", "c d"),
+        ("d", "d"),
+        ("", "d"),
+        ("a c", "a b c d"),
+    ],
+)
+def test_only_what_something_stale_bears_on_is_looked_at_again(derived: Derived, stale: str, found: str) -> None:
+    rows = {name: periodic("10", "1") for name in "abc"} | {"d": periodic("10", "1", "jitter: 0 ms")}
+    system, _, state = settle_links(build_system(derived(tasks(rows)))[0])
+    (resource,) = find_resources(system)
+    effort = AnalysisEffort(SearchBudget(), frozenset(stale.split()))
+    again = find_responses(system, resource, state.event_models, state.responses, effort)
+    assert " ".join(sorted(again.response_of)) == found
+    assert all(again.response_of[name] == state.responses[name] for name in again.response_of)
+
+
+def test_the_order_in_which_elements_are_written_does_not_matter() -> None:
+    """1, 1 + 2, 1 + 2 + 4: whoever comes first in the files."""
+    timing = {"high": "wcet: 1 ms, priority: 9", "middle": "wcet: 2 ms, priority: 5", "low": "wcet: 4 ms, priority: 1"}
+    for names in permutations(timing):
+        nodes = {f"{name} @pc": f"period: 100 ms, {timing[name]}" for name in names}
+        responses = analyse_sketch(nodes, "", "hosts: {pc: {cores: 1}}").responses
+        found = {name: responses[name].worst.value for name in timing}
+        assert found == {"high": 1 * MS, "middle": 3 * MS, "low": 7 * MS}

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+
+from tests.timing.printed import show_ms
 from tests.timing.sketches import analyse_sketch, list_hosts, list_reasons, list_responses
 
 
@@ -325,3 +328,64 @@ def test_priorities_and_what_is_missing() -> None:
         "  idle (1) 3/10",
         "  m 0, n 1/5, o 0, p 1/10",
     ]
+
+
+@pytest.mark.parametrize(
+    ("priority", "response"),
+    [
+        # More urgent than all of the pool: 4 alone.
+        (8, "4"),
+        # As urgent as `a`: it lets pass what piled up while the pool's threads were held, 1 + 2 + 3 + 4; and so down to `c`.
+        (7, "10"),
+        (6, "10"),
+        (1, "10"),
+        # Below: all of them in any case.
+        (0, "10"),
+    ],
+)
+def test_who_is_as_urgent_as_some_member_of_a_crowded_container_waits_for_its_least(
+    priority: int, response: str
+) -> None:
+    nodes = {
+        "a +pool": "period: 100 ms, wcet: 1 ms, priority: 7",
+        "b +pool": "period: 100 ms, wcet: 2 ms, priority: 5",
+        "c +pool": "period: 100 ms, wcet: 3 ms, priority: 1",
+        "d @pc": f"period: 100 ms, wcet: 4 ms, priority: {priority}",
+    }
+    rest = "hosts: {pc: {cores: 1}}\ncontainers: {pool: {threads: 2, host: pc}}"
+    assert show_ms(analyse_sketch(nodes, "", rest).responses["d"].worst) == response
+
+
+@pytest.mark.parametrize(
+    ("threads", "responses"),
+    [
+        ("", ["1 [assuming a dedicated core] dedicated", "2 [assuming a dedicated core] dedicated"]),
+        ("threads: 2", ["1 [assuming a dedicated core] dedicated", "2 [assuming a dedicated core] dedicated"]),
+        ("threads: 1", ["3 [assuming a dedicated core for container box] executor"] * 2),
+    ],
+)
+def test_a_thread_for_each_member_needs_no_waiting(threads: str, responses: list[str]) -> None:
+    nodes = {"a +box": "period: 10 ms, wcet: 1 ms", "b +box": "period: 10 ms, wcet: 2 ms"}
+    analysis = analyse_sketch(nodes, "", f"containers: {{box: {{{threads}}}}}")
+    assert [f"{show_ms(time.worst)} {time.tier}" for time in analysis.responses.values()] == responses
+
+
+@pytest.mark.parametrize(
+    ("threads", "responses"),
+    [
+        # With a thread for each member, written or not, priorities alone count: 1, 1 + 2, 1 + 2 + 3.
+        ("", ["1", "3", "6"]),
+        ("threads: 3", ["1", "3", "6"]),
+        # With fewer, each may wait for one that the least urgent member holds.
+        ("threads: 2", ["6", "6", "6"]),
+        ("threads: 1", ["6", "6", "6"]),
+    ],
+)
+def test_members_wait_for_each_other_only_where_threads_are_fewer(threads: str, responses: list[str]) -> None:
+    nodes = {
+        "a +box": "period: 100 ms, wcet: 1 ms, priority: 3",
+        "b +box": "period: 100 ms, wcet: 2 ms, priority: 2",
+        "c +box": "period: 100 ms, wcet: 3 ms, priority: 1",
+    }
+    rest = f"hosts: {{pc: {{cores: 1}}}}\ncontainers: {{box: {{{threads and f'{threads}, '}host: pc}}}}"
+    assert [show_ms(time.worst) for time in analyse_sketch(nodes, "", rest).responses.values()] == responses

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
+from archgen.timing.analysis import LinkLoad
+from archgen.timing.rates import link_traffic
+from archgen.timing.run_analysis import analyse_architecture
+from tests.timing.printed import show, show_ms
+from tests.timing.random_systems import architecture
 from tests.timing.sketches import (
     analyse_sketch,
     list_edges,
@@ -226,3 +233,55 @@ def test_what_is_not_known_of_a_link() -> None:
         "l>m: loss 0, rereads 1, beat 0, queue none [unbounded]",
         "n1>m: loss 0, rereads 1, beat 0, queue none ?slow",
     ]
+
+
+@pytest.mark.parametrize(
+    ("jitter", "burst", "queueing"),
+    [
+        # 1 kB each 10 ms takes 2 ms. The next one may come with the first, or while it is sent: half of it is gone after 1 ms.
+        ("0 ms", "1000", "2"),
+        ("8 ms", "1000", "2"),
+        ("9 ms", "1500", "4"),
+        ("10 ms", "2000", "4"),
+        ("20 ms", "3000", "6"),
+        ("30 ms", "4000", "8"),
+        # Two at once, and the third half way through the first of them: 2000 - 500 + 1000.
+        ("19 ms", "2500", "6"),
+    ],
+)
+def test_what_can_wait_before_a_link(jitter: str, burst: str, queueing: str) -> None:
+    load = _load_of_link(jitter)
+    assert (show(load.burst), show_ms(load.queueing)) == (burst, queueing)
+
+
+def _load_of_link(jitter: str) -> LinkLoad:
+    nodes = {"a @p": f"period: 10 ms, jitter: {jitter}, wcet: 0 ms, bcet: 0 ms", "b @q": "period: 5 ms"}
+    rest = "hosts: {p: {}, q: {}}\nlinks: {lan: {connects: [p, q], bandwidth: 4 Mbit/s, latency: 50 ms}}"
+    return analyse_sketch(nodes, "a>b", rest).links["lan"]
+
+
+@pytest.mark.parametrize(("limit", "burst"), [(3, "3000"), (2, "none [diverged]")])
+def test_only_so_many_arrivals_are_followed(monkeypatch: pytest.MonkeyPatch, limit: int, burst: str) -> None:
+    """One at the start and two that may come at once; the next one finds nothing waiting."""
+    monkeypatch.setattr(link_traffic, "_MAX_ARRIVALS", limit)
+    assert show(_load_of_link("20 ms").burst) == burst
+
+
+@pytest.mark.parametrize(
+    ("timing", "size", "published"),
+    [
+        ("period: 1 s", ", size: 1 kB", "1000"),
+        ("period: 1 s", "", "none ?/g/a/out"),
+        # What is never sent any more is no traffic, of whatever size.
+        ("behaviour: once", ", size: 1 kB", "0"),
+        ("behaviour: once", "", "0"),
+        ("wcet: 1 ms", ", size: 1 kB", "none ?a"),
+    ],
+)
+def test_traffic_is_rate_times_size(timing: str, size: str, published: str) -> None:
+    text = f"""
+groups: {{g: {{components: {{a: {{outputs: {{out: Data}}}}}}}}}}
+nodes: {{a: {{implements: a, timing: {{{timing}}}}}}}
+types: {{Data: {{message: std_msgs/msg/String{size}}}}}
+"""
+    assert show(analyse_architecture(architecture(text)).topics["/g/a/out"].published) == published

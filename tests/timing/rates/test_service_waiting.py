@@ -104,3 +104,22 @@ def test_slow_service_adds_all_calls_of_an_activation(derived: Derived) -> None:
     callers["a"] = "period: 120 ms, calls: {help: 3}, wcet: 0 ms"
     architecture = derived(_text(callers, "timing: {wcet: 10 ms}"))
     assert not list(answer_times.slow_service(architecture, analyse_architecture(architecture), margin=Fraction(0)))
+
+
+def test_each_caller_waits_for_its_own_links_both_ways(derived: Derived) -> None:
+    """Two calls of 10 ms; to the other host and back another 1 ms each."""
+    text = """
+groups:
+  g:
+    components:
+      server: {outputs: {help: std_srvs/srv/Trigger}}
+      near: {inputs: {help: server.help}}
+      far: {inputs: {help: server.help}}
+nodes:
+  server: {implements: server, host: pc, timing: {wcet: 10 ms}}
+  near: {implements: near, host: pc, timing: {period: 1 s, wcet: 0 ms}}
+  far: {implements: far, host: other, timing: {period: 1 s, wcet: 0 ms}}
+hosts: {pc: {cores: 1}, other: {cores: 1}}
+links: {lan: {connects: [pc, other], latency: 1 ms}}
+"""
+    assert _waits(analyse_architecture(derived(text)).services["server"]) == {"near": 20, "far": 22}

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from archgen.timing.run_analysis import analyse_architecture
+from tests.timing.printed import show, show_ms
+from tests.timing.random_systems import architecture
 from tests.timing.sketches import (
     analyse_sketch,
     list_edges,
@@ -420,3 +423,120 @@ def test_conditional_outputs_and_promises() -> None:
         "dark>r4: loss 0, rereads 1, beat 0, queue none ?dark",
         "full>r5: loss 0, rereads 1, beat 0, queue none [unbounded]",
     ]
+
+
+UNFED = """
+groups: {g: {components: {
+  a: {outputs: {out: Data}},
+  start: {outputs: {out: Data}},
+  one: {inputs: {a: a.out, x: {type: Data, optional: true}}},
+  lone: {inputs: {x: {type: Data}}},
+  every: {inputs: {a: a.out, x: {type: Data, optional: true}}},
+  need: {inputs: {a: a.out, x: {type: Data}}},
+  kept: {inputs: {i: [start.out, a.out]}}}}}
+nodes:
+  a: {implements: a, timing: {period: 10 ms, wcet: 1 ms, bcet: 1 ms}}
+  start: {implements: start, timing: {behaviour: once, wcet: 1 ms}}
+  one: {implements: one, timing: {behaviour: event, trigger: [a, x], wcet: 1 ms, bcet: 1 ms}}
+  lone: {implements: lone, timing: {behaviour: event, trigger: [x], wcet: 1 ms}}
+  every: {implements: every, timing: {behaviour: event, trigger: {all: [a, x]}, wcet: 1 ms}}
+  need: {implements: need, timing: {behaviour: event, trigger: {all: [a, x]}, wcet: 1 ms}}
+  kept: {implements: kept, timing: {behaviour: event, trigger: {all: [i]}, wcet: 1 ms}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+
+
+def test_inputs_that_nothing_feeds_and_inputs_that_two_feed() -> None:
+    """How often an input without a source brings something, nobody knows: that leaves any-of open, whether it is optional or not.
+    All-of waits for ever, except for an optional input. What is kept from the start is renewed by the other source, which fires.
+    """
+    analysis = analyse_architecture(architecture(UNFED))
+    assert list_paces(analysis)[2:] == [
+        "one event inferred: >= 100 ?g.one.x Hz, gap 10, jitter none ?g.one.x, apart none ?g.one.x",
+        "lone event inferred: none ?g.lone.x Hz, gap none ?g.lone.x, jitter none ?g.lone.x, apart none ?g.lone.x",
+        "every event inferred: 100 Hz, gap 10, jitter 0, apart 10",
+        "need event inferred: 0 [never fires] Hz, gap none [unbounded], jitter 0, apart none [unbounded]",
+        "kept event inferred: 100 Hz, gap 10, jitter 0, apart 10",
+    ]
+    assert list_responses(analysis)[2:] == [
+        "one 1..>= 1 ?g.one.x [assuming a dedicated core] dedicated",
+        "lone none ?lone..>= 1 ?g.lone.x [assuming a dedicated core] dedicated",
+        "every none ?every..1 [assuming a dedicated core] dedicated",
+        "need none ?need..1 [assuming a dedicated core] dedicated",
+        "kept none ?kept..1 [assuming a dedicated core] dedicated",
+    ]
+    assert analysis.deadlocked == (("need",),)
+    # Two different sources need no topic beside their names.
+    assert [reason.text for reason in analysis.paces["kept"].reasons[2:]] == [
+        "g.kept.i brings 100 Hz from a, at most 10 ms apart",
+        "g.kept.i brings 0 Hz from start",
+    ]
+
+
+def test_two_outputs_of_one_source_on_one_input_are_told_apart_by_their_topics() -> None:
+    text = """
+groups: {g: {components: {
+  a: {outputs: {out: Data, more: Data}},
+  b: {outputs: {out: Data}},
+  r: {inputs: {i: [a.out, a.more, b.out]}}}}}
+nodes:
+  a: {implements: a, timing: {period: 10 ms, wcet: 1 ms, bcet: 1 ms}}
+  b: {implements: b, timing: {period: 20 ms, wcet: 1 ms, bcet: 1 ms}}
+  r: {implements: r, timing: {wcet: 1 ms}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    pace = analyse_architecture(architecture(text)).paces["r"]
+    assert sorted(reason.text for reason in pace.reasons) == [
+        "g.r.i brings 100 Hz from a on /g/a/more, at most 10 ms apart",
+        "g.r.i brings 100 Hz from a on /g/a/out, at most 10 ms apart",
+        "g.r.i brings 50 Hz from b on /g/b/out, at most 20 ms apart",
+    ]
+    assert (show(pace.rate), show_ms(pace.gap)) == ("250", "10")
+
+
+def test_a_ring_that_runs_for_ever_and_one_that_dies_out() -> None:
+    """Each event of `a` fires `b` and so another of `a`; of two in the other ring one is left, for how long nobody knows."""
+    analysis = analyse_sketch(
+        {
+            "s": "period: 10 ms, wcet: 1 ms",
+            "a": "wcet: 1 ms",
+            "b": "wcet: 1 ms",
+            "c": "every: 2, wcet: 1 ms",
+            "d": "wcet: 1 ms",
+        },
+        "s>a b>a a>b s>c d>c c>d",
+    )
+    assert {name: show(pace.rate) for name, pace in analysis.paces.items()} == {
+        "s": "100",
+        "a": "none [unbounded]",
+        "b": "none [unbounded]",
+        "c": "none ?c [a ring of triggers]",
+        "d": "none ?d [a ring of triggers]",
+    }
+
+
+def test_all_of_what_may_come_irregularly_is_an_upper_bound() -> None:
+    """The slower one counts; where it is not known that both come like clockwork, they may miss each other."""
+    analysis = analyse_sketch(
+        {
+            "fast": "period: 10 ms, wcet: 1 ms, bcet: 1 ms",
+            "slow": "period: 20 ms, wcet: 1 ms, bcet: 1 ms",
+            "loose": "period: 20 ms, wcet: 2 ms, bcet: 1 ms",
+            "shaky": "period: 20 ms, jitter: 1 ms, wcet: 1 ms, bcet: 1 ms",
+            "dark": "period: 20 ms",
+            "relay": "trigger: [dark], wcet: 1 ms, bcet: 1 ms",
+            "both": "trigger: {all: [fast, slow]}",
+            "late": "trigger: {all: [fast, loose]}",
+            "more": "trigger: {all: [fast, shaky]}",
+            "open": "trigger: {all: [fast, relay]}",
+            "alone": "trigger: {all: [relay]}",
+        },
+        "fast>both slow>both fast>late loose>late fast>more shaky>more dark>relay fast>open relay>open relay>alone",
+    )
+    assert {name: show(pace.rate) for name, pace in list(analysis.paces.items())[6:]} == {
+        "both": "50",
+        "late": "<= 50",
+        "more": "<= 50",
+        "open": "<= 50",
+        "alone": "50",
+    }

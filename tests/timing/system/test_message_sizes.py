@@ -206,6 +206,10 @@ def test_what_passes_between_writers_and_readers() -> None:
     types = {"Grams": ConceptualType("Grams", "demo_msgs/srv/Weigh", size=Quantity(Fraction(801, 2), "400.5 B"))}
     ask = message_sizes.make_writer_query(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))
 
+    assert message_sizes.make_size_query(Architecture(ProjectInfo("p", "P"), types=types, interfaces=held))(
+        "demo_msgs/srv/Weigh", "Grams"
+    ) == message_sizes.MessageSize(401, exact=True, why="written at the type `Grams`", written=True)
+
     def end(flow: FlowKind, message: str | None, type_: str | None = None) -> Endpoint:
         return Endpoint("n", "serves", "/x", flow, None, None, message, type_)
 
@@ -231,3 +235,16 @@ def test_a_topic_has_the_size_of_its_largest_sample() -> None:
     }
     found = message_sizes.find_topic_sizes(Architecture(ProjectInfo("p", "P"), topics=topics, interfaces=held))
     assert found == {"/a": 12, "/b": None, "/c": None}
+
+
+@pytest.mark.parametrize(
+    ("size", "text"),
+    [
+        (message_sizes.MessageSize(52, exact=True, why=""), "52 B (computed)"),
+        (message_sizes.MessageSize(52, exact=False, why=""), "at most 52 B (computed)"),
+        (message_sizes.MessageSize(52, exact=True, why="", written=True), "52 B"),
+        (message_sizes.MessageSize(None, exact=False, why=""), ""),
+    ],
+)
+def test_a_size_in_words(size: message_sizes.MessageSize, text: str) -> None:
+    assert str(size) == text

@@ -157,3 +157,55 @@ def test_figures_are_in_ticks() -> None:
         None,
         frozenset(),
     )
+
+
+def test_what_belongs_to_no_component_is_the_first_ones() -> None:
+    text = """
+groups: {g: {components: {a: {outputs: {out: Data}}, c: {outputs: {out: Data}}}}}
+nodes:
+  n: {implements: [a, c], internal: {publishes: {debug: {topic: ~/debug, message: std_msgs/msg/String}}}}
+  m: {internal: {subscribes: {debug: {topic: /n/debug, message: std_msgs/msg/String}}}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    system = _system(text)
+    assert {name: activity.outputs for name, activity in system.activities.items()} == {
+        "n.a": ("g.a.out", "/n/debug"),
+        "n.c": ("g.c.out",),
+        "m": (),
+    }
+    assert [(arc.source, arc.target, arc.topic) for arc in system.arcs] == [("n.a", "m", "/n/debug")]
+
+
+def test_an_arc_is_where_its_input_names_the_output_else_where_it_is_read() -> None:
+    """Both write on one topic, so that each reader has both; a node that nobody wrote reads at its input."""
+    text = """groups: {g: {components: {
+  a: {outputs: {out: Data}},
+  c: {outputs: {out: Data}},
+  b: {inputs: {x: a.out}},
+  d: {inputs: {x: c.out}}}}}
+nodes:
+  a: {implements: a, publishes: {out: {topic: /t}}}
+  c: {implements: c, publishes: {out: {topic: /t}}}
+  d: {implements: d, subscribes: {x: {topic: /t}}}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    assert [f"{arc.source}>{arc.target} {arc.at.line}:{arc.at.column}" for arc in _system(text).arcs] == [
+        "a>d 9:35",
+        "c>d 5:19",
+        "a>b 4:19",
+        "c>b 4:16",
+    ]
+
+
+def test_an_activity_is_where_its_timing_is_written_else_its_node_else_its_component() -> None:
+    text = """groups: {g: {components: {
+  a: {outputs: {out: Data}},
+  b: {inputs: {x: a.out}, timing: {period: 10 ms}},
+  c: {inputs: {x: a.out}}}}}
+nodes:
+  c: {implements: c}
+  d: {}
+types: {Data: {message: std_msgs/msg/String, size: 1 kB}}
+"""
+    places = {name: f"{activity.at.line}:{activity.at.column}" for name, activity in _system(text).activities.items()}
+    assert places == {"a": "2:3", "b": "3:27", "c": "6:3", "d": "7:3"}

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
+
 from archgen.diagnostics.source_span import Span
 from archgen.timing.analysis import ChainTerm, EventPace, Reason
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, group_arcs
+from archgen.timing.system.system_builder import build_system
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, group_arcs, is_selective_arc
+from tests.timing.sketches import read_sketch
 
 HERE = Span("a.yaml", 3, 4, 3, 9)
 
@@ -53,3 +57,35 @@ def test_a_reason_is_put_into_words_when_it_is_asked() -> None:
     assert Reason("{0} {1} {2} {3}", HERE, arguments).text == "cam 3 1.5 ms 20 Hz"
     assert Reason("{0} stays").text == "{0} stays"
     assert EventPace(None).inferred
+
+
+@pytest.mark.parametrize(
+    ("wires", "timing", "selective"),
+    [
+        # Fewer than one call in each activation may be none in this one.
+        ("a?s", "calls: {s: 0.5}", "request"),
+        ("a?s", "calls: {s: 1}", ""),
+        ("a?s", "", ""),
+        # A server that somebody else calls as well answers this one not each time; nor does one that has a clock.
+        ("a?s b?s", "", "answer"),
+        ("a?k", "", "answer"),
+        # What a server only reads does not activate it; what fires it does.
+        ("a?s b>s", "", ""),
+        ("a?e b>e", "", "answer"),
+        # A condition without a promise.
+        ("a>b", "outputs: {out: {conditional: true}}", "data"),
+        ("a>b", "outputs: {out: {conditional: true, max_gap: 1 s}}", ""),
+        ("a>b", "", ""),
+    ],
+)
+def test_what_an_activation_may_not_send(wires: str, timing: str, selective: str) -> None:
+    nodes = {
+        "a": f"period: 10 ms{timing and ', '}{timing}",
+        "b": "period: 20 ms",
+        "s": "wcet: 1 ms",
+        "k": "period: 5 ms",
+        "e": "behaviour: event, wcet: 1 ms",
+    }
+    system, _ = build_system(read_sketch(nodes, wires))
+    found = [arc.role for arc in system.arcs if "a" in {arc.source, arc.target} and is_selective_arc(system, arc)]
+    assert " ".join(found) == selective

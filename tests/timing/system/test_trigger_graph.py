@@ -51,6 +51,16 @@ PERIODIC, ANY, EVENT = "period: 10 ms", "", "behaviour: event"
         ),
         ({"a": "trigger: {all: [b]}", "b": "trigger: {all: [a]}"}, "b>a a>b", "", "a b", "a b", "a b", ""),
         ({"a": "trigger: {all: [a]}"}, "a>a", "", "a", "a", "a", ""),
+        # What waits for a ring that never starts is no part of it, even where it is in a ring with what does fire.
+        (
+            {"t": PERIODIC, "a": "trigger: {all: [b, d]}", "b": ANY, "d": "trigger: {all: [d]}"},
+            "t>b a>b b>a d>a d>d",
+            "",
+            "d",
+            "d",
+            "a d",
+            "a:b",
+        ),
         # An input that nothing feeds: all-of waits for ever, unless the input is optional or fed from outside.
         ({"s": PERIODIC, "a": "trigger: {all: [s, x]}", "b": ANY}, "s>a x>a a>b", "", "", "", "", ""),
         ({"s": PERIODIC, "a": EVENT}, "s>a", "", "", "", "", ""),
