@@ -194,7 +194,7 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
     `own_digests` is complete only when the generator is exhausted. Links are never followed.
     """
     manifest_paths = {path for _, path in manifest}
-    for path in _walk_folder(folder, ""):
+    for path in list_files_below(folder):
         full_path = folder / path
         # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
         if path in manifest_paths and stat.S_ISREG(full_path.lstat().st_mode):
@@ -206,17 +206,20 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
             yield path
 
 
-def _walk_folder(folder: Path, prefix: str) -> Iterator[str]:
+def list_files_below(folder: Path) -> Iterator[str]:
     """Yield everything below that is not a folder, as relative paths in order. A link counts as a file."""
-    if not folder.is_dir():
-        return
-    with os.scandir(folder) as entries:
-        sorted_entries = sorted(entries, key=lambda entry: entry.name)
-    for entry in sorted_entries:
-        if entry.is_dir(follow_symlinks=False):
-            yield from _walk_folder(folder / entry.name, f"{prefix}{entry.name}/")
-        else:
-            yield prefix + entry.name
+    # A stack, not a recursion: folders may nest deeper than Python calls.
+    pending_paths = [""] if folder.is_dir() else []
+    while pending_paths:
+        path = pending_paths.pop()
+        if path and not path.endswith("/"):
+            yield path
+            continue
+        with os.scandir(folder / path) as entries:
+            sorted_entries = sorted(entries, key=lambda entry: entry.name, reverse=True)
+        pending_paths += [
+            f"{path}{entry.name}{'/' if entry.is_dir(follow_symlinks=False) else ''}" for entry in sorted_entries
+        ]
 
 
 def _read_tree_manifest(folder: Path) -> set[tuple[str, str]]:

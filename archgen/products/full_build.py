@@ -5,7 +5,7 @@ What takes long runs side by side, and what nothing changed of is not made again
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,13 +15,14 @@ from archgen.products.backend_products import choose_backends, make_backend_prod
 from archgen.products.product_inputs import Product, ProductInputs
 from archgen.products.product_table import PRODUCTS, REPORT
 from archgen.products.product_writing import StartedProducts, start_products, write_started
+from archgen.products.trusted_backends import TrustedRevision
 
 
 def choose_products(
     checked_project: CheckedProject,
     only_names: Sequence[str] = (),
     backend_names: Sequence[str] = (),
-    allowed_backends: Collection[str] | None = None,
+    trusted_revision: TrustedRevision | None = None,
 ) -> tuple[Product, ...]:
     """Return what a build makes, in its order: all products or only the named ones, then the backends.
 
@@ -31,8 +32,8 @@ def choose_products(
     products = [product for name, product in PRODUCTS.items() if name in only_names or not only_names]
     named_backends = [name for name in only_names if name not in PRODUCTS]
     backends = (
-        *choose_backends(checked_project, named_backends, "documents", allowed_backends, other_outputs=PRODUCTS),
-        *choose_backends(checked_project, backend_names, "documents", allowed_backends),
+        *choose_backends(checked_project, named_backends, "documents", trusted_revision, other_outputs=PRODUCTS),
+        *choose_backends(checked_project, backend_names, "documents", trusted_revision),
     )
     # The same backend may be named in both ways.
     return (*products, *(make_backend_product(backend) for backend in {each.id: each for each in backends}.values()))
