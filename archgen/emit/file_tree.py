@@ -20,6 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from archgen.emit.safe_names import is_safe_path
+from archgen.emit.written_formats import explain_refusal
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
@@ -94,11 +95,17 @@ def write_tree(files: FileTree, folder: Path) -> WriteResult:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed."""
+    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed.
+
+    Raise OutputError where it would replace what archgen did not write in this format.
+    """
     with _explain_os_errors(path):
         if path.exists() and not path.is_file():
             msg = f"{path} is not a regular file"
             raise OutputError(msg, "give the name of a file with `-o`")
+        refusal = explain_refusal(path, data) if path.exists() else ""
+        if refusal:
+            raise OutputError(refusal, "nothing was changed; give another name with `-o`, or move that file away")
         path.parent.mkdir(parents=True, exist_ok=True)
         staging_folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
         try:
