@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject
 from archgen.products import build_stamp, project_views, report_cache
 from archgen.products.backend_products import choose_backends, make_backend_product
@@ -47,7 +48,8 @@ def build_outputs(
 ) -> None:
     """Write products below a folder, and announce the path of each as soon as it is there.
 
-    A product that is there already, from the same inputs, is not made again.
+    A product that is there already, from the same inputs, is not made again. Where one cannot be made or written, all others
+    are, and OutputError is raised in the end.
     """
     # Settled once: git is asked a single time, and the stamps depend on the revision that is printed.
     revision = project_views.choose_revision(inputs.checked_project, inputs.options)
@@ -66,15 +68,23 @@ def build_outputs(
     }
     started_products = start_products(inputs, [product for product in products if product.name not in fresh_names])
     # From here on files appear: all views are made and all pictures are drawn.
+    failures: list[OutputError] = []
     for product in products:
         place = target / product.part
-        if product.name in fresh_names:
-            is_there = place.exists()
-        else:
-            is_there = _write_and_stamp(inputs, started_products, product, place, stamp_keys.get(product.name))
+        try:
+            is_there = (
+                place.exists()
+                if product.name in fresh_names
+                else _write_and_stamp(inputs, started_products, product, place, stamp_keys.get(product.name))
+            )
+        except OutputError as error:
+            failures.append(error)
+            continue
         # Where nothing can be drawn, there are no diagrams.
         if is_there:
             announce(place / product.entry_file)
+    if failures:
+        raise OutputError("; ".join(dict.fromkeys(error.message for error in failures)), failures[0].help)
 
 
 def _write_and_stamp(

@@ -171,3 +171,13 @@ def test_a_review_makes_the_rest_and_says_which_backend_is_missing(run: Run, tmp
     assert "warning: the project's own backend `mine` is not run here: it differs from the one in `main`" in ran.err
     assert {path.name for path in (tmp_path / "out/outputs").iterdir()} >= {"site", "report.docx", "wiki"}
     assert not (tmp_path / "out/outputs/mine").exists()
+
+
+@pytest.mark.parametrize("template", ["{{ '\\ud800' }}", "{{ nobody }}"])
+def test_a_mistake_in_a_backend_costs_its_own_output_alone(run: Run, tmp_path: Path, template: str) -> None:
+    folder = repositories.repository(tmp_path / "robot", {**ALLOWED, "backends/mine/templates/t.txt.j2": template})
+    words = ("--only", "packed", "--backend", "mine", "--backend", "wiki")
+    ran = run("build", folder, "-o", tmp_path / "out", *words)
+    assert ran.status == 2
+    assert ran.err.startswith("Error: backends/mine/templates/t.txt.j2:1:1: the backend `mine` fails: ")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"packed.yaml", "wiki"}

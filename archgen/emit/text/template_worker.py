@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import posixpath
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -23,7 +24,16 @@ from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_fil
 from archgen.emit.text.template_limits import TemplateLimits, confine_process
 
 _MAX_TEMPLATE_BYTES = 1_000_000
+_MAX_PATH_LENGTH = 1_000
+_MAX_PATH_FOLDERS = 50
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
+_MAX_OBJECT_NAME = 200
+_MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]{6,16}(?:>|&gt;|, file )", re.IGNORECASE)
+_OBJECT_START = re.compile(
+    r"(?:<|&lt;)(function .*|(?:bound|built-in) method .*|(?:generator|code) object .*|[\w.]+ object)\Z",
+    re.IGNORECASE | re.DOTALL,
+)
+"""How Python prints what is no data (`<generator object sync_do_map at 0x7f3a>`), with its place in memory."""
 
 
 class TemplateBoundError(Exception):
@@ -58,6 +68,7 @@ def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> Im
         loader=TemplateLoader(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
         undefined=StrictUndefined,
+        finalize=_refuse_printed_objects,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -69,6 +80,17 @@ def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> Im
     del sandbox.globals["lipsum"]
     del sandbox.filters["random"]
     return sandbox
+
+
+def _refuse_printed_objects(value: object) -> object:
+    """Return what a template prints, unless it is a function or the like: its place in memory is another in each run."""
+    text = value if isinstance(value, str) else "" if isinstance(value, int) else str(value)
+    for address in _MEMORY_ADDRESS.finditer(text):
+        printed_object = _OBJECT_START.search(text, max(0, address.start() - _MAX_OBJECT_NAME), address.start())
+        if printed_object:
+            msg = f"it prints what is no text: a {printed_object[1]}; a function is called with `()`, a list is made with `|list`"
+            raise TemplateBoundError(msg)
+    return value
 
 
 def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
@@ -102,6 +124,8 @@ def _describe_error(error: Exception, limits: TemplateLimits) -> str:
             message = "its templates call each other without end"
         case UnicodeDecodeError():
             message = "it is not UTF-8 text"
+        case UnicodeEncodeError():
+            message = f"it prints half a character (U+{ord(error.object[error.start]):04X}), which no file can hold"
         case TemplateBoundError() | TemplateError():
             message = str(error)
         case _:
@@ -128,6 +152,7 @@ def _render_files(
         values = {**request["data"], "options": request["options"], "path": path, "item": item, "key": key}
         text = _render_bounded(sandbox.get_template(template), {**values, "href": _make_href(path, paths)}, remaining)
         remaining -= len(text)
+        text.encode()  # half a character is a mistake of this template
         yield path, text
 
 
@@ -142,11 +167,14 @@ def _plan_files(
     for file in request["files"]:
         current_template["template"] = file["template"]
         sandbox.get_template(file["template"])
+        # What is wrong from here on is the manifest's mistake.
+        current_template.clear()
         path_template = sandbox.from_string(file["path"])
         for key, item in _select_items(request["data"], file):
             path = make_safe_path(
                 path_template.render(**request["data"], options=request["options"], item=item, key=key)
             )
+            _check_path_size(path)
             stem, ending = posixpath.splitext(path)
             number = 2
             while path in taken_paths:
@@ -156,6 +184,15 @@ def _plan_files(
                 msg = f"it writes more than {limits.files} files"
                 raise TemplateBoundError(msg)
             yield path, file["template"], item, key
+
+
+def _check_path_size(path: str) -> None:
+    """Refuse a path that no file system takes below any folder."""
+    folder_count = path.count("/")
+    if len(path) > _MAX_PATH_LENGTH or folder_count > _MAX_PATH_FOLDERS:
+        msg = f"the path `{path[:40]}...` has {folder_count:,} folders and {len(path):,} characters; it may have "
+        msg += f"{_MAX_PATH_FOLDERS} and {_MAX_PATH_LENGTH:,}"
+        raise TemplateBoundError(msg)
 
 
 def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[Any, Any]]:
