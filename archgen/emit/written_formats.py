@@ -107,8 +107,8 @@ def _is_text(stream: BinaryIO) -> bool:
     stream.seek(0)
     head = stream.read(_EDGE_BYTES)
     try:
-        # Not final: the last character may be cut.
-        codecs.getincrementaldecoder("utf-8")().decode(head)
+        # The last character of a longer file may be cut.
+        codecs.getincrementaldecoder("utf-8")().decode(head, final=len(head) < _EDGE_BYTES)
     except UnicodeDecodeError:
         return False
     return not _BINARY_BYTE.search(head)
