@@ -9,6 +9,7 @@ from __future__ import annotations
 import codecs
 import io
 import re
+import struct
 import zipfile
 from pathlib import Path
 from typing import BinaryIO
@@ -20,7 +21,10 @@ PROGRAM_NAME = "archgen"
 PROGRAM_PART = "docProps/app.xml"
 _EDGE_BYTES = 4096
 """All marks stand within so many bytes at the beginning or the end of a file."""
-_MAX_ZIP_BYTES = 400_000_000
+_MAX_ZIP_LIST = 4_000_000
+"""Bytes of a zip's list of files: 40,000 files, so that no list of millions is brought into memory."""
+_ZIP_END = struct.Struct("<20sL8sL6s")
+"""The end of a zip without a comment: before it stands another mark if it is a large one; the list's size."""
 _HEAD_MARKS = tuple(
     (name, re.compile(pattern))
     for name, pattern in (
@@ -44,6 +48,7 @@ _HEAD_MARKS = tuple(
         ("JUnit list of findings", rb'<\?xml[^>]*>\s*<testsuites name="archgen"'),
     )
 )
+_ZIP_SIGNATURE = int.from_bytes(b"PK\x05\x06", "little")
 _BINARY_BYTE = re.compile(rb"[\0-\x08\x0e-\x1a\x1c-\x1f]")
 _COMPARISON_END = re.compile(
     rb"(?m)^(?:no changes(?: in what could be read)?$|\d+ changes?(?:[,;]| \(|$)|no change breaks another partner$"
@@ -83,9 +88,11 @@ def name_written_format(stream: BinaryIO) -> str | None:
 
 def _has_program_name(stream: BinaryIO) -> bool:
     """Whether a Word document says that archgen wrote it, and no other program saved it since."""
-    if stream.seek(0, io.SEEK_END) > _MAX_ZIP_BYTES:
-        return False
     try:
+        stream.seek(-_ZIP_END.size, io.SEEK_END)
+        before, signature, _, list_size, _ = _ZIP_END.unpack(stream.read(_ZIP_END.size))
+        if before.startswith(b"PK\x06\x07") or signature != _ZIP_SIGNATURE or list_size > _MAX_ZIP_LIST:
+            return False
         with zipfile.ZipFile(stream) as archive, archive.open(PROGRAM_PART) as part:
             return f"<Application>{PROGRAM_NAME}</Application>".encode() in part.read(_EDGE_BYTES)
     # Whatever is wrong with the file, archgen did not write it.
@@ -96,6 +103,7 @@ def _has_program_name(stream: BinaryIO) -> bool:
         RuntimeError,
         NotImplementedError,
         EOFError,
+        struct.error,
         zipfile.BadZipFile,
         zipfile.error,
     ):

@@ -129,7 +129,11 @@ class _BatchProcess:
 
         Windows cannot wait for a pipe with a limit of time.
         """
-        if os.name != "nt" and not select.select([source], [], [], ANSWER_SECONDS)[0]:
+        if not hasattr(select, "poll"):
+            return
+        waiting = select.poll()  # `select.select` takes no descriptor above 1,023
+        waiting.register(source, select.POLLIN)
+        if not waiting.poll(ANSWER_SECONDS * 1000):
             if self._process:
                 self._process.kill()
             msg = f"git does not answer: an object of the repository could not be read within {ANSWER_SECONDS} s"

@@ -19,13 +19,11 @@ from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, T
 from jinja2.loaders import BaseLoader
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from archgen.emit.safe_names import is_safe_path, make_safe_path
+from archgen.emit.safe_names import explain_long_path, is_safe_path, make_safe_path
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
 from archgen.emit.text.template_limits import TemplateLimits, confine_process
 
 _MAX_TEMPLATE_BYTES = 1_000_000
-_MAX_PATH_LENGTH = 1_000
-_MAX_PATH_FOLDERS = 50
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
 _MAX_OBJECT_NAME = 200
 _MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]{6,16}(?:>|&gt;|, file )", re.IGNORECASE)
@@ -174,7 +172,9 @@ def _plan_files(
             path = make_safe_path(
                 path_template.render(**request["data"], options=request["options"], item=item, key=key)
             )
-            _check_path_size(path)
+            excess = explain_long_path(path)
+            if excess:
+                raise TemplateBoundError(excess)
             stem, ending = posixpath.splitext(path)
             number = 2
             while path in taken_paths:
@@ -184,15 +184,6 @@ def _plan_files(
                 msg = f"it writes more than {limits.files} files"
                 raise TemplateBoundError(msg)
             yield path, file["template"], item, key
-
-
-def _check_path_size(path: str) -> None:
-    """Refuse a path that no file system takes below any folder."""
-    folder_count = path.count("/")
-    if len(path) > _MAX_PATH_LENGTH or folder_count > _MAX_PATH_FOLDERS:
-        msg = f"the path `{path[:40]}...` has {folder_count:,} folders and {len(path):,} characters; it may have "
-        msg += f"{_MAX_PATH_FOLDERS} and {_MAX_PATH_LENGTH:,}"
-        raise TemplateBoundError(msg)
 
 
 def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[Any, Any]]:
