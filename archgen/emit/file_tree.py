@@ -24,6 +24,9 @@ from archgen.emit.written_formats import explain_refusal
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
+_MAX_FILE_BYTES = 1_000_000_000
+_MAX_MANIFEST_BYTES = 64_000_000
+"""More than the manifest of 500,000 files has."""
 _FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave behind. It is nobody's work, so it is no obstacle."""
 
@@ -132,6 +135,14 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
     return hashlib.sha256(manifest_path.read_bytes()).hexdigest() if manifest_path.is_file() else None
 
 
+def digest_file(path: Path) -> str | None:
+    """Digest a file; None for one that is larger than any of archgen's, which a branch may put in their place."""
+    if path.stat().st_size > _MAX_FILE_BYTES:
+        return None
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
 def _replace_files(
     folder: Path,
     changed: Mapping[str, bytes],
@@ -205,8 +216,8 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
         full_path = folder / path
         # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
         if path in manifest_paths and stat.S_ISREG(full_path.lstat().st_mode):
-            digest = hashlib.sha256(full_path.read_bytes()).hexdigest()
-            if (digest, path) in manifest:
+            digest = digest_file(full_path)
+            if digest and (digest, path) in manifest:
                 own_digests[path] = digest
                 continue
         if path != TREE_MANIFEST and full_path.name not in _FILE_MANAGER_DEBRIS:
@@ -232,7 +243,8 @@ def list_files_below(folder: Path) -> Iterator[str]:
 def _read_tree_manifest(folder: Path) -> set[tuple[str, str]]:
     """Read the (digest, path) pairs of a manifest. Lines that are none are skipped: what they claim is then foreign."""
     manifest_path = folder / TREE_MANIFEST
-    if manifest_path.is_symlink() or not manifest_path.is_file():
+    # One that is too large is none of archgen's.
+    if manifest_path.is_symlink() or not manifest_path.is_file() or manifest_path.stat().st_size > _MAX_MANIFEST_BYTES:
         return set()
     lines = manifest_path.read_text("utf-8", "replace").splitlines()
     pairs = (line.partition("  ") for line in lines if not line.startswith("#"))
