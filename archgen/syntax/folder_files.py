@@ -59,6 +59,13 @@ class FolderFiles:
             return FileRefusal(_describe_read_error(full_path, error))
 
 
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link that leads round in a circle
+        return False
+
+
 def _list_folder(folder: Path) -> tuple[list[str], list[str], set[str]]:
     """Return the names of the folders, of the files, and of those that are links; none of a folder that cannot be read."""
     folders: list[str] = []
@@ -67,7 +74,7 @@ def _list_folder(folder: Path) -> tuple[list[str], list[str], set[str]]:
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
-                (folders if entry.is_dir() else file_names).append(entry.name)
+                (folders if _is_folder(entry) else file_names).append(entry.name)
                 if entry.is_symlink():
                     links.add(entry.name)
     except OSError:
