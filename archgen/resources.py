@@ -8,8 +8,13 @@ from pathlib import Path
 REPOSITORY = "archgen/archgen"
 """Where archgen will be published on GitHub: the one place for this name, from which every other is made or tested."""
 HOME_URL = f"https://github.com/{REPOSITORY}"
-_WORKER_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH", "SYSTEMROOT")
-"""What an interpreter needs to start and to find its libraries as this one did."""
+_WORKER_VARIABLES = (
+    # Where this interpreter found its modules, the libraries of Graphviz and XML among them, a worker finds them, too.
+    *("PYTHONPATH", "PYTHONHOME"),
+    # Where it found shared libraries: on Linux, on macOS, and on Windows.
+    *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FALLBACK_LIBRARY_PATH", "SYSTEMROOT"),
+)
+"""What an interpreter needs to start and to find its libraries as this one did; nobody keeps a secret in them."""
 _PACKAGE_FOLDER = Path(__file__).resolve().parent
 
 

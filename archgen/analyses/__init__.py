@@ -33,15 +33,16 @@ from archgen.analyses import (
     trigger_cycles,
     type_mapping,
 )
-from archgen.diagnostics.diagnostic import Rule
+from archgen.diagnostics.diagnostic import Diagnostic, Rule
 from archgen.diagnostics.rule_options import read_option_values
+from archgen.diagnostics.source_span import Span
 from archgen.timing.run_analysis import AnalysisMemory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from fractions import Fraction
 
-    from archgen.diagnostics.diagnostic import Diagnostic, Severity
+    from archgen.diagnostics.diagnostic import Severity
     from archgen.diagnostics.rule_options import OptionValues, RuleOption
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis
@@ -88,6 +89,11 @@ RULES: tuple[Rule, ...] = tuple(Rule.from_function(*entry) for entry in (*_RULE_
 """All rules that judge an architecture, in the order in which they run."""
 
 
+MAX_LOOKED_FOR = 20_000
+"""Findings of one rule that are looked for: 1,000 policies over 300 connections have 300,000, and take seconds to sort."""
+NO_LONGER_LOOKED_FOR = f"this rule has more than {MAX_LOOKED_FOR:,} findings: from here on none is looked for"
+
+
 def analyse_timing(architecture: Architecture, memory: AnalysisMemory) -> Analysis | None:
     """Return the timing analysis that the rules judge, None where the architecture has no `timing`."""
     # Without any `timing` these rules have nothing to find, and the timing analysis need not run.
@@ -104,10 +110,23 @@ def check_architecture(
     `analysis` is the timing analysis, `rule_options` are the options that the project sets, by rule.
     """
     for entry in _RULE_FUNCTIONS:
-        yield from entry[0](architecture, **_option_arguments(entry, rule_options))
+        yield from _bound_findings(entry[0](architecture, **_option_arguments(entry, rule_options)))
     if analysis is not None:
         for timing_entry in _TIMING_RULE_FUNCTIONS:
-            yield from timing_entry[0](architecture, analysis, **_option_arguments(timing_entry, rule_options))
+            yield from _bound_findings(
+                timing_entry[0](architecture, analysis, **_option_arguments(timing_entry, rule_options))
+            )
+
+
+def _bound_findings(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Yield the findings of one rule; at the bound one that says so, which silencing all others does not silence."""
+    for number, finding in enumerate(findings):
+        if number == MAX_LOOKED_FOR:
+            # About the file as a whole: a comment at one of its lines is not about this.
+            place = Span.of_file(finding.span.file)
+            yield Diagnostic(finding.rule, NO_LONGER_LOOKED_FOR, place, finding.severity, help="mend some first")
+            return
+        yield finding
 
 
 def _option_arguments(entry: RuleEntry, rule_options: Mapping[str, OptionValues]) -> dict[str, Fraction]:

@@ -65,7 +65,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = "--only takes the names of outputs, separated by commas"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    allowed_backends = command_support.read_allowed_backends(project, trust)
+    trusted_revision = command_support.read_trusted_revision(project, trust)
     output_options = OutputOptions(
         command_support.select_or_exit(checked_project, select),
         select or "",
@@ -74,11 +74,11 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.make_progress_printer(),
         command_support.print_warning,
         history,
-        allowed_backends,
+        trusted_revision,
     )
     target = output or checked_project.output_folder
     with command_support.explain_write_errors():
-        products = choose_products(checked_project, only_names, backend, allowed_backends)
+        products = choose_products(checked_project, only_names, backend, trusted_revision)
         inputs = ProductInputs(checked_project, output_options, template)
         build_outputs(inputs, products, target, command_support.print_written)
     counts = command_support.count_findings(checked_project.findings)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
+    from archgen.products.trusted_backends import TrustedRevision
 
 
 def check_or_exit(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -32,21 +33,15 @@ def check_or_exit(project: Path | None, version_cache: VersionCache | None = Non
         raise click.UsageError(str(error)) from None
 
 
-def read_allowed_backends(project: Path | None, revision: str | None) -> tuple[str, ...] | None:
-    """Return the project's own backends that a revision allows to run in a review; None if no revision is given: all
-    may.
-    """
-    from archgen import git, pipeline
-    from archgen.project import NotAtRevisionError
+def read_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
+    """Read what a revision says about the project's own backends; None if none is given: then all may run."""
+    from archgen import git
+    from archgen.products import trusted_backends
 
     if not revision:
         return None
     try:
-        # The main line decides: the branch under review must not allow its own templates to run.
-        return pipeline.check_at_revision(project, revision).architecture.review.backends
-    # A project that is new in this branch: nothing is allowed yet.
-    except NotAtRevisionError:
-        return ()
+        return trusted_backends.read_trusted_revision(project, revision)
     except git.GitError as error:
         raise click.UsageError(str(error)) from None
 

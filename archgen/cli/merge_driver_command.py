@@ -35,7 +35,8 @@ def command(base: Path, ours: Path, theirs: Path, name: str, marker_size: int) -
         except (GitError, OSError) as error:
             click.echo(make_visible(f"archgen: {name or ours}: {error}"), err=True)
             sys.exit(2)
-        file_tree.write_file(ours, merged.content)
+        # git asks for this very file, which was never archgen's.
+        file_tree.replace_file(ours, merged.content)
     if merged.problem:
         click.echo(make_visible(f"archgen: {name or ours}: {merged.problem}"), err=True)
         sys.exit(1)

@@ -16,6 +16,7 @@ from archgen.diagnostics.safe_text import make_visible
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.products.check_findings import ReportedFindings
+    from archgen.products.trusted_backends import TrustedRevision
 
 REVIEW_FOLDER = "archgen-out/review"
 
@@ -47,7 +48,7 @@ REVIEW_FOLDER = "archgen-out/review"
     metavar="NAME",
     multiple=True,
     envvar="ARCHGEN_BACKENDS",
-    help="Make this backend's output too. With --base, the project's own run only if `review.backends` of REV names them.",
+    help="Make this backend's output too. With --base, the project's own run only if `review.backends` of REV names them and their folders are as in REV.",
 )
 @click.option(
     "-o",
@@ -80,7 +81,7 @@ def command(  # noqa: PLR0913 - one for each option
     checked_project = command_support.check_or_exit(project)
     target = output or checked_project.root / REVIEW_FOLDER
     merge_target = _find_merge_target(base)
-    allowed_backends = command_support.read_allowed_backends(project, merge_target)
+    trusted_revision = command_support.read_trusted_revision(project, merge_target)
     reported = check_findings.report_findings(checked_project, baseline)
     exit_status = command_support.exit_status(reported.findings, strict=strict)
     _print_findings(reported, checked_project, strict=strict)
@@ -94,7 +95,7 @@ def command(  # noqa: PLR0913 - one for each option
             # HEAD has all of it.
             exit_status |= _write_comparison(project, merge_target if merge_target != base else f"{base}...", target)
         if build:
-            exit_status |= _build_outputs(checked_project, target / "outputs", backend, allowed_backends)
+            exit_status |= _build_outputs(checked_project, target / "outputs", backend, trusted_revision)
     sys.exit(exit_status)
 
 
@@ -160,7 +161,7 @@ def _write_comparison(project: Path | None, start: str, target: Path) -> int:
 
 
 def _build_outputs(
-    checked_project: CheckedProject, target: Path, backends: tuple[str, ...], allowed_backends: tuple[str, ...] | None
+    checked_project: CheckedProject, target: Path, backends: tuple[str, ...], trusted_revision: TrustedRevision | None
 ) -> int:
     """Build the outputs of what is sound. Return 0: outputs do not decide the status."""
     from archgen.products import full_build
@@ -170,10 +171,29 @@ def _build_outputs(
     output_options = OutputOptions(
         progress=command_support.make_progress_printer(),
         warn=command_support.print_warning,
-        allowed_backends=allowed_backends,
+        trusted_revision=trusted_revision,
     )
-    products = full_build.choose_products(checked_project, (), backends, allowed_backends)
+    trusted_names = _drop_untrusted(checked_project, backends, trusted_revision)
+    products = full_build.choose_products(checked_project, (), trusted_names, trusted_revision)
     full_build.build_outputs(
         ProductInputs(checked_project, output_options), products, target, command_support.print_written
     )
     return 0
+
+
+def _drop_untrusted(
+    checked_project: CheckedProject, backends: tuple[str, ...], trusted_revision: TrustedRevision | None
+) -> list[str]:
+    """Return the backends that may run; warn of the others: a change of a backend must not cost its review the rest."""
+    from archgen.products.backend_products import choose_backends
+    from archgen.products.trusted_backends import UntrustedBackendError
+
+    trusted_names = []
+    for name in backends:
+        try:
+            choose_backends(checked_project, (name,), "documents", trusted_revision)
+        except UntrustedBackendError as error:
+            command_support.print_warning(f"{error.message}; {error.help}")
+        else:
+            trusted_names.append(name)
+    return trusted_names

@@ -58,7 +58,7 @@ history_option = click.option(
 trust_option = click.option(
     "--trust",
     metavar="REV",
-    help="Run the project's own backends only if `review.backends` of its files at this git revision names them.",
+    help="Run the project's own backends only if `review.backends` at this git revision names them and their folders are as they are there.",
 )
 
 

@@ -20,9 +20,13 @@ from pathlib import Path
 from types import MappingProxyType
 
 from archgen.emit.safe_names import is_safe_path
+from archgen.emit.written_formats import explain_refusal
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
+_MAX_FILE_BYTES = 1_000_000_000
+_MAX_MANIFEST_BYTES = 64_000_000
+"""More than the manifest of 500,000 files has."""
 _FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave behind. It is nobody's work, so it is no obstacle."""
 
@@ -94,19 +98,30 @@ def write_tree(files: FileTree, folder: Path) -> WriteResult:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed."""
+    """Write one file: afterwards it is complete, or as it was. A link in its place is replaced, not followed.
+
+    Raise OutputError where it would replace what archgen did not write in this format.
+    """
     with _explain_os_errors(path):
         if path.exists() and not path.is_file():
             msg = f"{path} is not a regular file"
             raise OutputError(msg, "give the name of a file with `-o`")
+        refusal = explain_refusal(path, data) if path.exists() else ""
+        if refusal:
+            raise OutputError(refusal, "nothing was changed; give another name with `-o`, or move that file away")
         path.parent.mkdir(parents=True, exist_ok=True)
-        staging_folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
-        try:
-            # A file in a new folder gets the permissions that the user's umask asks for; mkstemp's own files have 0600.
-            (staging_folder / path.name).write_bytes(data)
-            os.replace(staging_folder / path.name, path)  # noqa: PTH105 - says what it does on every system
-        finally:
-            shutil.rmtree(staging_folder, ignore_errors=True)
+        replace_file(path, data)
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Put a file in the place of another one, whatever that holds: afterwards it is complete, or as it was."""
+    staging_folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    try:
+        # A file in a new folder gets the permissions that the user's umask asks for; mkstemp's own files have 0600.
+        (staging_folder / path.name).write_bytes(data)
+        os.replace(staging_folder / path.name, path)  # noqa: PTH105 - says what it does on every system
+    finally:
+        shutil.rmtree(staging_folder, ignore_errors=True)
 
 
 def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
@@ -123,6 +138,14 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
             return None
     manifest_path = folder / TREE_MANIFEST
     return hashlib.sha256(manifest_path.read_bytes()).hexdigest() if manifest_path.is_file() else None
+
+
+def digest_file(path: Path) -> str | None:
+    """Digest a file; None for one that is larger than any of archgen's, which a branch may put in their place."""
+    if path.stat().st_size > _MAX_FILE_BYTES:
+        return None
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _replace_files(
@@ -194,35 +217,39 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
     `own_digests` is complete only when the generator is exhausted. Links are never followed.
     """
     manifest_paths = {path for _, path in manifest}
-    for path in _walk_folder(folder, ""):
+    for path in list_files_below(folder):
         full_path = folder / path
         # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
         if path in manifest_paths and stat.S_ISREG(full_path.lstat().st_mode):
-            digest = hashlib.sha256(full_path.read_bytes()).hexdigest()
-            if (digest, path) in manifest:
+            digest = digest_file(full_path)
+            if digest and (digest, path) in manifest:
                 own_digests[path] = digest
                 continue
         if path != TREE_MANIFEST and full_path.name not in _FILE_MANAGER_DEBRIS:
             yield path
 
 
-def _walk_folder(folder: Path, prefix: str) -> Iterator[str]:
+def list_files_below(folder: Path) -> Iterator[str]:
     """Yield everything below that is not a folder, as relative paths in order. A link counts as a file."""
-    if not folder.is_dir():
-        return
-    with os.scandir(folder) as entries:
-        sorted_entries = sorted(entries, key=lambda entry: entry.name)
-    for entry in sorted_entries:
-        if entry.is_dir(follow_symlinks=False):
-            yield from _walk_folder(folder / entry.name, f"{prefix}{entry.name}/")
-        else:
-            yield prefix + entry.name
+    # A stack, not a recursion: folders may nest deeper than Python calls.
+    pending_paths = [""] if folder.is_dir() else []
+    while pending_paths:
+        path = pending_paths.pop()
+        if path and not path.endswith("/"):
+            yield path
+            continue
+        with os.scandir(folder / path) as entries:
+            sorted_entries = sorted(entries, key=lambda entry: entry.name, reverse=True)
+        pending_paths += [
+            f"{path}{entry.name}{'/' if entry.is_dir(follow_symlinks=False) else ''}" for entry in sorted_entries
+        ]
 
 
 def _read_tree_manifest(folder: Path) -> set[tuple[str, str]]:
     """Read the (digest, path) pairs of a manifest. Lines that are none are skipped: what they claim is then foreign."""
     manifest_path = folder / TREE_MANIFEST
-    if manifest_path.is_symlink() or not manifest_path.is_file():
+    # One that is too large is none of archgen's.
+    if manifest_path.is_symlink() or not manifest_path.is_file() or manifest_path.stat().st_size > _MAX_MANIFEST_BYTES:
         return set()
     lines = manifest_path.read_text("utf-8", "replace").splitlines()
     pairs = (line.partition("  ") for line in lines if not line.startswith("#"))

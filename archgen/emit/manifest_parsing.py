@@ -187,7 +187,8 @@ def _walk_path(root: ManifestNode, path: Sequence[str | int]) -> Iterator[tuple[
         if isinstance(part, int):
             key_node, node = None, node.value[part]
         else:
-            key_node, node = next(pair for pair in node.value if pair[0].value == part)
+            # The last one: of a key that stands twice the parser takes that.
+            key_node, node = next(pair for pair in reversed(node.value) if pair[0].value == part)
         yield key_node, node
 
 

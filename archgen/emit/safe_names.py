@@ -10,6 +10,8 @@ from collections.abc import Iterable
 MAX_PART_LENGTH = 100
 """Characters that one part of a path may have: a third of what file systems take, so that folders can nest."""
 
+_MAX_PATH_LENGTH = 1_000
+_MAX_PATH_FOLDERS = 50
 _UNSAFE_CHARACTERS = re.compile(r"[^a-z0-9._-]+")
 _SURPLUS_DASHES = re.compile(r"-+(?=[-.])")
 _RESERVED_NAME = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?=\.|$)")
@@ -38,6 +40,17 @@ def make_safe_path(path: str) -> str:
     """Make a relative path below the output folder from any path: each part a slug, empty and dotted parts left out."""
     parts = [make_slug(part) for part in path.replace("\\", "/").split("/") if part not in {"", ".", ".."}]
     return "/".join(parts) or make_slug(path)
+
+
+def explain_long_path(path: str) -> str:
+    """Return why no file system takes a path below any folder; empty where it may."""
+    folder_count = path.count("/")
+    if len(path) <= _MAX_PATH_LENGTH and folder_count <= _MAX_PATH_FOLDERS:
+        return ""
+    return (
+        f"the path `{path[:40]}...` has {folder_count:,} folders and {len(path):,} characters; "
+        f"it may have {_MAX_PATH_FOLDERS} and {_MAX_PATH_LENGTH:,}"
+    )
 
 
 def is_safe_path(path: str) -> bool:

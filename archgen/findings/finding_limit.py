@@ -6,6 +6,8 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from archgen.analyses import NO_LONGER_LOOKED_FOR
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -21,6 +23,7 @@ def limit_findings(findings: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
     That one stands where the first finding that is left out would, and keeps its severity.
     """
     totals = Counter(finding.rule for finding in findings)
+    bounded_rules = {finding.rule for finding in findings if finding.message == NO_LONGER_LOOKED_FOR}
     if all(total <= MAX_FINDINGS_PER_RULE for total in totals.values()):
         return tuple(findings)
     seen = Counter[str]()
@@ -31,7 +34,8 @@ def limit_findings(findings: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
             kept.append(finding)
         elif seen[finding.rule] == MAX_FINDINGS_PER_RULE + 1:
             left_out = totals[finding.rule] - MAX_FINDINGS_PER_RULE
-            message = f"{left_out:,} more findings of this rule, from here on, are left out"
+            at_least = "at least " if finding.rule in bounded_rules else ""
+            message = f"{at_least}{left_out:,} more findings of this rule, from here on, are left out"
             kept.append(
                 replace(finding, message=message, labels=(), help="mend some of the others first", element=None)
             )

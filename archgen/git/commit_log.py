@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from archgen.git.git_call import run_git
+from archgen.git.git_errors import GitError
 from archgen.git.repository_lookup import GitRepository, resolve_revision
 
 
@@ -28,4 +29,7 @@ def find_object_ids(repository: GitRepository, names: Iterable[str]) -> tuple[st
     lines = "".join(f"{name}\n" for name in safe_names).encode("utf-8", "surrogateescape")
     result = run_git(repository.top, "cat-file", "--batch-check=%(objectname)", stdin=lines)
     answers = result.text.splitlines()
+    if len(answers) != len(safe_names):
+        msg = "the history cannot be read: the repository is damaged (`git fsck` says where)"
+        raise GitError(msg)
     return tuple("" if line.endswith((" missing", " ambiguous")) else line for line in answers)

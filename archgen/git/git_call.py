@@ -18,8 +18,13 @@ SAFE_COMMAND = (
     *("-c", "log.showSignature=false"),
     *("-c", "protocol.allow=never"),
 )
-_TIMEOUT_SECONDS = 60
+ANSWER_SECONDS = 60
+"""So long may git take for one call, or for the answer to one question."""
 _NOT_FOUND_STATUS = 127
+
+
+class GitOutputError(GitError):
+    """A git command prints more than it may."""
 
 
 class GitResult(NamedTuple):
@@ -47,7 +52,7 @@ def run_git(folder: Path, *arguments: str, stdin: bytes = b"") -> GitResult:
             env=git_environment(os.environ),
             input=stdin,
             capture_output=True,
-            timeout=_TIMEOUT_SECONDS,
+            timeout=ANSWER_SECONDS,
             check=False,
         )
     except FileNotFoundError:
@@ -58,11 +63,13 @@ def run_git(folder: Path, *arguments: str, stdin: bytes = b"") -> GitResult:
 
 
 def read_git_output(folder: Path, *arguments: str, max_bytes: int) -> bytes | None:
-    """Return what a git command prints, None where it fails. Raise GitError where it prints more than `max_bytes`.
+    """Return what a git command prints, None where it fails. Raise GitOutputError where it prints more than `max_bytes`.
 
     It is stopped there: trees that name each other ten times a level make a list of gigabytes from a few hundred bytes.
+    One that takes too long is stopped, too.
     """
     import subprocess
+    import threading
 
     try:
         process = subprocess.Popen(  # noqa: S603 - a fixed program; what users type stands behind --end-of-options or --
@@ -75,12 +82,17 @@ def read_git_output(folder: Path, *arguments: str, max_bytes: int) -> bytes | No
         )
     except (OSError, ValueError):
         return None
+    alarm = threading.Timer(ANSWER_SECONDS, process.kill)
+    alarm.start()
     with process:
-        output = process.stdout.read(max_bytes + 1) if process.stdout else b""
-        if len(output) > max_bytes:
-            process.kill()
-            msg = f"git prints more than {max_bytes:,} bytes"
-            raise GitError(msg)
+        try:
+            output = process.stdout.read(max_bytes + 1) if process.stdout else b""
+            if len(output) > max_bytes:
+                process.kill()
+                msg = f"git prints more than {max_bytes:,} bytes"
+                raise GitOutputError(msg)
+        finally:
+            alarm.cancel()
     return None if process.returncode else output
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import select
 import weakref
 from typing import IO, TYPE_CHECKING, NamedTuple
 
-from archgen.git.git_call import SAFE_COMMAND, git_environment, read_git_output
+from archgen.git.git_call import ANSWER_SECONDS, SAFE_COMMAND, GitOutputError, git_environment, read_git_output, run_git
 from archgen.git.git_errors import GitError
 from archgen.git.repository_lookup import GitRepository
 
@@ -50,16 +51,26 @@ class GitObjects:
                 *("ls-tree", "-r", "-z", "--full-tree", f"{commit}:{prefix}"),
                 max_bytes=MAX_LIST_BYTES,
             )
-        except GitError:
+        except GitOutputError:
             place = f"below `{prefix}` " if prefix else ""
             msg = f"the commit {commit[:10]} holds more files {place}than a project may have: their list is longer than"
             msg = f"{msg} {MAX_LIST_BYTES // 1_000_000} MB"
             raise GitError(msg) from None
         if output is None:
+            if self._has_folder(commit, prefix):
+                msg = f"the commit {commit[:10]} cannot be read: the repository is damaged (`git fsck` says where)"
+                raise GitError(msg)
             return None
         text = output.decode("utf-8", "surrogateescape")
         rows = (row.partition("\t") for row in text.split("\0") if row)
         return {path: TreeEntry(fields[:6], fields.rpartition(" ")[2]) for fields, _, path in rows}
+
+    def _has_folder(self, commit: str, prefix: str) -> bool:
+        """Return whether a commit has a folder, or cannot say so because the folders above it are damaged."""
+        result = run_git(
+            self.repository.top, "ls-tree", "-d", "-z", "--full-tree", commit, "--", *filter(None, [prefix])
+        )
+        return bool(result.status or result.output or not prefix)
 
     def blob_size(self, blob_id: str) -> int | None:
         """Return a blob's size in bytes, None where this clone does not have it."""
@@ -96,10 +107,15 @@ class _BatchProcess:
         try:
             sink.write(blob.encode() + b"\n")
             sink.flush()
+            self._await_answer(source)
             fields = source.readline().decode().split()
         except OSError:
             fields = []
         if not fields:  # git gave up: a blob that a partial clone would have to fetch
+            self._process = None
+        if fields[1:2] == ["tree"] and self._process:
+            # Its content would be taken for the answer to the next question.
+            self._process.kill()
             self._process = None
         return fields if len(fields) == 3 and fields[1] == "blob" else None  # noqa: PLR2004 - id, kind, size
 
@@ -107,6 +123,21 @@ class _BatchProcess:
         """Read a content of `size` bytes and the line end behind it."""
         source, _ = self._get_pipes()
         return source.read(size + 1)[:size]
+
+    def _await_answer(self, source: IO[bytes]) -> None:
+        """Wait until git begins to answer. Raise GitError where it does not: an object may be a pipe, or on a dead disk.
+
+        Windows cannot wait for a pipe with a limit of time.
+        """
+        if not hasattr(select, "poll"):
+            return
+        waiting = select.poll()  # `select.select` takes no descriptor above 1,023
+        waiting.register(source, select.POLLIN)
+        if not waiting.poll(ANSWER_SECONDS * 1000):
+            if self._process:
+                self._process.kill()
+            msg = f"git does not answer: an object of the repository could not be read within {ANSWER_SECONDS} s"
+            raise GitError(msg)
 
     def _get_pipes(self) -> tuple[IO[bytes], IO[bytes]]:
         process = self._process or self._start()

@@ -55,6 +55,10 @@ def find_repository(path: Path) -> GitRepository:
     else:
         for _ in filter(None, prefix.split("/")):
             top = top.parent
+        # Below another top all paths would mean other files.
+        if not os.path.lexists(top / ".git"):
+            msg = f"the repository around {path} has its files elsewhere (`core.worktree`): archgen compares those beside `.git`"
+            raise NoRepositoryError(msg)
     return GitRepository(top, "/".join(filter(None, (prefix, missing_path))), bare == "true", shallow == "true")
 
 

@@ -105,7 +105,8 @@ def _count_elsewhere(
         "path": None if path is None else str(path),
         "commits": [[item.id, item.day, item.tree_id] for item in commits],
     }
-    # git needs a path, and the user's settings, which say which repositories are safe.
+    # Programs are looked for along PATH, git among them; the others say where the user's settings for git are, which say
+    # which repositories are safe.
     environment = worker_environment("PATH", "HOME", "USERPROFILE", "XDG_CONFIG_HOME")
     with subprocess.Popen(  # noqa: S603 - ourselves
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment

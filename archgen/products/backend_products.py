@@ -12,6 +12,7 @@ from archgen.emit.backend_manifests import Backend
 from archgen.pipeline import CheckedProject
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.products.product_table import PRODUCTS
+from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
 from archgen.views import resolved_record
 from archgen.views.graph_shapes import Graph
 from archgen.views.tables import statistics_tables
@@ -33,13 +34,13 @@ def choose_backends(
     checked_project: CheckedProject,
     names: Sequence[str],
     makes: BackendTarget,
-    allowed_names: Collection[str] | None,
+    trusted_revision: TrustedRevision | None,
     *,
     other_outputs: Collection[str] = (),
 ) -> tuple[Backend, ...]:
     """Return the named text backends. Raise OutputError for unknown, broken or forbidden ones, and for others' verbs.
 
-    `allowed_names` are the only backends of the project itself that may run; None allows all of them. `other_outputs`
+    Of the project's own backends those may run that `trusted_revision` allows; None allows all of them. `other_outputs`
     are further names that could have been meant.
     """
     if not names:
@@ -51,10 +52,8 @@ def choose_backends(
     _raise_problems([p for p in problems if any(f"backends/{name}/" in p.span.file for name in names)])
     for name in names:
         _refuse_unusable(backends_by_name, name, makes, other_outputs)
-        # The branch under review may be anybody's: its own backends run only if the trusted revision allows them.
-        if backends_by_name[name].from_project and allowed_names is not None and name not in allowed_names:
-            msg = f"the project's own backend `{name}` is not run here: the revision that is trusted does not name it"
-            raise file_tree.OutputError(msg, "add it to `review.backends` there, in a change of its own")
+        if backends_by_name[name].from_project and trusted_revision is not None:
+            refuse_untrusted(backends_by_name[name], trusted_revision)
     return tuple(backends_by_name[name] for name in dict.fromkeys(names))
 
 

@@ -70,7 +70,7 @@ def _digest_product(place: Path, *, just_written: bool = False) -> str:
     if place.is_dir() and not place.is_symlink():
         digest = file_tree.digest_manifest(place, just_written=just_written)
     elif not place.is_symlink():
-        digest = digest_bytes(place.read_bytes())
+        digest = file_tree.digest_file(place)
     if digest is None:
         msg = f"{place} is not as archgen wrote it"
         raise ValueError(msg)

@@ -5,23 +5,25 @@ What takes long runs side by side, and what nothing changed of is not made again
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject
 from archgen.products import build_stamp, project_views, report_cache
 from archgen.products.backend_products import choose_backends, make_backend_product
 from archgen.products.product_inputs import Product, ProductInputs
 from archgen.products.product_table import PRODUCTS, REPORT
 from archgen.products.product_writing import StartedProducts, start_products, write_started
+from archgen.products.trusted_backends import TrustedRevision
 
 
 def choose_products(
     checked_project: CheckedProject,
     only_names: Sequence[str] = (),
     backend_names: Sequence[str] = (),
-    allowed_backends: Collection[str] | None = None,
+    trusted_revision: TrustedRevision | None = None,
 ) -> tuple[Product, ...]:
     """Return what a build makes, in its order: all products or only the named ones, then the backends.
 
@@ -31,8 +33,8 @@ def choose_products(
     products = [product for name, product in PRODUCTS.items() if name in only_names or not only_names]
     named_backends = [name for name in only_names if name not in PRODUCTS]
     backends = (
-        *choose_backends(checked_project, named_backends, "documents", allowed_backends, other_outputs=PRODUCTS),
-        *choose_backends(checked_project, backend_names, "documents", allowed_backends),
+        *choose_backends(checked_project, named_backends, "documents", trusted_revision, other_outputs=PRODUCTS),
+        *choose_backends(checked_project, backend_names, "documents", trusted_revision),
     )
     # The same backend may be named in both ways.
     return (*products, *(make_backend_product(backend) for backend in {each.id: each for each in backends}.values()))
@@ -46,7 +48,8 @@ def build_outputs(
 ) -> None:
     """Write products below a folder, and announce the path of each as soon as it is there.
 
-    A product that is there already, from the same inputs, is not made again.
+    A product that is there already, from the same inputs, is not made again. Where one cannot be made or written, all others
+    are, and OutputError is raised in the end.
     """
     # Settled once: git is asked a single time, and the stamps depend on the revision that is printed.
     revision = project_views.choose_revision(inputs.checked_project, inputs.options)
@@ -65,15 +68,23 @@ def build_outputs(
     }
     started_products = start_products(inputs, [product for product in products if product.name not in fresh_names])
     # From here on files appear: all views are made and all pictures are drawn.
+    failures: list[OutputError] = []
     for product in products:
         place = target / product.part
-        if product.name in fresh_names:
-            is_there = place.exists()
-        else:
-            is_there = _write_and_stamp(inputs, started_products, product, place, stamp_keys.get(product.name))
+        try:
+            is_there = (
+                place.exists()
+                if product.name in fresh_names
+                else _write_and_stamp(inputs, started_products, product, place, stamp_keys.get(product.name))
+            )
+        except OutputError as error:
+            failures.append(error)
+            continue
         # Where nothing can be drawn, there are no diagrams.
         if is_there:
             announce(place / product.entry_file)
+    if failures:
+        raise OutputError("; ".join(dict.fromkeys(error.message for error in failures)), failures[0].help)
 
 
 def _write_and_stamp(

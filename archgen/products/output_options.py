@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from archgen.model.selector_evaluation import Selection
+from archgen.products.trusted_backends import TrustedRevision
 from archgen.views.pages.report_outline import DetailLevel
 
 DrawingProgress = Callable[[int, int], None]
@@ -28,5 +29,5 @@ class OutputOptions:
     warn: Callable[[str], None] = lambda _text: None
     show_history: bool = True
     """Whether documents show how the project grew; only possible where git can tell."""
-    allowed_backends: Collection[str] | None = None
-    """The only backends of the project itself that may run; None allows all of them."""
+    trusted_revision: TrustedRevision | None = None
+    """Decides which backends of the project itself may run; None allows all of them."""

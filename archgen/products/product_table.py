@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from archgen.emit import file_tree, picture_files
 from archgen.emit.picture import Picture
+from archgen.emit.written_formats import PACKED_HEADER
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file
@@ -95,7 +96,7 @@ def _start_packed(inputs: ProductInputs) -> FinishProduct:
     from archgen.syntax import yaml_writer
 
     packed_project = inputs.checked_project.pack_project()
-    content = yaml_writer.write_yaml(packed_project.data, packed_project.comments).encode()
+    content = (PACKED_HEADER + yaml_writer.write_yaml(packed_project.data, packed_project.comments)).encode()
     chapters = inputs.checked_project.chapters
     asked_files = {path: chapters.read_picture(path) for path in chapters.list_picture_paths()}
     return lambda _pictures: MadeProduct(content, asked_files=asked_files)

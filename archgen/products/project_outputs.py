@@ -70,7 +70,7 @@ def write_workspace(
 
     Raise OutputError where no backend of this name makes a workspace, or where its templates fail.
     """
-    (backend,) = choose_backends(checked_project, (backend_name,), "workspace", options.allowed_backends)
+    (backend,) = choose_backends(checked_project, (backend_name,), "workspace", options.trusted_revision)
     folder = target or checked_project.output_folder / backend.id
     write_product(ProductInputs(checked_project, options), make_backend_product(backend), folder)
     return folder
@@ -78,5 +78,5 @@ def write_workspace(
 
 def render_exported(checked_project: CheckedProject, options: OutputOptions, backend_name: str) -> bytes:
     """Return the single file of a text backend. Raise OutputError as `write_workspace` does."""
-    (backend,) = choose_backends(checked_project, (backend_name,), "file", options.allowed_backends)
+    (backend,) = choose_backends(checked_project, (backend_name,), "file", options.trusted_revision)
     return render_single_file(ProductInputs(checked_project, options), backend)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import posixpath
 import stat
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -33,10 +34,16 @@ class FolderFiles:
 
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
         """Walk as `os.walk` does, with folders relative to `top`; links to folders are not entered."""
-        start = self.root / top
-        for folder, folders, file_names in os.walk(start):
-            relative_folder = os.path.relpath(folder, start).replace(os.sep, "/")
-            yield "" if relative_folder == "." else relative_folder, folders, file_names
+        # `os.walk` of Python 3.11 calls itself for each level, and a branch may nest folders deeper than Python calls.
+        pending_folders = [""]
+        while pending_folders:
+            relative_folder = pending_folders.pop()
+            folders, file_names, links = _list_folder(self.root / top / relative_folder)
+            yield relative_folder, folders, file_names
+            # The caller has taken out what is not to be entered.
+            pending_folders += [
+                posixpath.join(relative_folder, name) for name in reversed(folders) if name not in links
+            ]
 
     def fetch_bytes(self, path: str) -> bytes | FileRefusal:
         """Return a regular file's bytes, or why it cannot be used.
@@ -50,6 +57,29 @@ class FolderFiles:
             return _read_regular_file(full_path)
         except OSError as error:
             return FileRefusal(_describe_read_error(full_path, error))
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link that leads round in a circle
+        return False
+
+
+def _list_folder(folder: Path) -> tuple[list[str], list[str], set[str]]:
+    """Return the names of the folders, of the files, and of those that are links; none of a folder that cannot be read."""
+    folders: list[str] = []
+    file_names: list[str] = []
+    links: set[str] = set()
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                (folders if _is_folder(entry) else file_names).append(entry.name)
+                if entry.is_symlink():
+                    links.add(entry.name)
+    except OSError:
+        return [], [], set()
+    return folders, file_names, links
 
 
 def read_named_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
+import resource
 from pathlib import Path
 
 import pytest
 
-from archgen import resources
 from tests.cli.conftest import Run
 
 MANIFEST = "id: leak\ntitle: Leak\nemitter: text\nview: record\nfiles: [{template: environ, path: out.md}]\n"
@@ -50,12 +50,6 @@ def test_a_backend_is_not_reached_by_links(run: Run, project: Path, linked: str)
     assert not (project / "archgen-out" / "leak").exists()
 
 
-def test_workers_are_given_no_secrets(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SECRET_THING", "hunter2")
-    assert "SECRET_THING" not in resources.worker_environment("PATH")
-    assert set(resources.worker_environment()) <= {"PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH", "SYSTEMROOT"}
-
-
 @pytest.mark.parametrize("linked", ["archgen-out", "archgen-out/site", "archgen-out/packed.yaml"])
 def test_outputs_are_not_led_out_of_the_project(run: Run, project: Path, linked: str) -> None:
     outside = project.parent / "outside"
@@ -84,3 +78,20 @@ def test_a_file_that_never_ends_is_not_read(run: Run, project: Path, words: tupl
         ran = run(words[0], project, words[1], project / name)
         assert ran.status == 2
         assert reason in ran.err
+
+
+@pytest.mark.parametrize("name", ["site/.archgen-files", "site/index.html", "report.docx", "packed.yaml"])
+def test_a_huge_file_in_the_place_of_an_output_is_not_read(run: Run, project: Path, name: str) -> None:
+    assert run("build", project, "--only", "site,report,packed").status == 0
+    place = project / "archgen-out" / name
+    with place.open("r+b") as stream:
+        stream.truncate(3_000_000_000)  # a hole: no block of the disk is used
+    _, hard_limit = resource.getrlimit(resource.RLIMIT_AS)
+    used_bytes = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used_bytes + 1_500_000_000, hard_limit))
+    try:
+        ran = run("build", project, "--only", "site,report,packed")
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (hard_limit, hard_limit))
+    assert "mistake in archgen" not in ran.err
+    assert place.exists()

@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from archgen import resources
+from archgen.emit.written_formats import PACKED_HEADER
 from tests.cli.conftest import Run
 
 
@@ -17,7 +18,7 @@ def test_pack(run: Run, first: Path, tmp_path: Path) -> None:
     ran = run("pack", first)
     assert (ran.status, ran.err) == (0, "")
     packed = first / "archgen-out" / "packed.yaml"
-    assert packed.read_text(encoding="utf-8").startswith("archgen: 1\nproject:\n")
+    assert packed.read_text(encoding="utf-8").startswith(f"{PACKED_HEADER}archgen: 1\nproject:\n")
     assert run("pack", packed, "-o", tmp_path / "new" / "again.yaml").status == 0
     assert (tmp_path / "new" / "again.yaml").read_bytes() == packed.read_bytes()
 

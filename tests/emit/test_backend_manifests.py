@@ -20,6 +20,13 @@ def found_at(tmp_path: Path, manifest: str | bytes, folder: str = "mine") -> lis
     return [f"{d.span}: {d.message}" for d in diagnostics]
 
 
+def test_the_last_of_repeated_keys_is_the_one_that_is_named(tmp_path: Path) -> None:
+    repeated = GOOD.replace("files:", "files: ''\nfiles:").replace("path: a}", "path: a, only: [false]}")
+    problem = found_at(tmp_path, repeated)[-1]
+    assert problem.startswith("backends/mine/backend.yaml:7:")
+    assert problem.endswith("`files.0.only` is not as the schema of backends asks (Type)")
+
+
 def test_shipped_and_own_backends(tmp_path: Path) -> None:
     assert found_at(tmp_path, GOOD) == []
     backends, _ = find_backends(tmp_path)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from archgen import pipeline
+from archgen.analyses import MAX_LOOKED_FOR
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.findings.finding_limit import MAX_FINDINGS_PER_RULE, limit_findings
@@ -24,3 +26,32 @@ def test_the_rest_of_a_rule_is_counted_at_its_first_place() -> None:
     assert rest.message == "1,234 more findings of this rule, from here on, are left out"
     assert (rest.span.line, rest.severity, rest.rule) == (MAX_FINDINGS_PER_RULE + 1, Severity.WARNING, "unread-output")
     assert limited[MAX_FINDINGS_PER_RULE + 1 :] == tuple(findings[-2:])
+
+
+def _write_forbidden_project(policy_count: int, ignore: str = "") -> str:
+    """Return a project with a ring of 150 connections, each of which every policy forbids."""
+    ring = "".join(
+        f"      c{i}: {{outputs: {{o: T}}, inputs: {{i: c{(i + 1) % 150}.o}}}}{ignore}\n" for i in range(150)
+    )
+    policies = "".join(f"  p{i}: {{title: No, forbid: {{from: g, to: g}}}}\n" for i in range(policy_count))
+    return f"archgen: 1\ngroups:\n  g:\n    components:\n{ring}policies:\n{policies}"
+
+
+def test_more_findings_than_anybody_can_read_are_not_looked_for() -> None:
+    for policy_count, rest in ((100, "14,000 more"), (133, "18,950 more"), (140, "at least 19,001 more")):
+        findings = [
+            each
+            for each in pipeline.check_text(_write_forbidden_project(policy_count))
+            if each.rule == "forbidden-flow"
+        ]
+        assert len(findings) == MAX_FINDINGS_PER_RULE + 1
+        assert findings[-1].message == f"{rest} findings of this rule, from here on, are left out"
+
+
+def test_what_is_not_looked_for_is_not_silenced_by_silencing_the_others() -> None:
+    text = _write_forbidden_project(140, "  # archgen: ignore[forbidden-flow] all is well")
+    findings = [each for each in pipeline.check_text(text) if each.rule == "forbidden-flow"]
+    assert [each.message for each in findings] == [
+        f"this rule has more than {MAX_LOOKED_FOR:,} findings: from here on none is looked for"
+    ]
+    assert findings[0].severity is Severity.ERROR

@@ -43,7 +43,7 @@ def test_a_git_that_does_not_end_is_given_up(tmp_path: Path, monkeypatch: pytest
     program.write_text("#!/bin/sh\nexec sleep 5\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
-    monkeypatch.setattr(git_call, "_TIMEOUT_SECONDS", 0.1)
+    monkeypatch.setattr(git_call, "ANSWER_SECONDS", 0.1)
     assert "timed out after 0.1 seconds" in run_git(tmp_path, "log").error_text
 
 

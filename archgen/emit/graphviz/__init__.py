@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.palette import dark_rules
@@ -51,7 +52,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     folder that archgen may fill; `ready_workers` comes from `start_early_workers`. Raise MissingGraphviz where nothing
     can be drawn and not all pictures are cached.
     """
-    cache = cache if cache and _is_writable(cache) else None
+    cache = cache if cache and _is_usable(cache) else None
     wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
     addresses = [dict(_link_addresses(graph, resolve_link)) for graph in drawings]
@@ -84,7 +85,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
 def start_early_workers(cache: Path | None) -> Iterator[Sequence[DrawingWorker]]:
     """Start drawing processes before the graphs are known, if no picture is cached: then all processes are needed."""
     workers: list[DrawingWorker] = []
-    if cache and _is_writable(cache) and not any(cache.glob("*.picture")):
+    if cache and _is_usable(cache) and not any(cache.glob("*.picture")):
         workers = [create_worker(cache) for _ in range(os.cpu_count() or 1)]
     try:
         for worker in workers:
@@ -95,10 +96,12 @@ def start_early_workers(cache: Path | None) -> Iterator[Sequence[DrawingWorker]]
             worker.stop_process()
 
 
-def _is_writable(folder: Path) -> bool:
+def _is_usable(folder: Path) -> bool:
     """Return whether a folder can hold the cache. Without one, pictures are drawn each time."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        # Drawing needs the font there, and a disk may be full.
+        font_config.write_font_config(folder)
         with tempfile.TemporaryFile(dir=folder):
             return True
     except OSError:

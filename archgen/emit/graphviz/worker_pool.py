@@ -6,7 +6,6 @@ as well, the picture comes without any format. The other pictures are not affect
 
 from __future__ import annotations
 
-import os
 import queue
 import subprocess
 import sys
@@ -18,6 +17,7 @@ from pathlib import Path
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz.drawing_worker import DrawingFailure, DrawingTask, receive_message, send_message
 from archgen.emit.picture import Picture
+from archgen.resources import worker_environment
 from archgen.views.chart_shapes import Chart
 
 DRAWING_TIMEOUT = 30.0
@@ -111,8 +111,12 @@ def draw_tasks(  # noqa: PLR0913 - what to draw, and how, each by its name
 
 def create_worker(folder: Path, command_line: CommandLine | None = None) -> DrawingWorker:
     """Create a worker whose process is not started yet."""
-    # In UTC: the date in a PDF, of which the digits are overwritten, is shorter there than elsewhere.
-    environment = {**os.environ, "FONTCONFIG_FILE": str(font_config.write_font_config(folder)), "TZ": "UTC0"}
+    # PATH: Windows looks for libraries there, and Graphviz for its plugins.
+    environment = worker_environment("PATH") | {
+        "FONTCONFIG_FILE": str(font_config.write_font_config(folder)),
+        # In UTC the date in a PDF, of which the digits are overwritten, is shorter than elsewhere.
+        "TZ": "UTC0",
+    }
     return DrawingWorker(command_line or worker_command(), environment)
 
 

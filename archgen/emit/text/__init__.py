@@ -16,9 +16,9 @@ from typing import Any
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.emit.backend_manifests import Backend
-from archgen.emit.file_tree import FileTree, make_file_tree
+from archgen.emit.file_tree import FileTree, list_files_below, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
-from archgen.emit.safe_names import assign_safe_paths
+from archgen.emit.safe_names import assign_safe_paths, explain_long_path
 from archgen.emit.text.template_limits import TemplateLimits
 from archgen.resources import worker_environment
 from archgen.views.shapes import shape_to_plain
@@ -101,8 +101,11 @@ def _read_assets(backend: Backend) -> list[tuple[str, bytes]]:
     """Read the files in assets/: no link, and not more than `_MAX_ASSET_BYTES` in all."""
     folder = backend.folder / "assets"
     assets, size = [], 0
-    for path in sorted(folder.rglob("*")) if folder.is_dir() and not folder.is_symlink() else ():
-        name = path.relative_to(backend.folder).as_posix()
+    for file in list_files_below(folder) if not folder.is_symlink() else ():
+        path, name = folder / file, f"assets/{file}"
+        excess = explain_long_path(name)
+        if excess:
+            raise _AssetError(excess)
         if path.is_symlink():
             msg = f"`{name}` is a link; an asset is a file"
             raise _AssetError(msg)

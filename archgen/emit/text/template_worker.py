@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import posixpath
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -18,12 +19,19 @@ from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, T
 from jinja2.loaders import BaseLoader
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from archgen.emit.safe_names import is_safe_path, make_safe_path
+from archgen.emit.safe_names import explain_long_path, is_safe_path, make_safe_path
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
 from archgen.emit.text.template_limits import TemplateLimits, confine_process
 
 _MAX_TEMPLATE_BYTES = 1_000_000
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
+_MAX_OBJECT_NAME = 200
+_MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]{6,16}(?:>|&gt;|, file )", re.IGNORECASE)
+_OBJECT_START = re.compile(
+    r"(?:<|&lt;)(function .*|(?:bound|built-in) method .*|(?:generator|code) object .*|[\w.]+ object)\Z",
+    re.IGNORECASE | re.DOTALL,
+)
+"""How Python prints what is no data (`<generator object sync_do_map at 0x7f3a>`), with its place in memory."""
 
 
 class TemplateBoundError(Exception):
@@ -58,6 +66,7 @@ def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> Im
         loader=TemplateLoader(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
         undefined=StrictUndefined,
+        finalize=_refuse_printed_objects,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -69,6 +78,17 @@ def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> Im
     del sandbox.globals["lipsum"]
     del sandbox.filters["random"]
     return sandbox
+
+
+def _refuse_printed_objects(value: object) -> object:
+    """Return what a template prints, unless it is a function or the like: its place in memory is another in each run."""
+    text = value if isinstance(value, str) else "" if isinstance(value, int) else str(value)
+    for address in _MEMORY_ADDRESS.finditer(text):
+        printed_object = _OBJECT_START.search(text, max(0, address.start() - _MAX_OBJECT_NAME), address.start())
+        if printed_object:
+            msg = f"it prints what is no text: a {printed_object[1]}; a function is called with `()`, a list is made with `|list`"
+            raise TemplateBoundError(msg)
+    return value
 
 
 def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
@@ -102,6 +122,8 @@ def _describe_error(error: Exception, limits: TemplateLimits) -> str:
             message = "its templates call each other without end"
         case UnicodeDecodeError():
             message = "it is not UTF-8 text"
+        case UnicodeEncodeError():
+            message = f"it prints half a character (U+{ord(error.object[error.start]):04X}), which no file can hold"
         case TemplateBoundError() | TemplateError():
             message = str(error)
         case _:
@@ -128,6 +150,7 @@ def _render_files(
         values = {**request["data"], "options": request["options"], "path": path, "item": item, "key": key}
         text = _render_bounded(sandbox.get_template(template), {**values, "href": _make_href(path, paths)}, remaining)
         remaining -= len(text)
+        text.encode()  # half a character is a mistake of this template
         yield path, text
 
 
@@ -142,11 +165,16 @@ def _plan_files(
     for file in request["files"]:
         current_template["template"] = file["template"]
         sandbox.get_template(file["template"])
+        # What is wrong from here on is the manifest's mistake.
+        current_template.clear()
         path_template = sandbox.from_string(file["path"])
         for key, item in _select_items(request["data"], file):
             path = make_safe_path(
                 path_template.render(**request["data"], options=request["options"], item=item, key=key)
             )
+            excess = explain_long_path(path)
+            if excess:
+                raise TemplateBoundError(excess)
             stem, ending = posixpath.splitext(path)
             number = 2
             while path in taken_paths:

@@ -122,6 +122,21 @@ def test_paths_that_would_be_one_are_told_apart(make: Make) -> None:
         ("{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", "call each other without end"),
         ("{% include 't.md.j2' %}", "call each other without end"),
         ("{% for i in range(900) %}aaaaaaaaaaaa{% endfor %}", "writes more than it may"),
+        (
+            "{{ '\\ud800' }}",
+            ":1: the backend `mine` fails: it prints half a character (U+D800), which no file can hold",
+        ),
+        ("{{ record['\\ud800'] }}", "has no attribute"),
+        # Places in memory are others in each run.
+        (
+            "\n{{ 'x'.translate }}",
+            ":2: the backend `mine` fails: it prints what is no text: a built-in method translate",
+        ),
+        ("\n\n{{ [href]|groupby('__code__')|list }}", ":3: the backend `mine` fails: it prints what is no text"),
+        ("{{ record.groups|map('upper') }}", "a generator object sync_do_map; a function is called with `()`"),
+        ("{{ 'x'.upper ~ '' }}", "it prints what is no text: a built-in method upper of str object"),
+        ("{{ '%s'|format(href) }}", "it prints what is no text"),
+        ("{{ joiner() }}{{ range|upper }}", "it prints what is no text"),
     ],
 )
 def test_a_mistake_names_template_and_line(make: Make, template: str, said: str) -> None:
@@ -185,6 +200,29 @@ def test_the_number_of_files_is_bounded(make: Make) -> None:
 
 def test_for_each_must_be_there(make: Make) -> None:
     assert "no `record.nodes` in the data" in fault(make("x", "x.md", "    for_each: record.nodes\n"))
+
+
+@pytest.mark.parametrize(
+    "path", ["{{ 'a/' * 3000 }}x", "{{ 'a' * 99 }}/{{ ('b' * 99 ~ '/') * 10 }}x", "{{ 'a/' * 51 }}x"]
+)
+def test_a_path_that_no_file_system_takes_is_the_manifests_mistake(make: Make, path: str) -> None:
+    found = fault(make("x", path.replace("'", '"')))
+    assert found.startswith("backends/mine/backend.yaml:1: the backend `mine` fails: the path `")
+    assert "it may have 50 and 1,000" in found
+
+
+@pytest.mark.parametrize(
+    "template",
+    [
+        "The fault at 0x40021000 <is> reported, <x at 0x7fff>",
+        "{{ 'object at 0x1234, a function <f> at 0x12' }}",
+        "{{ record.groups.items() }}{{ record.groups.values()|list }}",
+        "{{ namespace(a=1) }}{{ none }}{{ 1.5 }}{{ true }}{{ [1, 'a'] }}",
+        "{% macro m() %}a{% endmacro %}{{ m() }}{{ 'x'.upper() }}{{ record.groups|map('upper')|join(' ') }}",
+    ],
+)
+def test_what_is_text_or_data_is_printed(make: Make, template: str) -> None:
+    assert files(make(template))
 
 
 def test_a_mistake_in_a_path_is_the_manifests(make: Make) -> None:
