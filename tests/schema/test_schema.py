@@ -8,7 +8,7 @@ from typing import Any
 import jsonschema_rs
 import pytest
 
-from archgen.schema.schema_validation import load_schema
+from archgen.schema.language_schema import load_schema
 
 SCHEMA = load_schema()
 
