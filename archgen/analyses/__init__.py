@@ -13,6 +13,7 @@ from archgen.analyses import (
     component_roles,
     connectivity,
     ineffective_timing,
+    input_sources,
     name_validity,
     node_mapping,
     policy_violations,
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 # that in which rules run; findings are sorted later.
 _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *connectivity.RULES,
+    *input_sources.RULES,
     *port_types.RULES,
     *component_roles.RULES,
     *node_mapping.RULES,
