@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Severity, phrase_severity_counts
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.safe_text import make_visible, measure_width
+from archgen.emit.terminal import findings_summary
 from archgen.emit.terminal.line_excerpt import ExcerptMark, quote_line
 
 if TYPE_CHECKING:
@@ -34,25 +35,46 @@ def format_summary(diagnostics: Iterable[Diagnostic]) -> str:
     return ", ".join(phrase_severity_counts(diagnostics)) or "no findings"
 
 
-def render_findings_text(
-    diagnostics: Iterable[Diagnostic], sources: SourceTexts, *, colour: bool = False, width: int = DEFAULT_WIDTH
+def render_findings_text(  # noqa: PLR0913 - all but two by name
+    diagnostics: Iterable[Diagnostic],
+    sources: SourceTexts,
+    *,
+    colour: bool = False,
+    width: int = DEFAULT_WIDTH,
+    wraps_text: bool = False,
+    is_waiting: bool = False,
 ) -> Iterator[str]:
-    """Yield the lines of all findings (settled, in their order), a blank line after each, and the summary."""
+    """Yield the lines of all findings (settled, in their order), a blank line after each, and the summary.
+
+    `is_waiting` is whether rules wait until errors among them are mended.
+    """
     diagnostics = tuple(diagnostics)
     for diagnostic in diagnostics:
-        yield from render_finding_text(diagnostic, sources, colour=colour, width=width)
+        yield from render_finding_text(diagnostic, sources, colour=colour, width=width, wraps_text=wraps_text)
         yield ""
+    table_lines = tuple(findings_summary.render_rule_table(diagnostics))
+    yield from (*table_lines, "") if table_lines else ()
+    if is_waiting:
+        yield findings_summary.WAITING_SENTENCE
     yield format_summary(diagnostics)
 
 
 def render_finding_text(
-    diagnostic: Diagnostic, sources: SourceTexts, *, colour: bool = False, width: int = DEFAULT_WIDTH
+    diagnostic: Diagnostic,
+    sources: SourceTexts,
+    *,
+    colour: bool = False,
+    width: int = DEFAULT_WIDTH,
+    wraps_text: bool = False,
 ) -> Iterator[str]:
-    """Yield the lines of one finding."""
+    """Yield the lines of one finding, with excerpts that keep to a width; with `wraps_text` message and help do so too."""
+    text_width = width if wraps_text else None
     severity = diagnostic.severity or Severity.ERROR
     severity_colour = _COLOUR_CODES[severity]
     name = _paint_text(f"{severity}[{diagnostic.rule}]", severity_colour, colour=colour)
-    yield f"{name}: {_paint_text(make_visible(diagnostic.message), '1', colour=colour)}"
+    message_lines = _wrap_text(diagnostic.message, text_width, len(f"{severity}[{diagnostic.rule}]: "), "    ")
+    yield f"{name}: {_paint_text(message_lines[0], '1', colour=colour)}"
+    yield from (f"    {_paint_text(line, '1', colour=colour)}" for line in message_lines[1:])
     blocks = _group_by_line(diagnostic)
     gutter = max((len(str(span.line)) for span, _ in blocks), default=0)
     for number, (span, labels) in enumerate(blocks):
@@ -75,7 +97,31 @@ def render_finding_text(
             )
             yield f"   {_paint_text(f'{margin} |', '34', colour=colour)} {painted}".rstrip()
     if diagnostic.help:
-        yield f"   {_paint_text('=', '34', colour=colour)} {_paint_text('help:', '1', colour=colour)} {make_visible(diagnostic.help)}"
+        help_lines = _wrap_text(diagnostic.help, text_width, len(_HELP_INDENT), _HELP_INDENT)
+        yield f"   {_paint_text('=', '34', colour=colour)} {_paint_text('help:', '1', colour=colour)} {help_lines[0]}"
+        yield from (f"{_HELP_INDENT}{line}" for line in help_lines[1:])
+
+
+_HELP_INDENT = " " * len("   = help: ")
+
+
+def _wrap_text(text: str, width: int | None, first_indent: int, indent: str) -> list[str]:
+    """Return a text made visible, as lines of at most `width` columns with their indents; a longer word stays whole.
+
+    Without a width it is one line: what goes into a pipe is searched line by line.
+    """
+    visible_text = make_visible(text)
+    if width is None or first_indent + measure_width(visible_text) <= width:
+        return [visible_text]
+    lines, room = [""], width - first_indent
+    for word in visible_text.split(" "):
+        longer_line = f"{lines[-1]} {word}" if lines[-1] else word
+        if lines[-1] and measure_width(longer_line) > room:
+            lines.append(word)
+            room = width - len(indent)
+        else:
+            lines[-1] = longer_line
+    return lines
 
 
 def _group_by_line(diagnostic: Diagnostic) -> list[tuple[Span, list[Label]]]:
