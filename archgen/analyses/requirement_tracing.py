@@ -99,7 +99,9 @@ def _index_titles(architecture: Architecture) -> dict[str, str]:
 
 def _is_declared(architecture: Architecture, requirement: str) -> bool:
     """Whether a requirement is declared, or may be declared in what could not be read."""
-    return requirement in architecture.requirements or requirement in architecture.unread_keys
+    if requirement in architecture.requirements or requirement in architecture.unread_keys:
+        return True
+    return architecture.partial and "requirements" in architecture.unread_keys
 
 
 def _report_unknown_requirement(

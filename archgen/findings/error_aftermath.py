@@ -65,8 +65,8 @@ _FILE_RULES = frozenset(
         "wrong-section",
     }
 )
-"""Rules that ask what another file may say of a type, a message or a topic: they wait while a whole file or section could
-not be read.
+"""Rules that ask what another file may say of a type, a message or a topic: they wait while a whole file or section, or a
+setting of the project, could not be read.
 """
 AFTERMATH_RULES = _WHOLE_MODEL_RULES | _LACK_RULES | _FILE_RULES
 """All rules that may wait."""
@@ -78,10 +78,13 @@ def list_waiting_rules(errors: Iterable[Diagnostic], lost_keys: frozenset[str], 
     `lost_keys` are the keys of what could not be read: a rule whose setting is among them waits, lest what the project
     has switched off comes back. `is_partial` is whether a whole file or section could not be read.
     """
-    if not is_partial and not any(errors):
+    errors = tuple(errors)
+    if not is_partial and not errors:
         return frozenset()
     waiting_rules = _WHOLE_MODEL_RULES | lost_keys
-    return waiting_rules | _FILE_RULES if is_partial else waiting_rules
+    # An error in no element is one in the project's settings, such as its messages and shared topics.
+    has_setting_error = any(error.element is None for error in errors)
+    return waiting_rules | _FILE_RULES if is_partial or has_setting_error else waiting_rules
 
 
 def drop_aftermath(

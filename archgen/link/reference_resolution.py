@@ -16,6 +16,8 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
+_PLAIN_SECTIONS = {"partner": "partners", "host": "hosts", "container": "containers", "use case": "use_cases"}
+"""The sections that declare what is named by its id alone."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 _GUESS_BUDGET = 300_000
 """How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
@@ -91,7 +93,7 @@ class ReferenceResolver:
         known_spans = self.plain_spans[kind]
         if reference is None or reference.text in known_spans:
             return reference.text if reference else None
-        if self.is_lost(reference.text):
+        if self.is_lost(reference.text) or _PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
         guess = self.guess_name(reference.text, known_spans)
         self.diagnostics.append(

@@ -81,7 +81,8 @@ def _diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path
 
 
 def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str | int, ...]) -> str | None:
-    name = find_closest(entry.key, known_keys)
+    plural = f"{entry.key.removesuffix('y')}ies"  # `policy`: two letters more than a slip
+    name = plural if plural in known_keys else find_closest(entry.key, known_keys)
     # `modes` is a word of its own: it means `nodes` only if nodes stand below it.
     is_likely = name is not None and (bool(path) or key_places.may_be_section(entry, name))
     return f"did you mean `{name}`?" if is_likely else None

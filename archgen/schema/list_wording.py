@@ -7,7 +7,8 @@ from typing import Any
 
 from archgen.schema.language_schema import resolve_part
 
-_ID = re.compile(r"[A-Za-z][A-Za-z0-9._-]*\Z", re.ASCII)
+_ID = re.compile(r"[A-Za-z/~][A-Za-z0-9._/~-]*\Z", re.ASCII)
+"""An id or the name of a topic."""
 _LOWER_PATH = re.compile(r"[a-z0-9_.]+\Z")
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)

@@ -32,6 +32,7 @@ def test_what_an_error_swallowed_is_neither_lacking_nor_unused() -> None:
         Diagnostic("type-mismatch", "not about what is missing", NO_SPAN, element="g.screen"),
     ]
     waiting_rules = list_waiting_rules([error], frozenset(), is_partial=False)
+    assert "unchecked-message" not in waiting_rules
     assert [d.message for d in drop_aftermath(findings, [error], waiting_rules)] == [
         "of another element",
         "not about what is missing",
@@ -75,6 +76,9 @@ views: {all_of_it: {show: sensing}}
         ("archgen.yaml", "unread-output: off", "unread-output: of", "archgen.yaml:5 error wrong-value"),
         ("archgen.yaml", "groups/*.yaml", "group/*.yaml", "archgen.yaml:3 error missing-source"),
         ("archgen.yaml", "nodes.yaml", "node.yaml", "archgen.yaml:3 error missing-source"),
+        ("archgen.yaml", "ros: {distro: jazzy}", "ros: {distribution: jazzy}", "archgen.yaml:4 error unknown-key"),
+        ("archgen.yaml", "ros: {distro: jazzy}", "ros: jazzy", "archgen.yaml:4 error wrong-type"),
+        ("nodes.yaml", "hosts: {pc: {cores: 1}}", "hosts: [pc]", "nodes.yaml:5 error wrong-type"),
         ("archgen.yaml", "sources:", "source:", "archgen.yaml:3 error unknown-key"),
         ("archgen.yaml", "project:", "projekt:", "archgen.yaml:2 error unknown-key"),
         ("groups/sensing.yaml", "groups:", "group:", "groups/sensing.yaml:1 error unknown-key"),

@@ -38,6 +38,7 @@ def _component(text: str) -> str:
         ("modes: {flying: {speed: 3}}", "the sections are `archgen`"),
         ("node: {n: {package: urg}}", "did you mean `nodes`?"),
         ("node: {n: a.b}", "did you mean `nodes`?"),
+        ("policy: {p: {title: P}}", "did you mean `policies`?"),
         ("groups: {g: {wheels: {role: sink}}}", "it looks like a component: indent it below `components:` of `g`"),
         (_component("wheels: {role: sink}"), "it looks like a component: begin it in the column of `lidar`"),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),

@@ -25,6 +25,7 @@ from tests.schema.findings import find_mistakes
         ("chains: {c: a -> b -> c}", "1:13", "write `[a, b, c]`"),
         ("chains: {c: {through: a b}}", "1:23", "write `[a, b]`"),
         ("nodes: {n: {timing: {trigger: scan}}}", "1:31", "write `[scan]`"),
+        ("ros: {shared_topics: '/a, /b'}", "1:22", "write `[/a, /b]`"),
         ("nodes: {n: {owner: 'sssa, certh'}}", "1:20", "write `[sssa, certh]`"),
     ],
 )
