@@ -20,7 +20,14 @@ from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
 from archgen.frozen import dataclass
-from archgen.link import interface_sources, parameter_files, report_chapters, shipped_types, slice_merging
+from archgen.link import (
+    interface_sources,
+    parameter_files,
+    report_chapters,
+    shipped_types,
+    slice_merging,
+    title_guesses,
+)
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
@@ -60,6 +67,8 @@ class CheckedProject:
     """The timing analysis that its rules judged, None where the project has no `timing`."""
     rule_options: Mapping[str, OptionValues] = field(default_factory=dict)
     """The options of rules that the project sets, by rule."""
+    waiting_rules: frozenset[str] = frozenset()
+    """The rules that wait until errors of reading and linking are mended."""
 
     @property
     def root(self) -> Path:
@@ -184,6 +193,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     """
     merged_table, merge_findings = slice_merging.merge_documents(loaded_project.documents, loaded_project.lost_keys)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table)
+    # These errors mean that something is missing in the architecture: the findings that they explain wait, so that one
+    # mistake is reported once.
+    reading_errors = _list_structural_errors(loaded_project.diagnostics)
     linked_architecture, link_findings = link.link_project(
         merged_table,
         default_id=loaded_project.id,
@@ -191,6 +203,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         shipped_types=shipped_types.load_shipped_types(guess_distro(loaded_project.distro)),
         interfaces=known_interfaces,
         lost_keys=loaded_project.lost_keys,
+        damaged_elements=frozenset(error.element for error in reading_errors if error.element),
         is_partial=loaded_project.partial,
     )
     architecture = transform.transform_architecture(linked_architecture)
@@ -201,21 +214,21 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
-    # These errors mean that something is missing in the architecture: `quiet` drops the findings of analyses that they
-    # explain, so that one mistake is reported once.
-    structural_errors = [
-        d for d in loaded_project.diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}
-    ]
+    linking_errors = _list_structural_errors((*merge_findings, *interface_findings, *link_findings))
+    waiting_rules = error_aftermath.list_waiting_rules(
+        (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
+    )
     rule_options, option_findings = option_settings.read_rule_options(loaded_project.rule_options, _RULES_BY_NAME)
     raw_diagnostics = (
-        *loaded_project.diagnostics,
+        *title_guesses.add_title_guesses(
+            (*loaded_project.diagnostics, *link_findings), architecture, loaded_project.sources
+        ),
         *merge_findings,
         *interface_findings,
-        *link_findings,
         *chapter_findings,
         *missing_files,
         *error_aftermath.drop_aftermath(
-            analyses.check_architecture(architecture, analysis, rule_options), structural_errors, loaded_project.sources
+            analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules
         ),
         *option_findings,
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
@@ -224,7 +237,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     # Only projects that ignore something pay for this.
     first_lines = ignore_comments.find_first_lines(architecture) if ignores else {}
     settled_findings = settle_diagnostics(
-        ignore_comments.apply_ignores(raw_diagnostics, ignores, _RULES_BY_NAME, first_lines),
+        ignore_comments.apply_ignores(
+            raw_diagnostics, ignores, _RULES_BY_NAME, first_lines, is_complete=not waiting_rules
+        ),
         _RULES_BY_NAME,
         loaded_project.rule_settings,
     )
@@ -243,7 +258,12 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         silenced_findings,
         analysis,
         rule_options,
+        waiting_rules,
     )
+
+
+def _list_structural_errors(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    return [d for d in diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
 
 
 def _find_silenced(

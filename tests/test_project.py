@@ -94,9 +94,9 @@ def test_sources_in_their_order(tmp_path: Path) -> None:
     loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "z.yaml", "g/a.yaml", "g/b.yaml", "g/bx1.yaml", "g/h/t.yaml", "t.yaml"]
     assert findings(loaded) == [
-        "archgen.yaml:2:62 missing-source: `nothing.yaml` matches no file",
         "archgen.yaml:2:76 wrong-value: `../x.yaml` leads out of the project's folder",
         "archgen.yaml:2:87 wrong-value: `/etc/x.yaml` leads out of the project's folder",
+        "archgen.yaml:2:62 missing-source: `nothing.yaml` matches no file",
     ]
 
 
@@ -195,3 +195,41 @@ def test_an_unreadable_marker_hides_nothing_else(tmp_path: Path) -> None:
     loaded = load_project(tmp_path)
     assert names(loaded) == ["a.yaml"]
     assert [d.rule for d in loaded.diagnostics] == ["syntax-error"]
+
+
+@pytest.mark.parametrize(
+    ("text", "finding"),
+    [
+        ("node: {n: {implements: a.b, package: p}}", "unknown-key: no section is called `node`"),
+        ("perception: {components: {c: Camera}}", "unknown-key: no section is called `perception`"),
+        ("host: {a: {title: x, port: 3}}\nserver: {host: x, threads: 3}", "ignored-file: `b.yaml` holds no section of the language and is not read"),
+    ],
+)  # fmt: skip
+def test_a_file_whose_only_section_is_misspelt_is_a_slice_and_other_yaml_is_none(
+    tmp_path: Path, text: str, finding: str
+) -> None:
+    write(tmp_path, {"archgen.yaml": "archgen: 1\n", "b.yaml": text})
+    assert [line.split(" ", 1)[1] for line in findings(load_project(tmp_path))] == [finding]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "guess"),
+    [
+        ("group/*.yaml", "groups/*.yaml"),
+        ("groups", "groups/*.yaml"),
+        ("groups/a.yml", "groups/a.yaml"),
+        ("other/*.yaml", None),
+    ],
+)
+def test_a_pattern_without_files_is_an_error_where_files_are_called_nearly_so(
+    tmp_path: Path, pattern: str, guess: str | None
+) -> None:
+    write(
+        tmp_path,
+        {"archgen.yaml": f"archgen: 1\nsources: ['{pattern}']\n", "groups/a.yaml": "groups: {g: {components: {c: }}}"},
+    )
+    loaded = load_project(tmp_path)
+    (missing,) = loaded.diagnostics
+    assert (missing.rule, missing.severity == "error", loaded.partial) == ("missing-source", bool(guess), bool(guess))
+    assert missing.help == (f"did you mean `{guess}`?" if guess else "paths are relative to the folder of archgen.yaml")
+    assert loaded.lost_keys == (frozenset({"groups", "g", "components", "c"}) if guess else frozenset())

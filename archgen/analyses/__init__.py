@@ -15,6 +15,7 @@ from archgen.analyses import (
     half_written,
     host_links,
     ineffective_timing,
+    input_sources,
     name_validity,
     node_mapping,
     policy_violations,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
 # that in which rules run; findings are sorted later.
 _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *connectivity.RULES,
+    *input_sources.RULES,
     *port_types.RULES,
     *component_roles.RULES,
     *node_mapping.RULES,

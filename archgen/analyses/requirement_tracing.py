@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture, Requirement
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A component or chain names a requirement that nobody declares.
+    """A component or chain names a requirement that nobody declares, or a sentence holds nothing but ids.
 
     Why: The trace from requirements to components has a loose end. Most often it is a slip in the id, or a requirement that
-    was dropped. A requirement of only this component can be written as a sentence in its place.
+    was dropped. A requirement of only this component can be written as a sentence in its place; an entry with a blank is one,
+    `R-1, R-4` in quotes too.
 
     Bad:
         requirements:
@@ -44,25 +46,77 @@ def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera}
           screen: {implements: screen}
     """
+    id_by_title = _index_titles(architecture)
     for component in architecture.components.values():
         for use in component.requirements:
-            if use.is_id and not _is_declared(architecture, use.text):
+            if not use.is_id:
+                yield from _check_sentence(architecture, use.text, use.at, component.id, id_by_title)
+            elif not _is_declared(architecture, use.text):
                 yield _report_unknown_requirement(architecture, use.text, use.at, component.id)
     for chain in architecture.chains.values():
-        for requirement in chain.requirements:
-            # Unlike a component's, a chain's requirements do not say which of them are sentences: these have blanks.
-            if not _is_declared(architecture, requirement) and " " not in requirement:
-                yield _report_unknown_requirement(architecture, requirement, chain.at, chain.id)
+        spans = chain.requirement_places or (chain.at,) * len(chain.requirements)
+        for requirement, span in zip(chain.requirements, spans, strict=True):
+            if not _is_declared(architecture, requirement):
+                yield _report_unknown_requirement(architecture, requirement, span, chain.id)
+
+
+_ID_SEPARATOR = re.compile(r"[,;&\s]+")
+_MAX_SENTENCE = 1000
+"""Longer text consists of more than ids."""
+
+
+def _check_sentence(
+    architecture: Architecture, sentence: str, span: Span, element: str, id_by_title: Mapping[str, str]
+) -> Iterator[Diagnostic]:
+    """Report a sentence that was not meant as one: nothing but ids, or the title of a requirement."""
+    ids = _list_meant_requirements(architecture, sentence, id_by_title)
+    if not ids:
+        return
+    is_title = id_by_title.get(sentence.casefold()) in ids
+    reason = f"the title of `{ids[0]}`" if is_title else "made of ids only"
+    message = f"`{sentence}` is {reason}, and serves nothing: what holds a blank is a sentence of its own here"
+    help_line = f"write `{ids[0]}`" if is_title else f"write `[{', '.join(ids)}]`: each is an entry"
+    labels = tuple(Label(architecture.requirements[name].at, "declared here") for name in ids)
+    yield Diagnostic("unknown-requirement", message, span, labels=labels, help=help_line, element=element)
+
+
+def _list_meant_requirements(
+    architecture: Architecture, sentence: str, id_by_title: Mapping[str, str]
+) -> tuple[str, ...]:
+    """Return the requirements that a sentence means: it is made of their ids, or is the title of one; else none."""
+    words = _ID_SEPARATOR.split(sentence) if len(sentence) <= _MAX_SENTENCE else []
+    ids = tuple(dict.fromkeys(word for word in words if word not in {"", "and"}))
+    if ids and all(word in architecture.requirements for word in ids):
+        return ids
+    title_id = id_by_title.get(sentence.casefold())
+    return (title_id,) if title_id else ()
+
+
+def _index_titles(architecture: Architecture) -> dict[str, str]:
+    """Return the ids of requirements by title."""
+    return {requirement.title.casefold(): requirement.id for requirement in architecture.requirements.values()}
 
 
 def _is_declared(architecture: Architecture, requirement: str) -> bool:
     """Whether a requirement is declared, or may be declared in what could not be read."""
-    return requirement in architecture.requirements or requirement in architecture.unread_keys
+    if requirement in architecture.requirements or requirement in architecture.unread_keys:
+        return True
+    return architecture.partial and "requirements" in architecture.unread_keys
 
 
 def _report_unknown_requirement(
     architecture: Architecture, requirement_id: str, span: Span, element: str
 ) -> Diagnostic:
+    use_case = architecture.use_cases.get(requirement_id)
+    if use_case is not None:
+        return Diagnostic(
+            "unknown-requirement",
+            f"`{requirement_id}` is a use case, not a requirement",
+            span,
+            labels=(Label(use_case.at, "declared here"),),
+            help=f"requirements name their use cases: `requirements: {{ID: {{use_cases: [{requirement_id}]}}}}`",
+            element=element,
+        )
     guess = did_you_mean(requirement_id, architecture.requirements)
     cure = guess or "declare it in the section `requirements`, or write a sentence in its place"
     return Diagnostic(
@@ -105,6 +159,11 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     named_ids = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
     named_ids.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
+    # A sentence that means requirements is reported by `unknown-requirement`, too.
+    id_by_title = _index_titles(architecture)
+    sentences = {use.text for c in architecture.components.values() for use in c.requirements if not use.is_id}
+    for sentence in sentences:
+        named_ids.update(_list_meant_requirements(architecture, sentence, id_by_title))
     # A misspelt id is reported by `unknown-requirement`; the requirement that it means is not reported once more.
     misspelt_ids = {
         find_closest(text, architecture.requirements) for text in named_ids if text not in architecture.requirements

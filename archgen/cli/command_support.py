@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_first
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
@@ -54,20 +54,23 @@ def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Se
 
 
 def print_findings(findings: Sequence[Diagnostic], checked_project: CheckedProject, stream: TextIO) -> None:
-    """Print a project's findings for people, as wide as the terminal."""
-    print_excerpts(findings, checked_project.sources, stream)
+    """Print a project's findings for people, the gravest first, as wide as the terminal."""
+    is_waiting = bool(checked_project.waiting_rules)
+    print_excerpts(sort_gravest_first(findings), checked_project.sources, stream, is_waiting=is_waiting)
 
 
-def print_excerpts(findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO) -> None:
-    """Print findings with the lines of these sources."""
+def print_excerpts(
+    findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO, *, is_waiting: bool = False
+) -> None:
+    """Print findings with the lines of these sources. `is_waiting` is whether rules wait for errors to be mended."""
     from archgen.diagnostics.text_columns import find_width
     from archgen.emit.terminal import findings_text
 
     colour = findings_text.wants_colour(stream, os.environ)
-    width = find_width(stream)
-    stream.writelines(
-        f"{line}\n" for line in findings_text.render_findings_text(findings, sources, colour=colour, width=width)
+    lines = findings_text.render_findings_text(
+        findings, sources, colour=colour, width=find_width(stream), is_waiting=is_waiting
     )
+    stream.writelines(f"{line}\n" for line in lines)
 
 
 def exit_status(findings: Sequence[Diagnostic], *, strict: bool = False) -> int:

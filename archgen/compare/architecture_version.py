@@ -30,3 +30,5 @@ class ArchitectureVersion:
     unnamed_keys: frozenset[str] = frozenset()
     analysis: Analysis | None = field(default=None, compare=False, repr=False)
     """The timing analysis that its rules judged, if there is one already."""
+    waiting_rules: frozenset[str] = frozenset()
+    """The rules that errors of reading and linking kept from being judged."""

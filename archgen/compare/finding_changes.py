@@ -22,11 +22,13 @@ class JudgedFindings(NamedTuple):
 def judge_findings(before: ArchitectureVersion, after: ArchitectureVersion, matched_ids: MatchedIds) -> JudgedFindings:
     """Classify the findings of both versions. A finding that only gives another figure is none of these.
 
-    If a part of the first version could not be read, what was found there is unknown: then only errors are new.
+    If a part of the first version could not be read, what was found there is unknown: then only errors are new. What
+    rules of the second version wait to judge is not cured.
     """
     new_findings, missing_findings = _split_findings(before.findings, after.findings, matched_ids)
-    if before.architecture.unread_keys:
+    if before.architecture.unread_keys or before.waiting_rules:
         new_findings = tuple(finding for finding in new_findings if finding.severity is Severity.ERROR)
+    missing_findings = tuple(finding for finding in missing_findings if finding.rule not in after.waiting_rules)
     _, cured_findings = _split_findings(missing_findings, after.silenced_findings, matched_ids)
     # By object identity: two equal findings are two findings.
     cured_ids = set(map(id, cured_findings))

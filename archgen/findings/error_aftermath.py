@@ -1,22 +1,49 @@
-"""Drop findings that a read error explains: what could not be understood was not read, and then seems to be missing."""
+"""Hold back findings that errors of reading and linking explain: what was not understood only seems to be missing."""
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.diagnostics.source_span import SourceTexts
 
+_WHOLE_MODEL_RULES = frozenset(
+    {
+        # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
+        "broken-chain",
+        "deadlocked-trigger",
+        "endless-trigger",
+        "late-chain",
+        "lost-samples",
+        "overloaded-host",
+        "period-conflict",
+        "saturated-link",
+        "short-queue",
+        "slow-component",
+        "slow-service",
+        # What nothing refers to, and what nothing says: that may be what could not be read.
+        "disconnected-component",
+        "empty-reference",
+        "empty-view",
+        "missing-detail",
+        "uncovered-requirement",
+        "unlinked-hosts",
+        "unmapped-component",
+        "unpublished-output",
+        "unread-output",
+        "unsubscribed-input",
+        "unused-type",
+    }
+)
+"""Rules that judge the model as a whole: they wait until everything is read and linked."""
 _LACK_RULES = frozenset(
     {
-        "disconnected-component",
+        "absent-core",
         "half-written",
+        "idle-timing",
         "incompatible-qos",
-        "missing-detail",
         "role-mismatch",
         "unfed-input",
         "unjustified-component",
@@ -25,67 +52,52 @@ _LACK_RULES = frozenset(
         "unmapped-type",
     }
 )
-"""Rules that report what an element lacks (or that depend on a default or a `status: planned`): dropped for an element
+"""Rules that report what an element lacks (or that depend on a default or a `status: planned`): they wait for an element
 in which something could not be read.
 """
-_UNUSED_RULES = frozenset(
+_FILE_RULES = frozenset(
     {
-        "disconnected-component",
-        "uncovered-requirement",
-        "unmapped-component",
-        "unpublished-output",
-        "unread-output",
-        "unsubscribed-input",
-        "unused-type",
+        "incompatible-qos",
+        "role-mismatch",
+        "unaccounted-topic",
+        "unchecked-message",
+        "unjustified-node",
+        "unmapped-type",
+        "unnamed-source",
+        "wrong-section",
     }
 )
-"""Rules that report that something is not used: dropped for names that occur where something could not be read."""
-_WORD_PATTERN = re.compile(r"[^\s.,:#\"'{}\[\]]+")
-_MAX_LINES = 200
-"""The lines below an error that are looked at: about one element's worth."""
+"""Rules that ask what another file may say of a type, a message or a topic: they wait while a whole file or section, or a
+setting of the project, could not be read.
+"""
+AFTERMATH_RULES = _WHOLE_MODEL_RULES | _LACK_RULES | _FILE_RULES
+"""All rules that may wait."""
+
+
+def list_waiting_rules(errors: Iterable[Diagnostic], lost_keys: frozenset[str], *, is_partial: bool) -> frozenset[str]:
+    """Return the rules that wait until these errors of reading and linking are mended.
+
+    `lost_keys` are the keys of what could not be read: a rule whose setting is among them waits, lest what the project
+    has switched off comes back. `is_partial` is whether a whole file or section could not be read.
+    """
+    errors = tuple(errors)
+    if not is_partial and not errors:
+        return frozenset()
+    waiting_rules = _WHOLE_MODEL_RULES | lost_keys
+    # An error in no element is one in the project's settings, such as its messages and shared topics.
+    has_setting_error = any(error.element is None for error in errors)
+    return waiting_rules | _FILE_RULES if is_partial or has_setting_error else waiting_rules
 
 
 def drop_aftermath(
-    diagnostics: Iterable[Diagnostic], errors: Iterable[Diagnostic], sources: SourceTexts
+    diagnostics: Iterable[Diagnostic], errors: Iterable[Diagnostic], waiting_rules: frozenset[str]
 ) -> Iterator[Diagnostic]:
-    """Yield the findings that read errors do not explain. The others return once the errors are fixed."""
-    errors = tuple(errors)
+    """Yield the findings that wait for no error. The others return once the errors are mended.
+
+    `errors` are those of reading: an element in which there is one seems to lack what they took.
+    """
     damaged_elements = {error.element for error in errors if error.element}
-    # Where reading failed there is no tree to look at: words of the text stand in for it.
-    damaged_words = {
-        word
-        for file, number in _list_damaged_lines(errors, sources)
-        for word in _WORD_PATTERN.findall(sources.line_of(file, number) or "")
-    }
     for diagnostic in diagnostics:
         is_explained_lack = diagnostic.rule in _LACK_RULES and diagnostic.element in damaged_elements
-        is_explained_unused = diagnostic.rule in _UNUSED_RULES and not damaged_words.isdisjoint(
-            _names_in_finding(diagnostic, sources)
-        )
-        if not is_explained_lack and not is_explained_unused:
+        if diagnostic.rule not in waiting_rules and not is_explained_lack:
             yield diagnostic
-
-
-def _list_damaged_lines(errors: Iterable[Diagnostic], sources: SourceTexts) -> dict[tuple[str, int], None]:
-    """Return the lines with an error, and those below each that are indented more, by file and number.
-
-    Each line once: thousands of errors may lie in one line of megabytes.
-    """
-    damaged_lines: dict[tuple[str, int], None] = {}
-    for file, first_number in dict.fromkeys((error.span.file, error.span.line) for error in errors):
-        damaged_lines[file, first_number] = None
-        first_line = sources.line_of(file, first_number) or ""
-        depth = len(first_line) - len(first_line.lstrip())
-        for number in range(first_number + 1, first_number + _MAX_LINES):
-            line = sources.line_of(file, number)
-            if line is None or (line.strip() and len(line) - len(line.lstrip()) <= depth):
-                break
-            damaged_lines[file, number] = None
-    return damaged_lines
-
-
-def _names_in_finding(diagnostic: Diagnostic, sources: SourceTexts) -> Iterator[str]:
-    """Yield what a finding is about: the word that it points at, and the last part of its element's id."""
-    span = diagnostic.span
-    yield (sources.line_of(span.file, span.line) or "")[span.column - 1 : span.end_column - 1]
-    yield (diagnostic.element or "").rpartition(".")[2]

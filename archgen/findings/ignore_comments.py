@@ -74,11 +74,14 @@ def apply_ignores(
     ignores: Iterable[SilencingComment],
     rules: Mapping[str, Rule],
     first_lines: Mapping[str, LineSet],
+    *,
+    is_complete: bool = True,
 ) -> Iterator[Diagnostic]:
     """Leave out what comments silence, and add what is wrong with the comments.
 
     This runs before findings are settled, so that a comment for a rule that is switched off counts as used. After read
-    or link errors nobody knows what else would have been found: then no comment is called unused.
+    or link errors, or where rules wait for something (not `is_complete`), nobody knows what else would have been found:
+    then no comment is called unused.
     """
     ignores = tuple(ignores)
     ignores_by_line: dict[tuple[str, str, int], list[SilencingComment]] = defaultdict(list)
@@ -86,7 +89,7 @@ def apply_ignores(
         for name in ignore.rules:
             ignores_by_line[name, ignore.span.file, ignore.span.line].append(ignore)
     used_ignores: set[tuple[Span, str]] = set()
-    has_read_errors = False
+    has_read_errors = not is_complete
     # One pass: it yields what is left, and notes which comments silenced something.
     for diagnostic in diagnostics:
         rule = rules[diagnostic.rule]

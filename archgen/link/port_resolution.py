@@ -47,7 +47,7 @@ class PortResolver:
         if match.count:
             self.resolver.suspect_ids.update(name.id for name in match.elements)
             self.resolver.diagnostics.append(self._diagnose_ambiguous(key, span, match))
-        elif not self.resolver.is_lost(key):
+        elif not self.resolver.is_lost(key) and self.resolver.damaged_elements.isdisjoint(self.component_ids):
             self.resolver.diagnostics.append(self._diagnose_unknown(key, span, kind))
         return None
 

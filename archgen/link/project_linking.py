@@ -28,12 +28,14 @@ def link_project(  # noqa: PLR0913 - all by name
     shipped_types: Mapping[str, ConceptualType],
     interfaces: Interfaces,
     lost_keys: frozenset[str] = frozenset(),
+    damaged_elements: frozenset[str] = frozenset(),
     is_partial: bool = False,
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     """Return the architecture of a project's merged slices. What cannot be resolved is left out and reported.
 
     `default_id` and `default_title` are used where the project states none. `lost_keys` are the keys of what could not
-    be read: what they may declare is not reported as unknown. `is_partial` is whether a whole file or section was lost.
+    be read: what they may declare is not reported as unknown, and neither is what may stand in `damaged_elements`, in
+    which something could not be read. `is_partial` is whether a whole file or section was lost.
     """
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
@@ -41,7 +43,7 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics: list[Diagnostic] = []
     element_outline = build_outline(root)
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
-    resolver = _make_resolver(root, element_outline, diagnostics, lost_keys)
+    resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     groups, components, connections, edges = declare_groups(element_outline, resolver, types)
     containers = section_declaration.declare_containers(root, resolver)
     implements = resolve_implements(root, resolver)
@@ -87,7 +89,11 @@ def link_project(  # noqa: PLR0913 - all by name
 
 
 def _make_resolver(
-    root: MappingNode, element_outline: ElementOutline, diagnostics: list[Diagnostic], lost_keys: frozenset[str]
+    root: MappingNode,
+    element_outline: ElementOutline,
+    diagnostics: list[Diagnostic],
+    lost_keys: frozenset[str],
+    damaged_elements: frozenset[str],
 ) -> ReferenceResolver:
     spans: dict[str, dict[str, Span]] = {
         "group": {name: entry.key_span for name, entry in element_outline.groups.items()},
@@ -103,4 +109,4 @@ def _make_resolver(
         kind: {entry.key: entry.key_span for entry in mapping_values.get_mapping(root, section)}
         for kind, section in sections.items()
     }
-    return ReferenceResolver(spans, plain_spans, diagnostics, lost_keys)
+    return ReferenceResolver(spans, plain_spans, diagnostics, lost_keys, damaged_elements)

@@ -16,6 +16,8 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
+_PLAIN_SECTIONS = {"partner": "partners", "host": "hosts", "container": "containers", "use case": "use_cases"}
+"""The sections that declare what is named by its id alone."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 _GUESS_BUDGET = 300_000
 """How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
@@ -35,6 +37,8 @@ class ReferenceResolver:
     diagnostics: list[Diagnostic]
     lost_keys: frozenset[str] = frozenset()
     """The keys in files that could not be read: what they may declare is not reported as unknown."""
+    damaged_elements: frozenset[str] = frozenset()
+    """The ids of components in which something could not be read: what it may be is not reported as unknown."""
     suspect_ids: set[str] = field(default_factory=set)
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     names: PathResolver = field(init=False)
@@ -89,7 +93,7 @@ class ReferenceResolver:
         known_spans = self.plain_spans[kind]
         if reference is None or reference.text in known_spans:
             return reference.text if reference else None
-        if self.is_lost(reference.text):
+        if self.is_lost(reference.text) or _PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
         guess = self.guess_name(reference.text, known_spans)
         self.diagnostics.append(
@@ -112,9 +116,13 @@ class ReferenceResolver:
         return tuple(dict.fromkeys(name for name in partner_ids if name))
 
     def is_lost(self, dotted_path: str) -> bool:
-        """Whether a file that could not be read may declare what a path names."""
+        """Whether what could not be read may declare what a path names."""
         # The last part or the one before it: a port may be lost, or the component that it belongs to.
-        return not self.lost_keys.isdisjoint(dotted_path.split(".")[-2:])
+        if not self.lost_keys.isdisjoint(dotted_path.split(".")[-2:]):
+            return True
+        component_path, dot, _ = dotted_path.rpartition(".")
+        component = self.names.resolve_path(component_path, ("component",)).unique_element if dot else None
+        return component is not None and component.id in self.damaged_elements
 
     def guess_name(self, word: str, candidates: Collection[str]) -> str | None:
         """Return the candidate that a name most likely stands for, as long as the budget for guesses lasts."""
@@ -159,6 +167,9 @@ class ReferenceResolver:
             )
         if dotted_path in self.spans["group"] and "group" not in kinds:
             return self._diagnose_group(reference, kind_phrase, element_id)
+        other_kind = self._diagnose_other_kind(reference, kinds, kind_phrase, element_id)
+        if other_kind is not None:
+            return other_kind
         guess = self._guess_path(dotted_path, kinds)
         candidates = self.names.resolve_path(guess, kinds, component_id=component_id) if guess else NO_MATCH
         self.suspect_ids.update(name.id for name in candidates.elements)
@@ -166,6 +177,21 @@ class ReferenceResolver:
         return diagnose_unknown_reference(
             reference, kind_phrase, guess, self._span_of(guessed_element) if guessed_element else NO_SPAN, element_id
         )
+
+    def _diagnose_other_kind(
+        self, reference: ScalarNode, kinds: Sequence[str], kind_phrase: str, element_id: str
+    ) -> Diagnostic | None:
+        """Report a path that names an output, or a node, where none can stand; None for any other path."""
+        for kind, help_line in (("output", "name its component"), ("node", "name the component that it implements")):
+            ids = self.names.ids_ending_in(kind, reference.text) if kind not in kinds else ()
+            if ids:
+                self.suspect_ids.update(ids)
+                message = f"no {kind_phrase} named `{reference.text}`: it is {'an' if kind == 'output' else 'a'} {kind}"
+                labels = (Label(self.spans[kind][ids[0]], f"the {kind}"),)
+                return Diagnostic(
+                    "unknown-reference", message, reference.span, labels=labels, help=help_line, element=element_id
+                )
+        return None
 
     def _diagnose_group(self, reference: ScalarNode, kind_phrase: str, element_id: str) -> Diagnostic:
         group_id, group_span = reference.text, self.spans["group"][reference.text]

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
 from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
@@ -46,7 +46,8 @@ def report_empty_list(
 ) -> None:
     """Report an empty list where it has no meaning."""
     node = mapping.get(key)
-    if isinstance(node, SequenceNode) and not node.items:
+    # Without a place: what was written there is reported already.
+    if isinstance(node, SequenceNode) and not node.items and node.span != NO_SPAN:
         diagnostics.append(
             _diagnose_senseless(
                 f"`{key}` names no {kind}", node.span, f"name one or more, or leave `{key}` out", element_id

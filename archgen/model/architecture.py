@@ -85,6 +85,8 @@ class Chain:
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
     """The entries of `through` that name no element: such a chain is not judged."""
+    requirement_places: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+    """Where each of its requirements is written."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,7 +80,7 @@ def report_findings(
     caused_set = set(caused_findings)
     # The baseline is read after the project, so its problems have not been through `settle` yet.
     baseline_problems = settle_diagnostics(problems, RULES_BY_NAME, checked_project.loaded_project.rule_settings)
-    is_complete = find_reading_error(checked_project.findings) is None
+    is_complete = find_reading_error(checked_project.findings) is None and not checked_project.waiting_rules
     return ReportedFindings(
         # New to both: neither listed in the baseline nor there before the change.
         findings=tuple(

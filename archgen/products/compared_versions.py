@@ -141,6 +141,7 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         # Where a project does not write them, they come from the name of its folder: that is no change of the project.
         unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
         analysis=checked_project.analysis,
+        waiting_rules=checked_project.waiting_rules,
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.schema import normalise_document, suggest_ids, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlDocument, YamlNode
@@ -18,12 +19,13 @@ class ValidatedSlice:
     """The result of validating a slice.
 
     `lost_keys` are the keys that were taken out of it, and the ids that malformed ones may have been meant to be.
-    `partial` is whether a whole section is among them.
+    `partial` is whether a whole section is among them. `settings` is what can be used of a file that is not YAML.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     lost_keys: tuple[str, ...] = ()
     partial: bool = False
+    settings: YamlDocument | None = None
 
 
 @dataclass(slots=True)
@@ -68,7 +70,13 @@ def parse_slice(file: str, text: str, parsed_slices: ParsedSlices | None = None)
 
 def _validate_slice(parsed_slice: Slice) -> ValidatedSlice:
     if parsed_slice.document is None:
-        return ValidatedSlice(parsed_slice.diagnostics, tuple(_find_written_keys(parsed_slice.text)), partial=True)
+        return ValidatedSlice(
+            parsed_slice.diagnostics,
+            # A key may lack just its colon.
+            (*find_written_keys(parsed_slice.text), *_LINE_WORD.findall(parsed_slice.text)),
+            partial=True,
+            settings=_recover_settings(parsed_slice),
+        )
     schema_diagnostics = validate_document(parsed_slice.document)
     lost_keys = (
         tuple(_find_lost_keys(parsed_slice, parsed_slice.document, schema_diagnostics)) if schema_diagnostics else ()
@@ -86,7 +94,38 @@ long word without a colon is scanned once, not once for each of its letters.
 """
 
 
-def _find_written_keys(text: str) -> list[str]:
+_SETTINGS_BLOCKS = tuple(
+    re.compile(rf"^{section}:.*(?:\n(?![A-Za-z\"']).*)*", re.MULTILINE) for section in ("sources", "ros")
+)
+
+
+def _recover_settings(parsed_slice: Slice) -> YamlDocument | None:
+    """Return `sources` and `ros` of a file that is not YAML, where they are sound by themselves; None if there are none.
+
+    Without them other files would be read than the project names, and messages judged by no distribution: a slip in one
+    line of archgen.yaml would be a hundred findings.
+    """
+    # Of a merge conflict neither side is read.
+    if any(diagnostic.rule != "syntax-error" for diagnostic in parsed_slice.diagnostics):
+        return None
+    root = MappingNode({}, Span.of_file(parsed_slice.file))
+    # The first of each: a second one is a mistake, and a stranger's file may hold a million.
+    for block in filter(None, (pattern.search(parsed_slice.text) for pattern in _SETTINGS_BLOCKS)):
+        # Blank lines above keep the positions as they are in the file.
+        text = "\n" * parsed_slice.text.count("\n", 0, block.start()) + block[0]
+        document, _ = yaml_parser.parse_yaml(parsed_slice.file, text)
+        if document is not None:
+            root.entries = {**document.root.entries, **root.entries}
+    document = YamlDocument(parsed_slice.file, root)
+    validate_document(document)
+    normalise_document(document)
+    return document if root.entries else None
+
+
+_LINE_WORD = re.compile(r"^[ \t]*+([A-Za-z][A-Za-z0-9_.-]*+)", re.MULTILINE)
+
+
+def find_written_keys(text: str) -> list[str]:
     """Return everything in a text that looks like a key; works on text that cannot be parsed."""
     return _WRITTEN_KEY.findall(text)
 
@@ -96,7 +135,7 @@ def _find_lost_keys(
 ) -> Iterator[str]:
     """Yield the keys that were taken out of a document, and the ids that malformed keys may have been meant to be."""
     # Counted, not a set: of two elements with the same id in different sections one may be lost and the other not.
-    yield from Counter(_find_written_keys(parsed_slice.text)) - Counter(_list_keys(document.root))
+    yield from Counter(find_written_keys(parsed_slice.text)) - Counter(_list_keys(document.root))
     lines = parsed_slice.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     for diagnostic in schema_diagnostics:
         span = diagnostic.span

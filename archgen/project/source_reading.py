@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
-from archgen.project.slice_parsing import ParsedSlices, Slice, parse_slice
+from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys, parse_slice
 from archgen.schema import list_sections
+from archgen.schema.key_places import is_meant_for_language
 from archgen.syntax import file_patterns
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
 _SKIPPED_FOLDERS = frozenset({"backends"})
 """Folders that are not searched for slices unless `sources` names them."""
+_MAX_SECTIONS = 100
+"""The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
+_GUESS_BUDGET = 300_000
+"""How many names of files are compared with patterns that match none, so that a million of them take no minutes."""
 _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
@@ -74,8 +80,9 @@ def _keep_slice(state: ReadingState, parsed_slice: Slice) -> None:
     state.partial |= validated.partial
     if parsed_slice.document is None:
         state.broken_files.append(parsed_slice.file)
-    else:
-        state.documents.append(parsed_slice.document)
+    document = parsed_slice.document or validated.settings
+    if document is not None:
+        state.documents.append(document)
 
 
 def read_sources(state: ReadingState) -> None:
@@ -84,10 +91,13 @@ def read_sources(state: ReadingState) -> None:
     if sources_entry is None:
         _read_all_slices(state)
     elif isinstance(sources_entry.value, SequenceNode):
+        unmatched_patterns = list[ScalarNode]()
         for pattern in sources_entry.value.items:
-            for file in expand_source_pattern(state, pattern):
+            for file in expand_source_pattern(state, pattern, unmatched_patterns):
                 if file not in state.seen_files:
                     _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
+        # Last, when it is known which files no pattern names.
+        _report_missing_sources(state, unmatched_patterns)
 
 
 def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> None:
@@ -119,7 +129,10 @@ def _read_all_slices(state: ReadingState) -> None:
             ignored_files.append((file, None))
         elif parsed_slice.document is None:
             _keep_slice(state, parsed_slice)
-        elif not known_sections.isdisjoint(parsed_slice.sections):
+        elif not known_sections.isdisjoint(parsed_slice.sections) or any(
+            # Then its slip is an error at its place. Other programs' files may have thousands of keys.
+            map(is_meant_for_language, islice(parsed_slice.document.root, _MAX_SECTIONS))
+        ):
             if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
                 _keep_slice(state, parsed_slice)
         elif parsed_slice.sections:
@@ -151,8 +164,53 @@ def _diagnose_ignored_files(ignored_files: list[tuple[str, str | None]]) -> Diag
     return Diagnostic("ignored-file", message, Span.of_file(PROJECT_FILE), help=help_line)
 
 
-def expand_source_pattern(state: ReadingState, pattern: YamlNode) -> Iterator[str]:
-    """Yield the files that one pattern matches; report a pattern that leaves the project or matches nothing."""
+def _report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) -> None:
+    """Report patterns that match no file. What is in the files that one most likely means counts as not understood."""
+    candidates: set[str] | None = None
+    guess_count = 0
+    for pattern in patterns:
+        if candidates is None:
+            yaml_files = file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS)
+            unread_files = [file for file in yaml_files if file not in state.seen_files]
+            candidates = {*unread_files, *map(_widen_pattern, unread_files)}
+        folder_pattern = f"{pattern.text.rstrip('/')}/*.yaml"
+        guess_count += len(candidates)
+        near_names = candidates if guess_count <= _GUESS_BUDGET else ()
+        guess = folder_pattern if folder_pattern in candidates else find_closest(pattern.text, near_names)
+        meant_files = file_patterns.expand_pattern(state.files, guess) if guess else ()
+        lost_keys = {key for file in meant_files for key in find_written_keys(_parse_file(state, file).text)}
+        if lost_keys.isdisjoint(list_sections()):
+            state.diagnostics.append(_diagnose_missing_source(pattern))
+            continue
+        state.lost_keys.update(lost_keys)
+        state.partial = True
+        state.diagnostics.append(_diagnose_missing_source(pattern, guess))
+
+
+def _widen_pattern(file: str) -> str:
+    """Return the pattern of all files beside a file: `groups/*.yaml` for `groups/sensing.yaml`."""
+    folder, slash, _ = file.rpartition("/")
+    return f"{folder}{slash}*.yaml"
+
+
+def _diagnose_missing_source(pattern: ScalarNode, guess: str | None = None) -> Diagnostic:
+    # With a guess the project's own files are not read: an error, since everything that they declare is missing.
+    return Diagnostic(
+        "missing-source",
+        f"`{pattern.text}` matches no file",
+        pattern.span,
+        severity=Severity.ERROR if guess else None,
+        help=f"did you mean `{guess}`?" if guess else "paths are relative to the folder of archgen.yaml",
+    )
+
+
+def expand_source_pattern(
+    state: ReadingState, pattern: YamlNode, unmatched_patterns: list[ScalarNode] | None = None
+) -> Iterator[str]:
+    """Yield the files that one pattern matches; report a pattern that leaves the project or matches nothing.
+
+    One that matches nothing is added to `unmatched_patterns` instead, if given.
+    """
     if not isinstance(pattern, ScalarNode):
         return
     if not file_patterns.is_inside_project(pattern.text):
@@ -161,6 +219,11 @@ def expand_source_pattern(state: ReadingState, pattern: YamlNode) -> Iterator[st
         state.diagnostics.append(Diagnostic("wrong-value", message, pattern.span, help=help_line))
         return
     matching_files = file_patterns.expand_pattern(state.files, pattern.text)
-    if not matching_files:
-        state.diagnostics.append(Diagnostic("missing-source", f"`{pattern.text}` matches no file", pattern.span))
+    # A folder is no file; with YAML files in it, these are what is meant.
+    if len(matching_files) == 1 and file_patterns.expand_pattern(state.files, f"{matching_files[0]}/*.yaml"):
+        matching_files = ()
+    if not matching_files and unmatched_patterns is not None:
+        unmatched_patterns.append(pattern)
+    elif not matching_files:
+        state.diagnostics.append(_diagnose_missing_source(pattern))
     yield from matching_files

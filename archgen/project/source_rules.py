@@ -10,8 +10,8 @@ RULES: tuple[Rule, ...] = (
         Severity.NOTE,
         """A YAML file below the project's folder holds no section of the language and is not read.
 
-Why: where `sources` is left out, every YAML file below is looked at. Parameter files and workflows are not meant, a file
-with a slip in its only section is; the note lists both.
+Why: where `sources` is left out, every YAML file below is looked at. Parameter files and workflows are not meant. A file
+with a slip in its only section is: it is read, and the slip an error, if what stands there has the section's keys.
 
 Bad:
 
@@ -34,7 +34,8 @@ Good:
         Severity.WARNING,
         """A pattern in `sources` or `ros.interfaces` matches no file.
 
-Why: a slip in a pattern would leave out files without a word.
+Why: a slip in a pattern would leave out files without a word. Where files are nearly called so, this is an error, and what
+they declare is not reported as missing.
 
 Bad:
 

@@ -6,15 +6,14 @@ Later stages rely on it: what is left has the kind of value that the schema asks
 from __future__ import annotations
 
 import functools
-import json
 import re
 from typing import TYPE_CHECKING, Any
 
 import jsonschema_rs
 
-from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema import schema_wording
+from archgen.schema import exchanged_ports, key_wording, schema_wording
+from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
@@ -29,11 +28,11 @@ _USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
 
 def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Report what the schema does not allow, and remove it from the document's tree in place."""
+    diagnostics = list(exchanged_ports.mend_exchanged_ports(document))
     data = _to_validator_data(document.root)
     validator = _get_validator()
     if validator.is_valid(data):
-        return ()
-    diagnostics: list[Diagnostic] = []
+        return tuple(diagnostics)
     wrong_places: list[tuple[ErrorPlace, str | None]] = []
     seen_paths = set[tuple[str | int, ...]]()
     for error in _sort_by_weight(validator.iter_errors(data)):
@@ -43,13 +42,6 @@ def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
         _prune_node(place, key)
     _drop_holes(document.root)
     return tuple(diagnostics)
-
-
-@functools.cache
-def load_schema() -> dict[str, Any]:
-    """Return the JSON Schema of the language. Cached and shared: nobody may change it."""
-    text = resources.resource_path("schemas", "archgen.schema.json").read_text(encoding="utf-8")
-    return json.loads(text)  # type: ignore[no-any-return]
 
 
 @functools.cache
@@ -108,15 +100,15 @@ def _record_error(
     # The library reports one error for all unknown keys of a mapping; each becomes a finding of its own, at its key.
     if kind == "additionalProperties" and isinstance(place.node, MappingNode):
         unexpected_kind: Any = error.kind  # its attributes depend on the kind, which the library's types do not say
-        for key in map(_remove_key_mark, unexpected_kind.unexpected):
-            diagnostics.append(schema_wording.diagnose_unknown_key(place.node.entries[key], schema_part, place.path))
-            wrong_places.append((place, key))
+        unknown_keys = tuple(map(_remove_key_mark, unexpected_kind.unexpected))
+        wrong_places.extend((place, key) for key in unknown_keys)
+        diagnostics.extend(key_wording.diagnose_unknown_keys(place, unknown_keys, schema_part))
     elif kind == "propertyNames" and isinstance(place.node, MappingNode):
         names_kind: Any = error.kind
         key = _remove_key_mark(names_kind.error.instance)
         if (*place.path, key, "") not in seen_paths:  # no key is empty, so this is no value's path
             seen_paths.add((*place.path, key, ""))
-            diagnostics.append(schema_wording.diagnose_wrong_key(place.node.entries[key], schema_part, place.path))
+            diagnostics.append(key_wording.diagnose_wrong_key(place.node.entries[key], schema_part, place.path))
             if not _USABLE_ID.match(key):
                 wrong_places.append((place, key))
     elif place.path not in seen_paths:
@@ -180,7 +172,7 @@ def _prune_node(place: ErrorPlace, key: str | None) -> None:
         place.parent.items[int(place.path[-1])] = _HOLE_NODE
     elif isinstance(place.parent, MappingNode) and place.entry is not None:
         if _is_kept_list(place.path):
-            place.entry.value = SequenceNode([], place.node.span)
+            place.entry.value = SequenceNode([], schema_wording.NO_DOCUMENT_SPAN)
         # An empty value below an id declares the element, as in `rgbd:`; normalising turns it into `{}`.
         elif len(place.path) > 1 and place.path[-2] in _KEYS_OF_IDS:
             place.entry.value = ScalarNode(None, "", place.node.span)

@@ -8,10 +8,13 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
+from archgen.diagnostics import odd_characters
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.schema import list_wording
+from archgen.schema.language_schema import resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
@@ -43,46 +46,17 @@ class ErrorPlace(NamedTuple):
     entry: MappingEntry | None = None
 
 
-def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
-    """Report a key that the schema does not have at its place, with the most likely meaning as help."""
-    known_keys = tuple(schema_part.get("properties", ()))
-    message = (
-        f"no section is called `{entry.key}`"
-        if not path
-        else f"{_add_article(schema_part['title'])} has no key `{entry.key}`"
-    )
-    help_line = (
-        _find_key_help(entry, known_keys)
-        or did_you_mean(entry.key, known_keys)
-        or f"its keys are {_join_quoted(known_keys)}"
-    )
-    if not path and help_line.startswith("its keys"):
-        help_line = f"the sections are {_join_quoted(known_keys)}"
-    return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element_of_path(path))
-
-
-def _find_key_help(entry: MappingEntry, known_keys: tuple[str, ...]) -> str | None:
-    if entry.key in {"name", "id"} and "title" in known_keys:
-        return "the key above is the id; write the name for people as `title`"
-    if ":" in entry.key:
-        before, after = entry.key.split(":", 1)
-        if before in known_keys:
-            return f"write a blank after the colon: `{before}: {after}`"
-    return None
-
-
-def diagnose_wrong_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
-    """Report a key that cannot be an id of what it names, with an id that could as help."""
-    message = f"`{entry.key}` cannot be {_add_article(schema_part.get('title', 'key').split(' of ')[0])}"
-    better_key = next(
-        (key for key in suggest_ids(entry.key) if re.search(schema_part.get("pattern", r"\Z."), key)), None
-    )
-    help_line = schema_part.get("patternErrorMessage") or "it is too long"
-    if len(entry.key) > schema_part.get("maxLength", len(entry.key)):
-        help_line = f"at most {schema_part['maxLength']} characters are allowed"
-    elif better_key and better_key != entry.key:
-        help_line = f"{help_line}; write `{better_key}`"
-    return Diagnostic("wrong-value", message, entry.key_span, help=help_line, element=element_of_path(path))
+def diagnose_odd_character(text: str, span: Span, rule: str, element: str | None) -> Diagnostic | None:
+    """Report the first odd character of a key or a value that no odd character may stand in; None without one."""
+    position = odd_characters.find_odd_character(text)
+    if position is None:
+        return None
+    message = f"{odd_characters.name_character(text[position])} stands in `{clip_text(text)}`"
+    plain_text = odd_characters.replace_odd_characters(text).strip()
+    # In quotes, or over several lines, the place in the text is not that in the file.
+    if span.line == span.end_line and span.end_column - span.column == len(text):
+        span = span._replace(column=span.column + position, end_column=span.column + position + 1)
+    return Diagnostic(rule, message, span, help=f"write `{clip_text(plain_text)}`", element=element)
 
 
 def suggest_ids(key: str) -> tuple[str, str]:
@@ -94,6 +68,10 @@ def suggest_ids(key: str) -> tuple[str, str]:
 def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, Any]) -> Diagnostic:
     """Report a value of the wrong type, or one that is not allowed; `kind` is the validator's name for the error."""
     name, node = _describe_place(place), place.node
+    if kind in {"pattern", "type", "enum"} and isinstance(node, ScalarNode):
+        odd_character = diagnose_odd_character(node.text, node.span, "wrong-value", element_of_path(place.path))
+        if odd_character is not None:
+            return odd_character
     if kind == "type":
         rule, message, help_line = _describe_wrong_type(name, node, schema_part)
     else:
@@ -127,26 +105,18 @@ def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
         digits = re.match(r"\s*([0-9]+)", text)
         return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
     if "array" in types:
-        return f"write `[{_quote_list_entry(text)}]`"
+        return f"write `{list_wording.suggest_list(clip_text(text), schema_part)}`"
     if "propertyNames" in schema_part:
         return "write one `id: ...` line for each below it, or `{}` for none"
     if "patternErrorMessage" in schema_part:
         return str(schema_part["patternErrorMessage"])
-    return f"its keys are {_join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
+    return f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
 
 
 def _find_boolean_help(word: str) -> str | None:
     if word in _BOOLEAN_WORDS:
         return f"write `{_BOOLEAN_WORDS[word]}`"
     return f"write `{word}`, without quotes" if word in {"true", "false"} else None
-
-
-_UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
-
-
-def _quote_list_entry(text: str) -> str:
-    """Return a text as an entry of a list in brackets: quoted where YAML would read it as something else."""
-    return clip_text(text) if _UNQUOTED_TEXT.match(text) else f'"{clip_text(text)}"'
 
 
 def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any]) -> str | None:
@@ -156,7 +126,7 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
         if "propertyNames" in schema_part or isinstance(schema_part.get("additionalProperties"), dict):
             return f"{name} is keyed by id: write `id: ...` lines instead of a list"
         return (
-            f"its keys are {_join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
+            f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
         )
     if isinstance(node, MappingNode) and "array" in schema_part.get("type", ()):
         return "write a list: [a, b], or one entry a line, each after `- `"
@@ -182,13 +152,45 @@ def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dic
         )
     if text != text.strip() and re.search(schema_part.get("pattern", ""), text.strip()):
         return f"{name} has a blank at its beginning or end", f"write `{text.strip()}`"
-    return f"{name} cannot be `{clip_text(text)}`", _find_value_help(kind, text, schema_part)
+    is_entry = name.startswith("an entry")
+    return f"{name} cannot be `{clip_text(text)}`", _find_value_help(kind, text, schema_part, is_entry=is_entry)
 
 
-def _find_value_help(kind: str, text: str, schema_part: dict[str, Any]) -> str | None:
+_WORD_PATTERN = re.compile(r"\^\(\?:([a-z_|]+)\)\$\Z")
+"""A pattern that is a list of words."""
+
+
+def _find_pattern_help(text: str, schema_part: dict[str, Any], *, is_entry: bool) -> str | None:
+    """Return what was most likely meant by a text that does not match its pattern; None where nobody knows."""
+    if "items" in schema_part and re.search(resolve_part(schema_part["items"]).get("pattern", r"\Z."), text):
+        return f"write `[{clip_text(text)}]`"  # the name of an input as trigger: a list of one
+    if "items" in schema_part and list_wording.split_ids(text, schema_part):
+        return f"write `{list_wording.suggest_list(text, schema_part)}`"
+    if is_entry and list_wording.split_ids(text, {"items": schema_part}):
+        return "write each as an entry of its own, with a comma between them"
+    words = _WORD_PATTERN.match(schema_part["pattern"])
+    if words:
+        return did_you_mean(text, words[1].split("|"))
+    if schema_part.get("title") in {"Message", "Type"}:
+        return _suggest_message(text, schema_part["pattern"])
+    return None
+
+
+def _suggest_message(text: str, pattern: str) -> str | None:
+    """Return a message as ROS writes it: `nav_msgs::msg::Odometry` and `nav_msgs/msg/odometry` are others' spellings."""
+    package, slash, name = re.sub(r"::|\.|/", "/", text).rpartition("/")
+    message = f"{package}{slash}{''.join(word[:1].upper() + word[1:] for word in name.split('_'))}"
+    return f"did you mean `{message}`?" if re.search(pattern, message) else None
+
+
+def _find_value_help(kind: str, text: str, schema_part: dict[str, Any], *, is_entry: bool) -> str | None:
+    if kind == "pattern":
+        help_line = _find_pattern_help(text, schema_part, is_entry=is_entry)
+        if help_line:
+            return help_line
     if kind == "enum":
         options = [option for option in schema_part["enum"] if option is not None]
-        return did_you_mean(text, options) or f"it is one of {_join_quoted(options)}"
+        return did_you_mean(text, options) or f"it is one of {join_quoted(options)}"
     if kind in {"minimum", "maximum"}:
         return f"it is at {'least' if kind == 'minimum' else 'most'} {schema_part[kind]}"
     return schema_part.get("patternErrorMessage")
@@ -198,7 +200,7 @@ def _describe_expected(schema_part: dict[str, Any]) -> str:
     types = [kind for kind in _list_types(schema_part) if kind != "null"]
     phrases = ["text"] if "string" in types else []
     if "enum" in schema_part:
-        phrases = [f"one of {_join_quoted([option for option in schema_part['enum'] if option is not None])}"]
+        phrases = [f"one of {join_quoted([option for option in schema_part['enum'] if option is not None])}"]
     phrases += [
         _TYPE_PHRASES[kind] for kind in types if kind in _TYPE_PHRASES and not ("string" in types and kind == "boolean")
     ]
@@ -228,10 +230,12 @@ def element_of_path(path: tuple[str | int, ...]) -> str | None:
     return str(path[1]) if path[0] in SECTIONS_BY_ID else None
 
 
-def _add_article(title: str) -> str:
+def add_article(title: str) -> str:
+    """Return the title of an element as a sentence uses it: `a component`."""
     word = title if title[:3].isupper() else title[0].lower() + title[1:]
     return f"{'an' if word[0] in 'aeioAEIO' else 'a'} {word}"
 
 
-def _join_quoted(words: tuple[str, ...] | list[str]) -> str:
+def join_quoted(words: tuple[str, ...] | list[str]) -> str:
+    """Return words in backticks, with commas."""
     return ", ".join(f"`{word}`" for word in words)

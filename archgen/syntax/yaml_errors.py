@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from archgen.diagnostics import odd_characters
 from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
 from archgen.diagnostics.source_span import Span
 
@@ -46,7 +47,8 @@ def find_forbidden_character(file: str, text: str) -> Diagnostic | None:
         return None
     lines_before = text[: match.start()].replace("\r\n", "\n").replace("\r", "\n").split("\n")
     span = Span(file, len(lines_before), len(lines_before[-1]) + 1, len(lines_before), len(lines_before[-1]) + 2)
-    message = f"the control character U+{ord(match[0]):04X} cannot stand in YAML"
+    name = "the byte order mark" if match[0] == "\ufeff" else "the control character"
+    message = f"{name} U+{ord(match[0]):04X} cannot stand in YAML"
     return Diagnostic("syntax-error", message, span, help="delete it")
 
 
@@ -54,6 +56,9 @@ def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic
     """Phrase a problem that the parser reports."""
     lines = re.split(r"\r\n|\r|\n", text)
     position = _clamp_position(lines, problem.line, problem.column)
+    odd_character = _find_odd_character(file, lines, position[0], problem)
+    if odd_character is not None:
+        return odd_character
     error_text = _choose_error_text(lines[position[0]], position[1], problem)
     context_start = problem.context_start
     if error_text.at_start and context_start is not None:
@@ -65,9 +70,53 @@ def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic
         if error_text.label and context_start and context_start != position
         else ()
     )
+    if error_text.message == _MISPLACED_MESSAGE:
+        outdented_line = _find_outdented_line(lines, *position)
+        if outdented_line is not None:
+            start = (outdented_line, _measure_indentation(lines[outdented_line]))
+            labels = (Label(_span_at(file, lines, start), "or this line is indented too little"),)
     return Diagnostic(
         "syntax-error", error_text.message, _span_at(file, lines, position), labels=labels, help=error_text.help
     )
+
+
+def _find_outdented_line(lines: list[str], number: int, column: int) -> int | None:
+    """Return the line above that ends the block to which a line seems to belong; None if there is no such block.
+
+    That is the nearest one that is indented less, if a line above that one begins in the same column.
+    """
+    for above in range(number - 1, -1, -1):
+        if lines[above].strip() and not lines[above].lstrip().startswith("#"):
+            indentation = _measure_indentation(lines[above])
+            if indentation < column:
+                has_sibling = any(_measure_indentation(line) == column for line in lines[:above] if line.strip())
+                return above if has_sibling and indentation else None
+    return None
+
+
+def _measure_indentation(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))
+
+
+_MISPLACED_MESSAGE = "this line does not belong to anything above it"
+
+
+def _find_odd_character(file: str, lines: list[str], last_line: int, problem: ParserProblem) -> Diagnostic | None:
+    """Report a blank, a quote or a dash that is not YAML's, where the parser stopped or in the two lines above."""
+    # The parser stops behind what misled it: at the next line, or where it meets what the odd quote does not enclose.
+    first_line = problem.context_start[0] if problem.context_start else last_line
+    for number in sorted({first_line, *range(max(0, last_line - 2), last_line + 1)}):
+        column = odd_characters.find_misplaced_character(lines[number]) if number < len(lines) else None
+        if column is not None:
+            character = lines[number][column]
+            message = f"{odd_characters.name_character(character)} stands here, which is no sign of YAML"
+            replacement = odd_characters.replace_odd_characters(character)
+            help_line = f"write {_PLAIN_WORDS.get(replacement, f'`{replacement}`')} in its place"
+            return Diagnostic("syntax-error", message, _span_at(file, lines, (number, column)), help=help_line)
+    return None
+
+
+_PLAIN_WORDS = {" ": "a plain blank", "": "nothing", '"': 'a plain quote, `"`,', "'": "a plain quote, `'`,"}
 
 
 def diagnose_duplicate_key(key: str, span: Span, first_span: Span) -> Diagnostic:
@@ -156,7 +205,7 @@ def _explain_misplaced_line(line: str, column: int) -> _ErrorText:
     if line[column : column + 1] == "-":
         return _ErrorText("a list entry stands where a key is expected", "indent the list below its key")
     help_line = "keys of one mapping begin in the same column, and so do the entries of one list"
-    return _ErrorText("this line does not belong to anything above it", help_line, "what is open begins here")
+    return _ErrorText(_MISPLACED_MESSAGE, help_line, "what is open begins here")
 
 
 def _explain_unclosed(message: str, problem: ParserProblem) -> _ErrorText:

@@ -102,7 +102,6 @@ nodes:
         "7 unknown-key",
         "9 unknown-key",
         "11 wrong-type",
-        "12 disconnected-component",
         "12 unfed-input",
         "14 unknown-key",
     ]

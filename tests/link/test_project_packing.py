@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from archgen.analyses.size_counts import measure_progress, measure_size
 from archgen.pipeline import CheckedProject, check_project
-from archgen.schema.schema_validation import load_schema
+from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from archgen.model.qos_profiles import QOS_PROFILES, qos_profile
-from archgen.schema.schema_validation import load_schema
+from archgen.schema.language_schema import load_schema
 
 
 @pytest.mark.parametrize(

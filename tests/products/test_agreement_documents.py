@@ -162,7 +162,7 @@ def test_an_earlier_state_with_errors_is_said_and_compared_as_far_as_it_is_sound
     )
     found = agreement_documents.make_project_agreement(checked(tmp_path / "b"), "north", "south", earlier, "")
     said = ["".join(run.text for run in notice.inlines) for notice in found.outline.notices]
-    assert said[0].startswith("The architecture at the working tree has errors (1 error, ")
+    assert said[0].startswith("The architecture at the working tree has errors (1 error")
 
 
 def test_a_partner_who_is_new_has_only_what_was_added(tmp_path: Path) -> None:

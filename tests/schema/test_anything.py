@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from archgen.link.slice_merging import merge_documents
 from archgen.schema import normalise_document, validate_document
-from archgen.schema.schema_validation import load_schema
+from archgen.schema.language_schema import load_schema
 from archgen.syntax import yaml_parser
 from tests.property_sizes import count_examples
 

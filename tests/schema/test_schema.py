@@ -10,7 +10,7 @@ import jsonschema_rs
 import pytest
 
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.schema.schema_validation import load_schema
+from archgen.schema.language_schema import load_schema
 
 SCHEMA = load_schema()
 

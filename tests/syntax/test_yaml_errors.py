@@ -46,7 +46,7 @@ def test_a_message_that_nobody_foresaw_is_still_said_inside_of_the_text() -> Non
     ("text", "said"),
     [
         ("a: b\r\nc: \x07", "2:4 the control character U+0007 cannot stand in YAML"),
-        ("a\ufeff", "1:2 the control character U+FEFF cannot stand in YAML"),
+        ("a\ufeff", "1:2 the byte order mark U+FEFF cannot stand in YAML"),
         ("tab\t and line\x85end", None),
     ],
 )
@@ -59,3 +59,15 @@ def test_a_key_written_twice_names_both_places() -> None:
     first, second = Span("f", 1, 1, 1, 2), Span("f", 3, 1, 3, 2)
     found = diagnose_duplicate_key("a", second, first)
     assert (found.rule, found.span, [label.span for label in found.labels]) == ("duplicate-key", second, [first])
+
+
+def test_a_line_that_ends_its_block_too_early_is_shown() -> None:
+    text = "components:\n    a:\n      x: 1\n  b:\n      x: 1\n    c:\n      x: 1\n"
+    _, (diagnostic,) = yaml_parser.parse_yaml("f", text)
+    assert (diagnostic.span.line, diagnostic.message) == (4, "this line does not belong to anything above it")
+    deeper = "g:\n  components:\n    a:\n      x: 1\n  b:\n      x: 1\n    c:\n      x: 1\n"
+    _, (diagnostic,) = yaml_parser.parse_yaml("f", deeper)
+    assert diagnostic.span.line == 7
+    assert [(label.span.line, label.text) for label in diagnostic.labels] == [
+        (5, "or this line is indented too little")
+    ]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Severity, phrase_severity_counts
 from archgen.diagnostics.safe_text import make_visible, measure_width
 from archgen.diagnostics.text_columns import wrap_cell, wrap_line
+from archgen.emit.terminal import findings_summary
 from archgen.emit.terminal.line_excerpt import ExcerptMark, quote_line
 
 if TYPE_CHECKING:
@@ -38,16 +39,26 @@ def format_summary(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def render_findings_text(
-    diagnostics: Iterable[Diagnostic], sources: SourceTexts, *, colour: bool = False, width: int | None = None
+    diagnostics: Iterable[Diagnostic],
+    sources: SourceTexts,
+    *,
+    colour: bool = False,
+    width: int | None = None,
+    is_waiting: bool = False,
 ) -> Iterator[str]:
     """Yield the lines of all findings (settled, in their order), a blank line after each, and the summary.
 
-    `width` is the terminal's. Without one texts stay on one line, for grep, and excerpts have DEFAULT_WIDTH.
+    `width` is the terminal's. Without one texts stay on one line, for grep, and excerpts have DEFAULT_WIDTH. `is_waiting`
+    is whether rules wait until errors among the findings are mended.
     """
     diagnostics = tuple(diagnostics)
     for diagnostic in diagnostics:
         yield from render_finding_text(diagnostic, sources, colour=colour, width=width)
         yield ""
+    table_lines = tuple(findings_summary.render_rule_table(diagnostics))
+    yield from (*table_lines, "") if table_lines else ()
+    if is_waiting:
+        yield findings_summary.WAITING_SENTENCE
     yield format_summary(diagnostics)
 
 

@@ -154,6 +154,7 @@ def declare_chains(
             requirements=mapping_values.get_texts(body, "requirements"),
             at=entry.key_span,
             unresolved=tuple(scalar.text for target, scalar in waypoints if target is None),
+            requirement_places=tuple(scalar.span for scalar in mapping_values.get_scalars(body, "requirements")),
         )
     return chains_by_id
 

@@ -1,0 +1,162 @@
+"""Say where a key belongs that stands at the wrong level, or an element that stands beside its section."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from archgen.diagnostics.suggestions import find_closest
+from archgen.schema.language_schema import load_schema, resolve_part
+from archgen.syntax.yaml_tree import MappingNode
+
+if TYPE_CHECKING:
+    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
+
+KeyPath = tuple[str | int, ...]
+
+_TELLING_NOTHING = frozenset({"title", "description"})
+"""Keys that nearly every element has."""
+_HOMES = {
+    "node": "`nodes: {{NODE: {{{implements}{key}: ...}}}}`",
+    "topic_use": "`nodes: {{NODE: {{{implements}{use}: {{{port}: {{{key}: ...}}}}}}}}`",
+    "timing": "`timing: {{{key}: ...}}` of the component or of its node",
+    "type": "`types: {{{type}: {{{key}: ...}}}}`",
+    "component": "`groups: {{GROUP: {{components: {{COMPONENT: {{{key}: ...}}}}}}}}`",
+    "group": "`groups: {{GROUP: {{{key}: ...}}}}`",
+    "host": "`hosts: {{HOST: {{{key}: ...}}}}`",
+    "container": "`containers: {{CONTAINER: {{{key}: ...}}}}`",
+    "link": "`links: {{LINK: {{{key}: ...}}}}`",
+    "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
+    "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
+}
+"""Where the keys of each kind are written. The first kind that has a key is its home."""
+_PORT_HOMES = ("type", "topic_use", "timing", "node")
+"""The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
+_NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
+"""Words for an element where an element of another kind is written, and their sections."""
+_ELEMENT_SECTIONS = {
+    "groups": "group",
+    "nodes": "node",
+    "types": "type",
+    "hosts": "host",
+    "containers": "container",
+    "links": "link",
+    "chains": "chain",
+    "views": "view",
+    "policies": "policy",
+    "partners": "partner",
+    "requirements": "requirement",
+}
+
+
+def find_home(key: str, path: KeyPath, kind: str) -> str | None:
+    """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
+    is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
+    parent = _find_parent(key, kind)
+    if parent is not None:
+        return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`"
+    if key in _TELLING_NOTHING:
+        return None
+    home = _find_kind(key, _PORT_HOMES if is_port else tuple(_HOMES))
+    if home is None:
+        return _find_section_help(key, path)
+    component = f"{path[1]}.{path[3]}" if path[:1] == ("groups",) and len(path) > 3 else None  # noqa: PLR2004
+    place = _HOMES[home].format(
+        key=key,
+        implements=f"implements: {component}, " if component else "",
+        port=path[-1] if is_port else "PORT",
+        use="subscribes" if "inputs" in path else "publishes",
+        type="TYPE",
+    )
+    return f"write it as {place}"
+
+
+def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | None:
+    """Return help for an unknown key that looks like an element indented too far, or too little."""
+    if not path:
+        section = find_section_of(entry)
+        return f"put it below `{section}:`, indented" if section else None
+    if path[0] == "groups" and _looks_like(entry.value, "component"):
+        if len(path) == 2:  # noqa: PLR2004 - groups, id
+            return f"it looks like a component: indent it below `components:` of `{path[1]}`"
+        if len(path) == 4:  # noqa: PLR2004 - groups, id, components, id
+            return f"it looks like a component: begin it in the column of `{path[3]}`"
+    section_kind = _ELEMENT_SECTIONS.get(str(path[0])) if len(path) == 2 else None  # noqa: PLR2004 - section, id
+    if section_kind and _looks_like(entry.value, section_kind):
+        return f"it looks like {_phrase_kind(kind)} of its own: begin it in the column of `{path[1]}`"
+    return None
+
+
+def find_section_of(entry: MappingEntry) -> str | None:
+    """Return the section that an entry is an element of by its keys; None where none or several fit."""
+    sections = [section for section, kind in _ELEMENT_SECTIONS.items() if _looks_like(entry.value, kind)]
+    return sections[0] if len(sections) == 1 else None
+
+
+def may_be_section(entry: MappingEntry, section: str) -> bool:
+    """Whether what an entry holds may be meant as a section: its elements have keys that those of the section have."""
+    kind = _ELEMENT_SECTIONS.get(section)
+    if kind is None or not isinstance(entry.value, MappingNode):
+        return True
+    known_keys = _list_keys(kind)
+    bodies = [part.value for part in entry.value if isinstance(part.value, MappingNode) and part.value.entries]
+    return not bodies or any(not known_keys.isdisjoint(body.entries) for body in bodies)
+
+
+def is_meant_for_language(entry: MappingEntry) -> bool:
+    """Whether a key of a file without sections was certainly meant for the language: a misspelt section with elements
+    that have its keys only, or a group or node beside its section.
+    """
+    if not isinstance(entry.value, MappingNode):
+        return False
+    if not {"components", "implements"}.isdisjoint(entry.value.entries):
+        return find_section_of(entry) is not None
+    section = find_closest(entry.key, _ELEMENT_SECTIONS)
+    bodies = [part.value for part in entry.value if isinstance(part.value, MappingNode)]
+    return section is not None and any(bodies) and all(_looks_like(body, _ELEMENT_SECTIONS[section]) for body in bodies)
+
+
+def find_common_kind(keys: tuple[str, ...]) -> str | None:
+    """Return the kind of element that has all of several keys, such as `component` for inputs and outputs; None where none has."""
+    return next((kind for kind in _HOMES if _list_keys(kind).issuperset(keys)), None) if len(keys) > 1 else None
+
+
+def _find_kind(key: str, kinds: tuple[str, ...]) -> str | None:
+    return next((kind for kind in kinds if key in _list_keys(kind)), None)
+
+
+def _find_parent(key: str, kind: str) -> str | None:
+    """Return the key of an element below which another key is written: `timing` for `rate`."""
+    definitions = (load_schema(), *load_schema()["$defs"].values())
+    definition: dict[str, Any] = next((part for part in definitions if part.get("title") == kind), {})
+    for parent, part in definition.get("properties", {}).items():
+        below = resolve_part(part)
+        if key in below.get("properties", ()) and below.get("title") != kind:
+            return str(parent)
+    return None
+
+
+def _find_section_help(key: str, path: KeyPath) -> str | None:
+    section = _NAMED_ELEMENTS.get(key)
+    if path and section == "nodes" and path[0] == "groups" and len(path) > 3:  # noqa: PLR2004
+        return f"nodes are written in their own section: `nodes: {{NODE: {{implements: {path[1]}.{path[3]}}}}}`"
+    if path and (section or key in load_schema()["properties"]):
+        return f"`{section or key}` is a section of its own: it begins in the first column"
+    return None
+
+
+@cache
+def _list_keys(kind: str) -> frozenset[str]:
+    return frozenset(load_schema()["$defs"][kind]["properties"])
+
+
+def _looks_like(node: YamlNode, kind: str) -> bool:
+    """Whether a mapping has keys of a kind only, and one that not every kind has."""
+    if not isinstance(node, MappingNode):
+        return False
+    return _list_keys(kind).issuperset(node.entries) and not _TELLING_NOTHING.issuperset(node.entries)
+
+
+def _phrase_kind(title: str) -> str:
+    word = title if title[:3].isupper() else title[0].lower() + title[1:]
+    return f"{'an' if word[0] in 'aeioAEIO' else 'a'} {word}"

@@ -1,0 +1,124 @@
+"""Phrase what is wrong with a key: one that its place does not have, or that cannot be an id."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.suggestions import find_closest
+from archgen.schema import key_places
+from archgen.schema.schema_wording import (
+    ErrorPlace,
+    add_article,
+    diagnose_odd_character,
+    element_of_path,
+    join_quoted,
+    suggest_ids,
+)
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_LANGUAGE_WORDS = ("true", "false", "null", "any", "all", "none", "self")
+"""Words that the pattern of ids leaves out."""
+
+
+def diagnose_unknown_keys(
+    place: ErrorPlace, keys: tuple[str, ...], schema_part: dict[str, Any]
+) -> Iterator[Diagnostic]:
+    """Report the keys of a mapping that the schema does not have at its place.
+
+    Several that all belong to one other kind of element are a single mistake, and one finding.
+    """
+    entries = [place.node.entries[key] for key in keys] if isinstance(place.node, MappingNode) else []
+    foreign_kind = key_places.find_common_kind(keys)
+    if foreign_kind and place.path and place.entry is not None:
+        yield _diagnose_foreign_keys(place, keys, schema_part, foreign_kind)
+        return
+    for entry in entries:
+        yield _diagnose_unknown_key(entry, schema_part, place.path)
+
+
+def _diagnose_foreign_keys(
+    place: ErrorPlace, keys: tuple[str, ...], schema_part: dict[str, Any], foreign_kind: str
+) -> Diagnostic:
+    entry = place.node.entries[keys[0]] if isinstance(place.node, MappingNode) else place.entry
+    quoted_keys = join_words([f"`{key}`" for key in keys], "or")
+    message = f"{add_article(schema_part['title'])} has no keys {quoted_keys}"
+    help_line = key_places.find_home(keys[0], place.path, schema_part["title"])
+    # A component beside its group instead of below it: its own column is wrong, not its keys.
+    if schema_part["title"] == "Functional group" and foreign_kind == "component":
+        help_line = f"if `{place.path[-1]}` is a component, indent it below `components:` of its group"
+    span = entry.key_span if entry else place.node.span
+    return Diagnostic("unknown-key", message, span, help=help_line, element=element_of_path(place.path))
+
+
+def _diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
+    """Report a key that the schema does not have at its place, with the most likely meaning as help."""
+    known_keys = tuple(schema_part.get("properties", ()))
+    message = (
+        f"no section is called `{entry.key}`"
+        if not path
+        else f"{add_article(schema_part['title'])} has no key `{entry.key}`"
+    )
+    element = element_of_path(path)
+    odd_character = diagnose_odd_character(entry.key, entry.key_span, "unknown-key", element)
+    if odd_character is not None:
+        return odd_character
+    home = key_places.find_home(entry.key, path, schema_part["title"])
+    guess = _guess_key(entry, known_keys, path)
+    # The surest first: what the key holds, then where else it is a key. Between sections one letter tells more.
+    help_line = (
+        _find_key_help(entry, known_keys)
+        or key_places.find_sibling_help(entry, path, schema_part["title"])
+        or (home or guess if path else guess or home)
+        or f"{'its keys' if path else 'the sections'} are {join_quoted(known_keys)}"
+    )
+    return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element)
+
+
+def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str | int, ...]) -> str | None:
+    plural = f"{entry.key.removesuffix('y')}ies"  # `policy`: two letters more than a slip
+    name = plural if plural in known_keys else find_closest(entry.key, known_keys)
+    # `modes` is a word of its own: it means `nodes` only if nodes stand below it.
+    is_likely = name is not None and (bool(path) or key_places.may_be_section(entry, name))
+    return f"did you mean `{name}`?" if is_likely else None
+
+
+def _find_key_help(entry: MappingEntry, known_keys: tuple[str, ...]) -> str | None:
+    if entry.key in {"name", "id"} and "title" in known_keys:
+        return "the key above is the id; write the name for people as `title`"
+    if ":" in entry.key:
+        before, after = entry.key.split(":", 1)
+        if before in known_keys:
+            return f"write a blank after the colon: `{before}: {after}`"
+    return None
+
+
+def diagnose_wrong_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
+    """Report a key that cannot be an id of what it names, with an id that could as help."""
+    odd_character = diagnose_odd_character(entry.key, entry.key_span, "wrong-value", element_of_path(path))
+    if odd_character is not None:
+        return odd_character
+    message = f"`{entry.key}` cannot be {add_article(schema_part.get('title', 'key').split(' of ')[0])}"
+    if entry.key in _LANGUAGE_WORDS:
+        help_line = f"choose another, such as `{entry.key}_parts`: {join_quoted(_LANGUAGE_WORDS)} mean something else"
+        return Diagnostic(
+            "wrong-value",
+            f"{message}: it is a word of the language",
+            entry.key_span,
+            help=help_line,
+            element=element_of_path(path),
+        )
+    better_key = next(
+        (key for key in suggest_ids(entry.key) if re.search(schema_part.get("pattern", r"\Z."), key)), None
+    )
+    help_line = schema_part.get("patternErrorMessage") or "it is too long"
+    if len(entry.key) > schema_part.get("maxLength", len(entry.key)):
+        help_line = f"at most {schema_part['maxLength']} characters are allowed"
+    elif better_key and better_key != entry.key:
+        help_line = f"{help_line}; write `{better_key}`"
+    return Diagnostic("wrong-value", message, entry.key_span, help=help_line, element=element_of_path(path))

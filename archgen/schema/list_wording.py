@@ -1,0 +1,47 @@
+"""Word what is wrong with text that stands where a list is asked, and with several ids in one entry of a list."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from archgen.schema.language_schema import resolve_part
+
+_ID = re.compile(r"[A-Za-z/~][A-Za-z0-9._/~-]*\Z", re.ASCII)
+"""An id or the name of a topic."""
+_LOWER_PATH = re.compile(r"[a-z0-9_.]+\Z")
+_SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
+_UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
+_MAX_LENGTH = 1000
+"""Longer text is no list of ids that somebody wrote by hand."""
+
+
+def split_ids(text: str, schema_part: dict[str, Any]) -> list[str]:
+    """Return the entries of a list that is written as one text, such as `R-1, R-4`; empty where it is no such list.
+
+    `schema_part` is that of the list. Where its entries may be sentences, every part must be one word; words without
+    a comma between them are ids only if each of them is in lower case, or holds a digit where sentences are allowed.
+    """
+    if len(text) > _MAX_LENGTH:
+        return []
+    pattern = resolve_part(schema_part.get("items", {})).get("pattern")
+    parts = [part for part in _SEPARATOR.split(text.strip().strip("[]")) if part]
+    if len(parts) == 1:
+        parts = text.split()
+        # `Head Camera` is a title, `head camera` perhaps two ids.
+        is_id = re.compile(r"\d").search if pattern is None else _LOWER_PATH.match
+        if not all(map(is_id, parts)):
+            return []
+    is_entry = re.compile(pattern).search if pattern else _ID.match
+    return parts if len(parts) > 1 and all(map(is_entry, parts)) else []
+
+
+def suggest_list(text: str, schema_part: dict[str, Any]) -> str:
+    """Return a text as the list in brackets that was most likely meant."""
+    entries = split_ids(text, schema_part) or [text]
+    return f"[{', '.join(map(_quote_entry, entries))}]"
+
+
+def _quote_entry(text: str) -> str:
+    """Return a text as an entry of a list in brackets: quoted where YAML would read it as something else."""
+    return text if _UNQUOTED_TEXT.match(text) else f'"{text}"'

@@ -1,0 +1,87 @@
+"""Keys at the wrong level, elements beside their section, and words that only look like a section."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.schema import key_wording
+from archgen.schema.key_places import find_common_kind, find_home
+from archgen.schema.language_schema import load_schema
+from archgen.schema.schema_wording import ErrorPlace
+from archgen.syntax import yaml_parser
+from archgen.syntax.yaml_tree import MappingNode
+from tests.schema.findings import find_mistakes
+
+
+def _component(text: str) -> str:
+    return f"groups: {{sensing: {{components: {{lidar: {{{text}}}}}}}}}"
+
+
+@pytest.mark.parametrize(
+    ("text", "help_line"),
+    [
+        (_component("rate: 10 Hz"), "write it below `timing`: `timing: {rate: ...}`"),
+        (_component("accuracy: 3 cm"), "write it below `performance`: `performance: {accuracy: ...}`"),
+        (_component("node: n"), "nodes are written in their own section: `nodes: {NODE: {implements: sensing.lidar}}`"),
+        (_component("package: urg"), "write it as `nodes: {NODE: {implements: sensing.lidar, package: ...}}`"),
+        (_component("topic: /a"), "write it as `nodes: {NODE: {implements: sensing.lidar, publishes: {PORT: {topic: ...}}}}`"),
+        (_component("outputs: {scan: {topic: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, publishes: {scan: {topic: ...}}}}`"),
+        (_component("inputs: {scan: {qos: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, subscribes: {scan: {qos: ...}}}}`"),
+        (_component("outputs: {scan: {message: a/msg/B}}"), "write it as `types: {TYPE: {message: ...}}`"),
+        (_component("outputs: {scan: {rate: 1 Hz}}"), "write it as `timing: {rate: ...}` of the component or of its node"),
+        (_component("hosts: {}"), "`hosts` is a section of its own: it begins in the first column"),
+        ("nodes: {n: {depth: 3}}", "its keys are `implements`"),
+        ("distro: jazzy", "write it below `ros`: `ros: {distro: ...}`"),
+        ("title: My robot", "write it below `project`: `project: {title: ...}`"),
+        ("lidar: {package: urg, status: planned}", "put it below `nodes:`, indented"),
+        ("perception: {components: {a: }}", "put it below `groups:`, indented"),
+        ("modes: {flying: {speed: 3}}", "the sections are `archgen`"),
+        ("node: {n: {package: urg}}", "did you mean `nodes`?"),
+        ("node: {n: a.b}", "did you mean `nodes`?"),
+        ("policy: {p: {title: P}}", "did you mean `policies`?"),
+        ("groups: {g: {wheels: {role: sink}}}", "it looks like a component: indent it below `components:` of `g`"),
+        (_component("wheels: {role: sink}"), "it looks like a component: begin it in the column of `lidar`"),
+        ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
+    ],
+)  # fmt: skip
+def test_a_key_at_the_wrong_level_is_told_where_it_belongs(text: str, help_line: str) -> None:
+    (mistake,) = find_mistakes(text)
+    assert " unknown-key: " in mistake
+    assert mistake.partition(" | ")[2].startswith(help_line)
+
+
+def test_several_keys_of_one_other_kind_are_one_mistake() -> None:
+    assert find_mistakes("groups: {lidar: {role: source, outputs: {scan: }, inputs: {}}}") == [
+        (
+            "1:18 unknown-key: a functional group has no keys `role`, `outputs` or `inputs`"
+            " | if `lidar` is a component, indent it below `components:` of its group"
+        )
+    ]
+    assert find_mistakes(_component("package: urg, host: pc")) == [
+        (
+            "1:41 unknown-key: a component has no keys `package` or `host`"
+            " | write it as `nodes: {NODE: {implements: sensing.lidar, package: ...}}`"
+        )
+    ]
+    assert len(find_mistakes(_component("package: urg, colour: red"))) == 2
+
+
+def test_a_kind_is_common_only_to_several_keys() -> None:
+    assert find_common_kind(("package", "host")) == "node"
+    assert find_common_kind(("package",)) is None
+    assert find_common_kind(("package", "cores")) is None
+
+
+def test_what_every_element_has_has_no_home() -> None:
+    assert find_home("description", ("links", "lan"), "Link") is None
+
+
+def test_a_key_that_holds_an_odd_blank_is_no_guess() -> None:
+    document, _ = yaml_parser.parse_yaml("f", "nodes: {n: {ti\u00a0tle: N}}")
+    assert document is not None
+    nodes = document.root.get("nodes")
+    assert isinstance(nodes, MappingNode)
+    place = ErrorPlace(("nodes", "n"), nodes.entries["n"].value, nodes, nodes.entries["n"])
+    schema_part = load_schema()["$defs"]["node"]
+    (mistake,) = key_wording.diagnose_unknown_keys(place, ("ti\u00a0tle",), schema_part)
+    assert (mistake.span.column, mistake.help) == (15, "write `ti tle`")
