@@ -122,7 +122,7 @@ nodes:
 groups: {g: {components: {a: {outputs: {o: T}}, b: {inputs: {i: a.o}}}}}
 nodes:
   n: {implements: a, timing: {rate: 10 Hz}}
-  m: {implements: [a, b], timing: {a: {rate: 5 Hz}, b: {wcet: 2 ms}}, publishes: {o: {topic: /p}}}
+  m: {implements: [a, b], timing: {rate: 5 Hz, wcet: 2 ms}, publishes: {o: {topic: /p}}}
 """,
 )
 # Everything has another name before.
@@ -197,12 +197,12 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
         [
             "group g: title=G*",
             "component g.a below group g via g.a: mapped=True, outputs=some, title=A*",
-            "component g.b below group g via g.b: inputs=some, mapped=True, title=B*",
+            "component g.b below group g via g.b: inputs=some, mapped=True, timing.rate=5 Hz, timing.wcet=2 ms, title=B*",
             "output g.a.o below component g.a via g.a: type=T",
             "input g.b.i below component g.b via g.b:",
             "type T undeclared:",
             "node n via g.a: implements=['g.a'], timing.rate=10 Hz, title=N*",
-            "node m via g.a g.b: implements=['g.a', 'g.b'], title=M*",
+            "node m via g.a g.b: implements=['g.a', 'g.b'], timing.g.a.rate=5 Hz, timing.g.a.wcet=2 ms, title=M*",
             "port m.publishes.a.o below node m via g.a.o: carried=True, topic=['/p']",
         ],
     ),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import find_idle_acceptances, keep_breaking_only
+from archgen.compare.comparison import ChainChange
 from archgen.compare.select_changes import select_changes
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.selector_evaluation import Selection
@@ -195,4 +198,13 @@ def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(co
 
 def test_a_comparison_in_which_nothing_differs_is_empty(compared: Compared) -> None:
     assert compared(ROBOT, ROBOT).is_empty
-    assert not compared(ROBOT, ROBOT.replace("title: Robot", "title: Car")).is_empty
+    found = compared(ROBOT, ROBOT.replace("title: Robot", "title: Car"))
+    assert not found.is_empty
+    unread = compared(ROBOT, ROBOT.replace("x: T, y: U", "x: T, y: U, z: U"))
+    (finding,) = (each for each in unread.new_findings if each.rule == "unread-output")
+    same = replace(found, changes=())
+    assert same.is_empty
+    assert not replace(same, new_findings=(finding,)).is_empty
+    assert not replace(same, cured_findings=(finding,)).is_empty
+    assert not replace(same, silenced_findings=(finding,)).is_empty
+    assert not replace(same, chains=(ChainChange("k", None, None),)).is_empty

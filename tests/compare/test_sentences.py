@@ -160,6 +160,17 @@ def test_a_reader_may_be_given_by_its_old_id() -> None:
     )
 
 
+def test_a_new_input_may_have_the_id_that_another_one_had() -> None:
+    versions = pair(
+        by_key(element("input g.c.i", own_id="g.b.i"), element("output g.x"), element("output g.y")),
+        some("input g.b.i", "input g.c.i", "output g.x", "output g.y"),
+        ("g.c.i <- g.x", "g.b.i <- g.y, g.c.i <- g.x"),
+    )
+    assert whole("+", "input g.b.i", "connection g.b.i", versions) == (
+        "input `g.b.i` is added; `g.y` is read for the first time"
+    )
+
+
 def test_components_that_a_removed_node_leaves() -> None:
     other = by_key(element("node m", implements=frozenset({"g.b"})), element("component g.a"), element("component g.b"))
     versions = pair(by_key(element("node n")), other)
