@@ -66,6 +66,7 @@ def test_the_surplus_is_counted() -> None:
     assert tick_names("abcdef") == "`a`, `b`, `c`, `d`, `e` and `f`"
     assert tick_names("abcdefg") == "`a`, `b`, `c`, `d`, `e` and 2 more"
     assert limit_effects(list("abc")) == list("abc")
+    assert list(limit_effects(list("abcd"))) == ["a", "b", "c", "and 1 more such effect"]
     assert list(limit_effects(list("abcde"))) == ["a", "b", "c", "and 2 more such effects"]
 
 
