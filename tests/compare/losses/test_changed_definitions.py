@@ -11,7 +11,7 @@ READS = "gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image
 INSTEAD = f"{READS}, `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
 COMPRESSED = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 NAMED = (
-    BASE
+    BASE.replace(", depth: Depth image", "")
     + "nodes: {eye: {implements: camera, publishes: {image: {message: a_msgs/msg/A}}}, mind: {implements: tracker}}\n"
 )
 TWO_NODES = TYPED + "nodes: {one: {implements: camera}, two: {implements: camera}, mind: {implements: tracker}}\n"

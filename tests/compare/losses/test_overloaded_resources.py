@@ -70,11 +70,11 @@ HOSTS = {
         [("wcet: 30 ms", "wcet: 90 ms")],
         both(WCET, FULL.format(100).replace("its core", "its 2 cores"), "certh", "tum"),
     ),
-    "one host beside another of which not all is known": (
-        THREE.replace("wcet: 10 ms}, host: pc", "core: 0}, host: big")
+    "one host beside another of which not all is known any more": (
+        THREE.replace("wcet: 10 ms}, host: pc", "wcet: 10 ms, core: 0}, host: big")
         .replace("nodes:\n", "nodes:\n  nd: {implements: gong, timing: {rate: 10 Hz, wcet: 9 ms, core: 0}, host: big}\n")
         .replace("{horn:", "{gong: {outputs: {v: V}}, horn:"),
-        [("wcet: 30 ms", "wcet: 60 ms")],
+        [("wcet: 30 ms", "wcet: 60 ms"), ("wcet: 10 ms, core", "core")],
         [f"{WCET} tum: overloads the host `pc` (100 % of its core), where `nc` of tum runs"],
     ),
 }  # fmt: skip
@@ -111,6 +111,13 @@ LINKS = {
         LINKED,
         [("rate: 10 Hz", "rate: 20 Hz"), ("wcet: 5 ms", "wcet: 6 ms")],
         both("sensing.camera/timing.rate", ASKS.format(160), "sssa", "tum"),
+    ),
+    "a topic that somebody else reads where it is sent": (
+        LINKED.replace("      camera: {", "      lamp: {inputs: {tracks: tracker.tracks}}\n      camera: {").replace(
+            "nodes:\n", "nodes:\n  light: {implements: lamp, host: pc}\n"
+        ),
+        [("1 Mbit/s", "400 kbit/s")],
+        both("lan/bandwidth", ASKS.format(200), "sssa", "tum"),
     ),
     "the size of one topic of two": (
         MAP,

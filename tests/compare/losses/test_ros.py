@@ -197,6 +197,14 @@ NAMES = {
         [f"eye.publishes.image/qos tum: {UNHEARD.replace('sssa', 'tum')}"],
     ),
     "quality for nobody": (NODES.replace("owner: sssa", "title: T"), [FEWER], []),
+    "quality of a topic that is called otherwise": (
+        NODES,
+        [FEWER, ("/eye/image", "/eye/rgb")],
+        [
+            "eye.publishes.image/qos sssa: " + UNHEARD.replace("/eye/image", "/eye/rgb"),
+            "eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb"),
+        ],
+    ),
     "quality of two kinds": (
         NODES.replace("{qos: {reliability: reliable}}", "{qos: {reliability: reliable, deadline: 60 ms}}"),
         [("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 80 ms")],

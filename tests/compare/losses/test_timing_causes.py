@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import pytest
 
+from archgen.compare import Change
+from archgen.compare.losses.change_context import ChangeContext
+from archgen.compare.losses.timing_causes import TimingCauses
+from archgen.compare.matched_ids import MatchedIds
 from tests.compare.conftest import Compared
+from tests.compare.elements import pair
 from tests.compare.losses.test_losses import broken
 from tests.compare.losses.test_missed_deadlines import BASE, both
 
@@ -132,3 +140,22 @@ def test_the_nearest_change_is_the_cause(
     compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]
 ) -> None:
     assert broken(compared, project, [*edits, RADIO]) == said
+
+
+def test_without_a_cut_the_first_change_on_the_way_is_the_cause() -> None:
+    nodes = {name: SimpleNamespace(written=True) for name in ("eye", "mind")}
+    activities = {name: SimpleNamespace(node=name, component=f"g.{name}", inputs=()) for name in nodes}
+    changes = [
+        Change("changed", "node", "mind", key="host"),
+        Change("changed", "component", "g.eye", key="timing.rate"),
+    ]
+    before, after = cast("Any", SimpleNamespace(nodes=nodes)), cast("Any", None)
+    pair_of_systems = cast(
+        "Any", SimpleNamespace(before=SimpleNamespace(system=SimpleNamespace(activities=activities)))
+    )
+    causes = TimingCauses(ChangeContext(before, after, MatchedIds(), pair({}, {}), changes), pair_of_systems)
+    assert causes.find_cuts(["eye", "mind"]) == ([1], ["eye", "mind"])
+    assert causes.find_cuts(["mind", "eye"]) == ([0], ["mind", "eye"])
+    cut = [*changes, Change("removed", "node", "mind")]
+    causes = TimingCauses(ChangeContext(before, after, MatchedIds(), pair({}, {}), cut), pair_of_systems)
+    assert causes.find_cuts(["eye", "mind"]) == ([2], ["mind"])
