@@ -1,4 +1,4 @@
-"""A pytest plugin: tells coverage which test runs, and writes down how long each one took.
+"""A pytest plugin: tells coverage which test runs, and writes down how long each one took (seconds of the processor).
 
 Coverage's own `dynamic_context = test_function` knows neither parameters nor fixtures: what a fixture executes would
 belong to no test.
@@ -23,13 +23,13 @@ _failed_tests: set[str] = set()
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
     """Record what a test executes under its id, set-up included."""
-    start = time.perf_counter()
+    start = time.process_time()
     _switch_context(item.nodeid)
     try:
         return (yield)
     finally:
         _switch_context("")
-        _seconds_by_test[item.nodeid] = time.perf_counter() - start
+        _seconds_by_test[item.nodeid] = time.process_time() - start
 
 
 @pytest.hookimpl(wrapper=True)

@@ -9,10 +9,12 @@ observed and do not count. Exit status 1 where five per cent or more of the othe
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import random
 import shutil
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -30,9 +32,13 @@ from mutant_kinds import Mutant, find_mutants
 REPOSITORY = Path(__file__).resolve().parent.parent
 FOLDERS = ("compare", "link", "analyses", "timing")
 ACCEPTED_SHARE = 0.05
-_START_SECONDS, _SLOWER = 60, 10
-"""How long a run may take: so long, and so many times as long as its tests took without a mutant."""
+_TEST_SECONDS, _RUN_SECONDS = 30, 60
+"""How long the tests of one mutant may take as they were recorded, and how long their run with it: seconds of the processor,
+which other work on the machine does not prolong."""
+_WAITING_SECONDS = 600
+"""How long a run may take by the clock, if it waits for something."""
 _PYTEST_OPTIONS = ("-q", "--assert=plain", "-p", "no:cacheprovider")
+_STOPPED_STATUSES = {-signal.SIGXCPU, -signal.SIGKILL}
 _JUDGED_STATUSES = {0, 1, 2, 4}
 """Pytest's exit statuses: passed, failed, not collected (2 and 4: the mutant breaks an import). The rest is our mistake."""
 
@@ -46,14 +52,17 @@ class SuiteRecord:
     seconds_by_test: Mapping[str, float]
 
     def tests_of(self, mutant: Mutant) -> list[str]:
-        """Return the tests that may notice a mutant, the quick ones first."""
+        """Return the tests that may notice a mutant, the quick ones first, as many of them as there is time for."""
         first_line, last_line = mutant.lines
         tests = frozenset[str]().union(
             *(self.tests_by_line.get((mutant.file, line), ()) for line in range(first_line, last_line + 1))
         )
         # A constant or a shared fixture: any test may rest on it.
         chosen = self.seconds_by_test if "" in tests else tests & self.seconds_by_test.keys()
-        return sorted(chosen, key=lambda test: (self.seconds_by_test[test], test))
+        ordered = sorted(chosen, key=lambda test: (self.seconds_by_test[test], test))
+        # What only the slowest tests would notice survives: such a fault should have a quick test.
+        total_seconds = itertools.accumulate(self.seconds_by_test[test] for test in ordered)
+        return [test for test, seconds in zip(ordered, total_seconds, strict=True) if seconds <= _TEST_SECONDS]
 
 
 def record_suite(copy: Path, folder: str) -> SuiteRecord:
@@ -65,7 +74,7 @@ def record_suite(copy: Path, folder: str) -> SuiteRecord:
     run = subprocess.run(
         [*command, *_PYTEST_OPTIONS, "-p", "record_contexts", f"tests/{folder}"],
         cwd=copy,
-        env={**os.environ, "PYTHONPATH": "tools", "TEST_SECONDS": str(seconds)},
+        env={**os.environ, "PYTHONPATH": f"{copy}{os.pathsep}{copy / 'tools'}", "TEST_SECONDS": str(seconds)},
         capture_output=True,
         text=True,
         check=False,
@@ -102,14 +111,17 @@ def survives(mutant: Mutant, text: str, copy: Path, record: SuiteRecord) -> bool
     target.write_text(mutant.change(text), encoding="utf-8")
     selection = copy / ".selected-tests"
     selection.write_text("\n".join(tests), encoding="utf-8")
-    # Longer than the tests take without the mutant, on a machine that does other things as well.
-    limit = _START_SECONDS + _SLOWER * sum(record.seconds_by_test[test] for test in tests)
+    pytest_command = [sys.executable, "-B", "-m", "pytest", *_PYTEST_OPTIONS, "-x", "--no-header", "--tb=no"]
+    # Only the shell sets this limit wherever there is one, and without code between fork and exec.
+    limit_command = ["sh", "-c", f'ulimit -t {_RUN_SECONDS}; exec "$@"', "sh"]
     try:
         run = subprocess.run(
-            [sys.executable, "-B", "-m", "pytest", *_PYTEST_OPTIONS, "-x", "--no-header", "--tb=no", f"@{selection}"],
+            [*limit_command, *pytest_command, f"@{selection}"],
             cwd=copy,
+            # Processes that archgen starts look for the package here, else they find the one that is installed.
+            env={**os.environ, "PYTHONPATH": str(copy)},
             capture_output=True,
-            timeout=limit,
+            timeout=_WAITING_SECONDS,
             check=False,
         )
     except subprocess.TimeoutExpired:
@@ -118,6 +130,8 @@ def survives(mutant: Mutant, text: str, copy: Path, record: SuiteRecord) -> bool
         target.write_text(text, encoding="utf-8")
         # The compiled file is valid for this time of change only: -B above keeps it from being replaced.
         os.utime(target, ns=(written.st_atime_ns, written.st_mtime_ns))
+    if run.returncode in _STOPPED_STATUSES:
+        return False
     if run.returncode not in _JUDGED_STATUSES:
         sys.exit(f"pytest ended with {run.returncode}:\n{run.stdout.decode()[-2000:]}")
     return run.returncode == 0
@@ -173,17 +187,20 @@ def main() -> None:
             finally:
                 idle.put(copy)
 
+        equivalents = read_equivalents()
+        survivors, alive = [], []
         with ThreadPoolExecutor(options.jobs) as pool:
-            survivors = [mutant for mutant, alive in zip(chosen, pool.map(judge, chosen), strict=True) if alive]
-    report_survivors(chosen, survivors, texts)
+            for mutant, has_survived in zip(chosen, pool.map(judge, chosen), strict=True):
+                if has_survived:
+                    survivors.append(mutant)
+                    if (mutant.file, mutant.source_line, mutant.replacement.strip()) not in equivalents:
+                        alive.append(mutant)
+                        print("alive", mutant.describe(texts[mutant.file]), flush=True)
+    report_shares(chosen, survivors, alive)
 
 
-def report_survivors(chosen: list[Mutant], survivors: list[Mutant], texts: dict[str, str]) -> None:
-    """Print the survivors and the shares of each folder; exit with 1 where too many are alive."""
-    equivalents = read_equivalents()
-    alive = [m for m in survivors if (m.file, m.source_line, m.replacement.strip()) not in equivalents]
-    for mutant in sorted(alive, key=lambda m: (m.file, m.line)):
-        print("alive", mutant.describe(texts[mutant.file]))
+def report_shares(chosen: list[Mutant], survivors: list[Mutant], alive: list[Mutant]) -> None:
+    """Print how many survive in each folder; exit with 1 where too many are alive."""
     totals, living = (Counter(m.file.split("/")[1] for m in group) for group in (chosen, alive))
     for folder, total in sorted(totals.items()):
         print(f"{folder}: {living[folder]} of {total} alive")

@@ -28,7 +28,7 @@ class ArchitectureVersion:
     silenced_findings: tuple[Diagnostic, ...] = ()
     """Findings that a comment or a setting hides."""
     unnamed_keys: frozenset[str] = frozenset()
-    analysis: Analysis | None = field(default=None, compare=False, repr=False)
+    analysis: Analysis | None = None
     """The timing analysis that its rules judged, if there is one already."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that errors of reading and linking kept from being judged."""

@@ -96,10 +96,7 @@ class DifferenceFinder:
     def _add_renames(self) -> None:
         for (kind, name), confidence in self.matched_ids.confidence.items():
             old_id = self.matched_ids.old_ids[kind][name]
-            new_element = self.elements_after.get((kind, name))
-            if new_element is None or (kind, name) not in self.elements_before:
-                continue
-            is_moved = kind == "component" and self._common_group(old_id) != new_element.parent_key
+            is_moved = kind == "component" and self._common_group(old_id) != self.elements_after[kind, name].parent_key
             change = Change("moved" if is_moved else "renamed", kind, name, old_id=old_id, confidence=confidence)
             self.top_changes.append(replace(change, text=change_sentences.describe_rename(change, self.versions)))
 

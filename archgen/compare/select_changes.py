@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
-from archgen.compare.comparison import Change, Comparison
+from archgen.compare.comparison import ChainChange, Change, Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.selector_evaluation import Selection
@@ -25,10 +26,6 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
     changes = tuple(
         change for change in comparison.changes if not wanted_keys.isdisjoint(_touched_keys(change, comparison))
     )
-    chain_points = [
-        {point for side in (chain_change.before, chain_change.after) if side for point in side.through}
-        for chain_change in comparison.chains
-    ]
     wanted_ids = {element_id for _, element_id in wanted_keys}
     return replace(
         comparison,
@@ -49,8 +46,8 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
         ),
         chains=tuple(
             chain_change
-            for chain_change, points in zip(comparison.chains, chain_points, strict=True)
-            if not wanted_ids.isdisjoint(_with_nodes(points))
+            for chain_change in comparison.chains
+            if not wanted_ids.isdisjoint(_activities_and_nodes(chain_change))
         ),
         concerned_owners=find_concerned_owners(changes, comparison.versions),
     )
@@ -66,8 +63,9 @@ def _selected_ids(selection: Selection) -> Iterator[tuple[str, frozenset[str]]]:
     yield "node", selection.nodes
 
 
-def _with_nodes(points: set[str]) -> set[str]:
-    """Return activities together with the nodes that they belong to (`node.component`)."""
+def _activities_and_nodes(chain_change: ChainChange) -> set[str]:
+    """Return the activities on a chain in either version, and the nodes that they belong to (`node.component`)."""
+    points = {point for side in (chain_change.before, chain_change.after) if side for point in side.through}
     return points | {name.partition(".")[0] for name in points}
 
 
@@ -78,8 +76,8 @@ def _finding_filter(
     own_ids = {element.own_id for key, element in elements.items() if key in wanted_keys}
 
     def concerns_selection(finding: Diagnostic) -> bool:
-        parts = (finding.element or "").split(".")
-        return any(".".join(parts[:end]) in own_ids for end in range(1, len(parts) + 1))
+        outer_ids = itertools.accumulate((finding.element or "").split("."), "{}.{}".format)
+        return not own_ids.isdisjoint(outer_ids)
 
     return concerns_selection
 

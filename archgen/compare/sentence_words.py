@@ -17,7 +17,11 @@ _MAX_NAMES = 6
 def limit_effects(effects: Sequence[str]) -> Sequence[str]:
     """Return the first effects, and how many more there are."""
     surplus = len(effects) - _MAX_EFFECTS
-    return effects if surplus <= 0 else (*effects[:_MAX_EFFECTS], f"and {surplus} more such effects")
+    return (
+        effects
+        if surplus <= 0
+        else (*effects[:_MAX_EFFECTS], f"and {surplus} more such effect{'s' if surplus > 1 else ''}")
+    )
 
 
 def shown_id(kind: str, name: str, versions: VersionPair) -> str:

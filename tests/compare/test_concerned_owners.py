@@ -75,6 +75,11 @@ def test_owners(change: str, owners: str) -> None:
     assert find_concerned_owners(changes, pair({}, WORLD, ("", READS))) == tuple(owners.split())
 
 
+def test_a_type_called_like_a_requirement_concerns_nobody_who_serves_that() -> None:
+    world = by_key(element("component c.e", owner="C", requirements=frozenset({"R"})), element("type R"))
+    assert find_concerned_owners([Change("changed", "type", "R", key="size")], pair(world, world)) == ()
+
+
 def test_parts_and_what_was_removed_under_its_old_id() -> None:
     old = ComparedElement("output", "a.new.x", "a.old.x", {}, owner="A")
     versions = pair(by_key(old, element("group g", owner="G")), {})

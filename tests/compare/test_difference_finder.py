@@ -115,6 +115,15 @@ def test_lost_sources_have_their_old_ids(compared: Compared) -> None:
     assert (change.element_id, change.before, change.after) == ("g.c.x", ["g.a.x"], [])
 
 
+def test_an_input_that_lost_its_source_has_its_old_id(compared: Compared) -> None:
+    text = ROBOT.replace("c: {inputs: {x: a.x}}", "c: {functionality: Shows what there is, inputs: {x: a.x, y: a.y}}")
+    after = text.replace("      c: ", "      d: ").replace("there is, inputs: {x: a.x", "there is, inputs: {x: ")
+    (lost,) = (each for each in compared(text, after).changes if each.element_kind == "connection")
+    (renamed,) = (each for each in compared(text, after).changes if each.kind == "renamed")
+    assert (renamed.kind, renamed.element_id, renamed.old_id) == ("renamed", "g.d", "g.c")
+    assert (lost.kind, lost.element_kind, lost.element_id) == ("removed", "connection", "g.c.x")
+
+
 def test_the_order_of_changes() -> None:
     def change(kind: str, element: str, key: str | None = None) -> Change:
         element_kind, name = element.split(" ")

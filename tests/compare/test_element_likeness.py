@@ -55,6 +55,8 @@ def table(text: str) -> dict[str, dict[str, Feature]]:
         ("a: x y", "b: x y; c: x y", [("a", "b", 0.75)]),  # a tie: the first by id
         ("c: x y; a: x y", "b: x y", [("a", "b", 0.75)]),
         ("b: x y", "c: x y; a: x y", [("b", "a", 0.75)]),
+        ("b: x y; a: x y", "y: x y", [("a", "y", 0.75)]),
+        ("y: x y; x: x y", "a: x y", [("x", "a", 0.75)]),
         ("a: x", "", []),
     ],
 )
@@ -82,5 +84,8 @@ def test_among_many_only_those_with_a_rare_mark_are_compared() -> None:
     # 8 * 8 are all compared, and a mark that 64 pairs share still counts among more of them.
     eight = dict(list(same.items())[:8])
     assert len(list(find_likely_pairs(eight, {name.replace("a", "b"): each for name, each in eight.items()}))) == 8
+    five = dict(list(same.items())[:5])
+    thirteen = {f"b{n}": {"f": marks("x y")} for n in range(13)}
+    assert list(find_likely_pairs(five, thirteen)) == []
     more = {"c": {"f": marks("other")}}
     assert len(list(find_likely_pairs(eight | more, {f"b{n}": {"f": marks("x y")} for n in range(8)}))) == 8

@@ -122,7 +122,23 @@ nodes:
 groups: {g: {components: {a: {outputs: {o: T}}, b: {inputs: {i: a.o}}}}}
 nodes:
   n: {implements: a, timing: {rate: 10 Hz}}
-  m: {implements: [a, b], timing: {a: {rate: 5 Hz}, b: {wcet: 2 ms}}, publishes: {o: {topic: /p}}}
+  m: {implements: [a, b], timing: {rate: 5 Hz, wcet: 2 ms}, publishes: {o: {topic: /p}}}
+""",
+)
+# As before, but the only node says little: what it carries then is said for it.
+IMPLIED = (
+    """\
+groups: {g: {components: {a: {inputs: {i: b.o}, outputs: {o: T, p: T}}, b: {inputs: {j: a.o}, outputs: {o: T}}, c: {outputs: {q: T}}}}}
+nodes:
+  n: {implements: [a, b], publishes: {a.o: {topic: /o}}}
+  k: {implements: c}
+""",
+    """\
+groups: {g: {components: {a: {inputs: {i: b.o}, outputs: {o: T, p: T}}, b: {inputs: {j: a.o}, outputs: {o: T}}, c: {outputs: {q: T}}}}}
+nodes:
+  n: {implements: [a, b], publishes: {a.o: {topic: /o}}}
+  m: {implements: a, publishes: {p: {topic: /p}}, subscribes: {i: {}}}
+  k: {implements: c}
 """,
 )
 # Everything has another name before.
@@ -131,7 +147,7 @@ RENAMED = (
 partners: {sssa: Scuola Superiore}
 groups: {one: {owner: sssa, components: {a: {functionality: Sees all, outputs: {o: Image}}, b: {inputs: {i: a.o}}}}}
 types: {Image: {message: x_msgs/msg/I}}
-nodes: {n: {implements: a, package: p, executable: e, host: pc}, k: {implements: b, host: pc, package: q, executable: f}}
+nodes: {n: {implements: a, package: p, executable: e, host: pc, publishes: {o: {topic: /o}}}, k: {implements: b, host: pc, package: q, executable: f, subscribes: {i: {qos: {depth: 2}}}}}
 hosts: {pc: }
 views: {v: {show: one.a+}}
 """,
@@ -139,7 +155,7 @@ views: {v: {show: one.a+}}
 partners: {santanna: Scuola Superiore}
 groups: {two: {owner: santanna, components: {a: {functionality: Sees all, outputs: {o: Picture}}, b: {inputs: {i: a.o}}}}}
 types: {Picture: {message: x_msgs/msg/I}}
-nodes: {n: {implements: a, package: p, executable: e, host: big}, k: {implements: b, host: big, package: q, executable: f}}
+nodes: {n: {implements: a, package: p, executable: e, host: big, publishes: {o: {topic: /o}}}, k: {implements: b, host: big, package: q, executable: f, subscribes: {i: {qos: {depth: 2}}}}}
 hosts: {big: }
 views: {v: {show: two.a+}}
 """,
@@ -197,12 +213,12 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
         [
             "group g: title=G*",
             "component g.a below group g via g.a: mapped=True, outputs=some, title=A*",
-            "component g.b below group g via g.b: inputs=some, mapped=True, title=B*",
+            "component g.b below group g via g.b: inputs=some, mapped=True, timing.rate=5 Hz, timing.wcet=2 ms, title=B*",
             "output g.a.o below component g.a via g.a: type=T",
             "input g.b.i below component g.b via g.b:",
             "type T undeclared:",
             "node n via g.a: implements=['g.a'], timing.rate=10 Hz, title=N*",
-            "node m via g.a g.b: implements=['g.a', 'g.b'], title=M*",
+            "node m via g.a g.b: implements=['g.a', 'g.b'], timing.g.a.rate=5 Hz, timing.g.a.wcet=2 ms, title=M*",
             "port m.publishes.a.o below node m via g.a.o: carried=True, topic=['/p']",
         ],
     ),
@@ -219,6 +235,8 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
             "node k of sssa via two.b: executable=f, host=big, implements=['two.b'], owner=sssa, package=q, title=K*",
             "host big (pc): title=Pc*",
             "view v: show=two.a+, title=V*",
+            "port n.publishes.o below node n of sssa via two.a.o: topic=['/o']",
+            "port k.subscribes.i below node k of sssa via two.b.i: qos.depth=2",
         ],
         [
             "partner santanna of santanna: title=Scuola Superiore",
@@ -232,6 +250,8 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
             "node k of santanna via two.b: executable=f, host=big, implements=['two.b'], owner=santanna, package=q, title=K*",
             "host big: title=Big*",
             "view v: show=two.a+, title=V*",
+            "port n.publishes.o below node n of santanna via two.a.o: topic=['/o']",
+            "port k.subscribes.i below node k of santanna via two.b.i: qos.depth=2",
         ],
     ),
 }
@@ -247,6 +267,20 @@ def test_all_keys_in_normal_form(name: str) -> None:
 
 def _parts(elements: Elements, name: str) -> list[str]:
     return [line for line in lines(elements) if name == "all" or not line.startswith("project")]
+
+
+def test_what_the_only_node_carries_is_said_for_it_if_the_other_version_has_several() -> None:
+    before, after = ([line for line in lines(side) if line.startswith("port")] for side in list_both(*IMPLIED))
+    assert before == [
+        "port n.publishes.a.o below node n via g.a.o: carried=True, topic=['/o']",
+        "port n.publishes.a.p below node n via g.a.p: carried=True",
+        "port n.subscribes.a.i below node n via g.a.i: carried=True",
+    ]
+    assert after == [
+        "port n.publishes.a.o below node n via g.a.o: carried=True, topic=['/o']",
+        "port m.publishes.p below node m via g.a.p: carried=True, topic=['/p']",
+        "port m.subscribes.i below node m via g.a.i: carried=True",
+    ]
 
 
 def test_a_project_that_sets_nothing_has_only_its_chapters() -> None:

@@ -47,6 +47,52 @@ RENAMES: tuple[tuple[dict[str, str], tuple[str, str], str, str], ...] = (
 )
 
 
+def test_an_output_and_an_input_stay_in_their_component(compared: Compared) -> None:
+    moved = ROBOT.replace("{image: Colour image, info", "{info").replace(
+        "{scan: Laser scan}", "{scan: Laser scan, picture: Colour image}"
+    )
+    moved = (
+        moved.replace("camera.image}", "lidar.picture}")
+        .replace("publishes: {image: /image}", "package: p")
+        .replace("    package: usb_cam,", "")
+    )
+    assert [head[:3] for head in summary(compared, ROBOT, moved) if head[1] == "output"] == [
+        ("removed", "output", "sensing.camera.image"),
+        ("added", "output", "sensing.lidar.picture"),
+    ]
+    turned = ROBOT.replace("{scan: Laser scan}", "{scan: Laser scan}, inputs: {picture: camera.image}").replace(
+        "inputs: {image: camera.image}, outputs: {cups", "outputs: {cups"
+    )
+    assert [head[:3] for head in summary(compared, ROBOT, turned) if head[1] == "input"] == [
+        ("added", "input", "sensing.lidar.picture"),
+        ("removed", "input", "thinking.detector.image"),
+    ]
+
+
+SEEING = """\
+groups:
+  g:
+    components:
+      cam: {functionality: Sees what is there, outputs: {x: T}}
+      eye: {inputs: {x: cam.x}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("nodes", "follows"),
+    [
+        ("nodes: {n: {implements: cam}}", "; `/g/cam/x` becomes `/g/lens/x`"),
+        ("nodes: {n: {implements: cam, publishes: {x: {topic: /x}}}}", ""),
+        ("nodes: {n: {implements: eye}}", ""),
+        ("", ""),
+    ],
+)
+def test_a_topic_follows_a_rename_if_a_written_node_does_not_name_it(told: Told, nodes: str, follows: str) -> None:
+    text = SEEING + nodes
+    (line,) = told(text, text.replace("cam", "lens"))
+    assert line.partition(" now (recognised")[2].partition("confidence)")[2] == follows
+
+
 @pytest.mark.parametrize("case", RENAMES, ids=lambda case: case[2])
 def test_renames(compared: Compared, case: tuple[dict[str, str], tuple[str, str], str, str]) -> None:
     changes, what, element, was = case

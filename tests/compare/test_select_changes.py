@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
 import pytest
 
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import find_idle_acceptances, keep_breaking_only
+from archgen.compare.comparison import ChainChange
 from archgen.compare.select_changes import select_changes
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.selector_evaluation import Selection
+from archgen.timing.analysis import ChainResult
 from tests.compare.conftest import Compared
 
 ROBOT = """\
@@ -113,8 +119,13 @@ def test_a_node_selects_the_chain_through_its_components(compared: Compared) -> 
     )
     found = compared(text, text.replace("wcet: 1 ms", "wcet: 2 ms"))
     narrowed = select_changes(found, selected(nodes="nc"), selected(nodes="nc"))
-    assert [chain.id for chain in narrowed.chains] == [chain.id for chain in found.chains]
     assert narrowed.changes == found.changes
+    # Where a node implements several components, chains lead through `node.component`.
+    chain = ChainChange("k", None, cast("ChainResult", SimpleNamespace(through=("na", "nc.b"))))
+    found = replace(found, chains=(chain,))
+    assert select_changes(found, selected(nodes="nc"), selected()).chains == (chain,)
+    assert select_changes(found, selected(nodes="na"), selected()).chains == (chain,)
+    assert select_changes(found, selected(nodes="nb"), selected()).chains == ()
 
 
 def test_removed_and_renamed_elements_are_selected_by_their_old_ids(compared: Compared) -> None:
@@ -128,6 +139,45 @@ def test_removed_and_renamed_elements_are_selected_by_their_old_ids(compared: Co
     assert "component g.b removed" not in keys(select_changes(found, selected("h.c"), selected()).changes)
     renamed = compared(ROBOT, ROBOT.replace("  h: {", "  hall: {"))
     assert keys(select_changes(renamed, selected("h.c"), selected()).changes) == ["group hall renamed"]
+
+
+def test_a_connection_that_was_removed_is_selected_by_either_id_of_its_reader(compared: Compared) -> None:
+    text = ROBOT.replace("c: {inputs: {y: a.y}}", "c: {functionality: Shows what is there, inputs: {y: a.y, x: a.x}}")
+    found = compared(
+        text,
+        text.replace("h: {owner: sssa, components: {c: ", "h: {owner: sssa, components: {d: ")
+        .replace("is there, inputs: {y: a.y", "is there, inputs: {y: ")
+        .replace("implements: c", "implements: d"),
+    )
+    lost = "connection h.c.y removed"
+    assert lost in keys(found.changes)
+    assert lost in keys(select_changes(found, selected("h.c"), selected()).changes)
+    assert lost in keys(select_changes(found, selected(), selected("h.d")).changes)
+    assert lost not in keys(select_changes(found, selected("g.b"), selected("g.b")).changes)
+
+
+@pytest.mark.parametrize(
+    ("element", "side", "is_kept"),
+    [
+        ("g.a", selected("g.a"), True),
+        ("g.a.x", selected("g.a"), True),
+        ("na", selected(nodes="na"), True),
+        ("na.publishes.x", selected(nodes="na"), True),
+        ("g", selected("g.a"), False),
+        ("g.ab", selected("g.a"), False),
+        (None, selected("g.a"), False),
+    ],
+)
+def test_findings_are_selected_by_the_element_that_they_are_about(
+    compared: Compared,
+    element: str | None,
+    side: Selection,
+    is_kept: bool,  # noqa: FBT001
+) -> None:
+    found = compared(ROBOT, ROBOT.replace("x: T, y: U", "x: T, y: U, z: U"))
+    finding = replace(found.new_findings[0], element=element)
+    narrowed = select_changes(replace(found, new_findings=(finding,)), side, side)
+    assert narrowed.new_findings == ((finding,) if is_kept else ())
 
 
 REVIEWED = ROBOT + "review: {breaking: error}\n"
@@ -195,4 +245,13 @@ def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(co
 
 def test_a_comparison_in_which_nothing_differs_is_empty(compared: Compared) -> None:
     assert compared(ROBOT, ROBOT).is_empty
-    assert not compared(ROBOT, ROBOT.replace("title: Robot", "title: Car")).is_empty
+    found = compared(ROBOT, ROBOT.replace("title: Robot", "title: Car"))
+    assert not found.is_empty
+    unread = compared(ROBOT, ROBOT.replace("x: T, y: U", "x: T, y: U, z: U"))
+    (finding,) = (each for each in unread.new_findings if each.rule == "unread-output")
+    same = replace(found, changes=())
+    assert same.is_empty
+    assert not replace(same, new_findings=(finding,)).is_empty
+    assert not replace(same, cured_findings=(finding,)).is_empty
+    assert not replace(same, silenced_findings=(finding,)).is_empty
+    assert not replace(same, chains=(ChainChange("k", None, None),)).is_empty

@@ -66,6 +66,7 @@ def test_the_surplus_is_counted() -> None:
     assert tick_names("abcdef") == "`a`, `b`, `c`, `d`, `e` and `f`"
     assert tick_names("abcdefg") == "`a`, `b`, `c`, `d`, `e` and 2 more"
     assert limit_effects(list("abc")) == list("abc")
+    assert list(limit_effects(list("abcd"))) == ["a", "b", "c", "and 1 more such effect"]
     assert list(limit_effects(list("abcde"))) == ["a", "b", "c", "and 2 more such effects"]
 
 
@@ -157,6 +158,17 @@ def test_a_reader_may_be_given_by_its_old_id() -> None:
     change = Change("removed", "input", "g.a.i", parts=(Change("removed", "connection", "g.a.i"),))
     assert describe_element_change(change, old["input", "g.b.i"], versions) == (
         "input `g.a.i` is removed; `g.x` is no longer read by anybody"
+    )
+
+
+def test_a_new_input_may_have_the_id_that_another_one_had() -> None:
+    versions = pair(
+        by_key(element("input g.c.i", own_id="g.b.i"), element("output g.x"), element("output g.y")),
+        some("input g.b.i", "input g.c.i", "output g.x", "output g.y"),
+        ("g.c.i <- g.x", "g.b.i <- g.y, g.c.i <- g.x"),
+    )
+    assert whole("+", "input g.b.i", "connection g.b.i", versions) == (
+        "input `g.b.i` is added; `g.y` is read for the first time"
     )
 
 

@@ -101,6 +101,7 @@ def quantity(text: str) -> Quantity:
         ("link", "bandwidth", quantity("2"), quantity("1"), True),
         ("link", "bandwidth", quantity("1"), quantity("2"), False),
         ("link", "latency.worst", quantity("1"), quantity("2"), True),
+        ("link", "latency.worst", quantity("2"), quantity("2"), False),
         ("link", "latency.best", quantity("2"), quantity("1"), False),
         ("component", "timing.wcet", quantity("1"), quantity("2"), True),
         ("component", "timing.wcet", quantity("2"), quantity("1"), False),

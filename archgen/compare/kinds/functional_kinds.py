@@ -240,5 +240,5 @@ INPUT = KindSpec(
     components=lambda port, context: (_port_parent(port, context)[1],),
 )
 # Which outputs an input reads: compared by `connection_maps`, since it has no keys.
-CONNECTION = KindSpec("connection", None, has_path_id=True)
+CONNECTION = KindSpec("connection", None)
 FUNCTIONAL_KINDS = (GROUP, COMPONENT, OUTPUT, INPUT, CONNECTION)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
-from enum import IntEnum
+from enum import Enum, IntEnum, auto
 from functools import cached_property
 from typing import Any
 
@@ -25,13 +25,13 @@ class Effect(IntEnum):
     TIMING = 2
 
 
-class Worsening(IntEnum):
+class Worsening(Enum):
     """Which changes of a value can make a figure of timing worse."""
 
-    NEVER = 0
-    LESS = 1
-    MORE = 2
-    ALWAYS = 3
+    NEVER = auto()
+    LESS = auto()
+    MORE = auto()
+    ALWAYS = auto()
 
 
 class ReadContext:
@@ -174,7 +174,7 @@ class KindSpec:
     """Returns the common ids of the components behind an element."""
     is_declared: Callable[[Any], bool] = _always
     """False for what exists without a declaration (a type that is only used)."""
-    key_table: dict[str, KeySpec] = field(default_factory=dict, compare=False, repr=False)
+    key_table: dict[str, KeySpec] = field(default_factory=dict)
     """Filled by `find_key`."""
 
     @property

@@ -23,15 +23,14 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         _messages_by_output(context.after, MatchedIds()),
     )
     for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
-        element_pair = (
-            context.versions.elements_before.get(("output", output)),
-            context.versions.elements_after.get(("output", output)),
-        )
-        if element_pair[0] is None or element_pair[1] is None:
+        new_element = context.versions.elements_after.get(("output", output))
+        if new_element is None:
             continue
-        types = [element.values.get("type") for element in element_pair if element]
+        old_type = context.versions.elements_before["output", output].values.get("type")
         messages_before, messages_after = old_messages.get(output, frozenset()), new_messages.get(output, frozenset())
-        indices, change = _type_change(context, output, (types[0], types[1]), (messages_before, messages_after))
+        indices, change = _type_change(
+            context, output, (old_type, new_element.values.get("type")), (messages_before, messages_after)
+        )
         staying_readers = [
             reader
             for reader in readers & context.versions.connections_after.readers_by_output.get(output, frozenset())

@@ -14,11 +14,7 @@ def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
     """
     for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
         new_readers = context.versions.connections_after.readers_by_output.get(output, frozenset())
-        if (
-            readers <= new_readers
-            or ("output", output) not in context.versions.elements_before
-            or context.versions.may_be_unread(("output", output))
-        ):
+        if context.versions.may_be_unread(("output", output)):
             continue
         indices = find_output_causes(context, output)
         if not indices:

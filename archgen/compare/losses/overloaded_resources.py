@@ -75,8 +75,12 @@ def find_saturated_links(context: ChangeContext, causes: TimingCauses) -> Iterat
         crossing_arcs = [
             arc for arc in causes.timing_pair.after.system.arcs if arc.link == link_id and arc.role == "data"
         ]
+        # How much is sent is up to the sender; whether it takes this link, also to the reader.
         arc_ends = [
-            arc_end for arc in crossing_arcs if arc.topic in grown_topics for arc_end in (arc.source, arc.target)
+            arc_end
+            for arc in crossing_arcs
+            if arc.topic in grown_topics
+            for arc_end in ((arc.source,) if arc.topic in old_parts else (arc.source, arc.target))
         ]
         indices = dict.fromkeys(
             [*find_link_causes(context, link_id, grown_topics, causes)]

@@ -45,8 +45,9 @@ def _readers_by_topic(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint
     readers: dict[TopicKey, list[Endpoint]] = defaultdict(list)
     for endpoint in context.before.endpoints:
         node = context.before.nodes[endpoint.node]
-        if endpoint.use in {"publishes", "serves"} or not node.written or node.status == "planned":
+        if endpoint.use in {"publishes", "serves"} or node.status == "planned":
             continue
+        # Nodes that nobody wrote are no elements.
         node_stays = ("node", context.matched_ids.common_id("node", endpoint.node)) in context.versions.elements_after
         if node_stays and (
             endpoint.port is None or context.needs_source(context.matched_ids.common_id("input", endpoint.port))

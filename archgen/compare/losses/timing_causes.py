@@ -186,7 +186,13 @@ class TimingCauses:
             ("host", activity.host or ""),
             ("container", activity.container or ""),
         ]
-        element_keys += [] if added_indices else [("node", node), ("node", activity.node)]
+        # Without a written node it may have had one: what became of that is the cause.
+        nodes = (
+            [node]
+            if node
+            else [old_node for old_component, old_node in self.old_activities if old_component == component]
+        )
+        element_keys += [] if added_indices else [("node", name) for name in nodes]
         yield from added_indices
         yield from self._worsening_indices(element_keys)
 
@@ -223,9 +229,8 @@ class TimingCauses:
 
 
 def _activity_key(activity: Activity, architecture: Architecture, matched_ids: MatchedIds) -> ActivityKey:
-    node = architecture.nodes[activity.node]
-    component = activity.component or next(iter(node.implements), "")
-    return matched_ids.common_id("component", component), matched_ids.common_id("node", node.id) if node.written else ""
+    node = matched_ids.common_id("node", activity.node) if architecture.nodes[activity.node].written else ""
+    return matched_ids.common_id("component", activity.component or ""), node
 
 
 def _core_share(analysis: Analysis, activity_id: str) -> Fraction | None:

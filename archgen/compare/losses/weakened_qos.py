@@ -84,8 +84,7 @@ def _lost_publishers(
     )
     if not new_clashes:
         return
-    component = context.after.components.get(reader.component or "")
-    partner = context.after.nodes[reader.node].owner or (component.owner if component else None)
+    partner = context.after.nodes[reader.node].owner
     indices = context.port_change_indices(writer.node, writer.port or "", "qos") or context.change_indices(
         "node", writer.node
     )

@@ -28,6 +28,7 @@ BEFORE = by_key(
     element("host pc", owner="certh"),
     element("port n.publishes.x", parent="node n", refs="g.a.x"),
     element("port n.internal.publishes.s", parent="node n"),
+    element("port n.publishes.gone", parent="node n", refs="g.a.gone"),
 )
 AFTER = by_key(
     element("output g.a.x", owner="certh"),
@@ -36,6 +37,7 @@ AFTER = by_key(
     element("output g.c.x"),
     element("port n.publishes.x", parent="node n", refs="g.a.x"),
     element("port n.internal.publishes.s", parent="node n"),
+    element("port n.publishes.new", parent="node n", refs="g.a.new"),
 )
 
 
@@ -103,12 +105,16 @@ def test_what_nodes_say_of_ports() -> None:
         change("removed", "port n.publishes.x"),
         change("changed", "port n.internal.publishes.s", "topic"),
         change("changed", "port m.publishes.x", "topic"),
+        change("removed", "port n.publishes.gone"),
+        change("added", "port n.publishes.new"),
     )
     assert found.port_change_indices("n", "g.a.x") == [0, 1, 2]
     assert found.port_change_indices("n", "g.a.x", "topic") == [0, 2]
     assert found.port_change_indices("n", "g.a.x", "qos", "topic") == [0, 1, 2]
     assert found.port_change_indices("n", "") == [3]
     assert found.port_change_indices("n", "g.a.y") == []
+    assert found.port_change_indices("n", "g.a.gone") == [5]
+    assert found.port_change_indices("n", "g.a.new") == [6]
 
 
 @pytest.mark.parametrize(

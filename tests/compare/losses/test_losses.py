@@ -107,6 +107,11 @@ FUNCTIONS = {
         ],
     ),
     "the message of a type that nobody else reads": (TYPED, [("x_msgs/msg/Tracks", "y_msgs/msg/Tracks")], []),
+    "an output that is taken while all partners are given up": (
+        BASE,
+        [OUTPUT, DANGLING, (PARTNERS, ""), ("owner: certh", "title: S"), ("owner: sssa", "title: T")],
+        [f"sensing.camera.image sssa: {TAKEN}"],
+    ),
     "a hand-over with nothing lost": (BASE, [("owner: certh", "owner: tum")], []),
     "a hand-over to the reader that takes something from him": (
         BASE,

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from fractions import Fraction
+
 import pytest
 
+from archgen.compare.losses.missed_deadlines import _bound_has_grown as bound_has_grown
+from archgen.compare.losses.missed_deadlines import _format_bound as format_bound
+from archgen.timing.figures.timing_values import TimingValue
 from tests.compare.conftest import Compared
 from tests.compare.losses.test_losses import broken
 
@@ -31,6 +37,19 @@ hosts: {pc: {cores: 1}, base: {cores: 1}}
 links: {lan: {connects: [pc, base], bandwidth: 10 Mbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}
 """
+CHAINS = BASE[BASE.index("chains:") :]
+# Three cores, which two fans share with the others.
+CROWDED = (
+    BASE.replace("pc: {cores: 1}", "pc: {cores: 3}")
+    .replace("wcet: 20 ms", "wcet: 30 ms")
+    .replace("wcet: 2 ms", "wcet: 30 ms")
+    .replace("      tracker: {", "      one: {outputs: {x: X}}\n      two: {outputs: {y: Y}}\n      tracker: {")
+    .replace(
+        "nodes:\n",
+        "nodes:\n  fan: {implements: one, timing: {rate: 10 Hz, wcet: 1 ms}, host: pc}\n"
+        "  gan: {implements: two, timing: {rate: 10 Hz, wcet: 0.1 ms}, host: pc}\n",
+    )
+)
 LATE = "makes the chain `react` miss its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
 
@@ -126,6 +145,39 @@ TABLE = {
             "tum",
         ),
     ),
+    "a chain that is removed": (BASE, [RATE, (CHAINS, "")], []),
+    "a chain that is new": (BASE.replace(CHAINS, ""), [RATE, ("links:", CHAINS + "links:")], []),
+    "a deadline that is dropped": (BASE, [RATE, (", deadline: 250 ms", "")], []),
+    "a deadline that is new": (
+        BASE.replace(", deadline: 250 ms", ""),
+        [RATE, ("planner]", "planner], deadline: 250 ms")],
+        [],
+    ),
+    "a longer way": (
+        BASE.replace("deadline: 250 ms", "deadline: 150 ms").replace("tracker, planner]", "tracker]"),
+        [("tracker]", "tracker, planner]")],
+        both(
+            "react/through",
+            "makes the chain `react` miss its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "certh",
+            "sssa",
+            "tum",
+        ),
+    ),
+    "cores that others take for themselves": (
+        CROWDED,
+        [("wcet: 1 ms", "core: 1, wcet: 1 ms"), ("wcet: 0.1 ms", "core: 2, wcet: 0.1 ms")],
+        [
+            line
+            for fan in ("one", "two")
+            for line in both(
+                f"tracking.{fan}/timing.core",
+                f"{LATE} (~223.467 ms → 292 ms); `eye` of certh and `feet` of tum are on it",
+                "certh",
+                "tum",
+            )
+        ],
+    ),
     "a host that shares its core": (
         BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
         [("wcet: 20 ms", "wcet: 120 ms")],
@@ -178,3 +230,38 @@ TABLE = {
 @pytest.mark.parametrize(("project", "edits", "said"), TABLE.values(), ids=TABLE.keys())
 def test_late_and_full(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
     assert broken(compared, project, edits) == said
+
+
+def bound(text: str) -> TimingValue:
+    """Read `5` (a bound), `5+` (at least that much) and `?` (nothing known)."""
+    number = text.removesuffix("+")
+    return TimingValue(None if number == "?" else Fraction(number), complete=not text.endswith("+"))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "grown"),
+    [
+        ("5", "6", True),
+        ("5", "5", False),
+        ("5", "4", False),
+        ("5", "5+", True),
+        ("5+", "5+", False),
+        ("5+", "5", False),
+        ("5+", "6+", True),
+        ("?", "5", True),
+        ("5", "?", True),
+        ("?", "?", False),
+    ],
+)
+def test_which_terms_of_a_bound_have_grown(before: str, after: str, grown: bool) -> None:  # noqa: FBT001
+    assert bound_has_grown(bound(before), bound(after)) is grown
+
+
+def test_bounds_in_sentences() -> None:
+    milliseconds = TimingValue(Fraction(5 * 10**6))
+    assert [format_bound(each) for each in (milliseconds, replace(milliseconds, complete=False), bound("?"), None)] == [
+        "5 ms",
+        "at least 5 ms",
+        "no bound",
+        "no bound",
+    ]

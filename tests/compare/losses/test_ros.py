@@ -20,6 +20,19 @@ RENAMED = "takes the topic `/eye/image` from sssa, whose `mind` subscribes to it
 DERIVED = NODES.replace("topic: /eye/image, ", "")
 FEWER = ("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 50 ms")
 UNHEARD = "offers best effort only on `/eye/image`, where `mind` of sssa asks for reliable delivery: it receives nothing any more"
+# Both outputs on one topic, of which the reader reads one.
+SHARED = NODES.replace(
+    "image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}",
+    "image: {topic: /eye/all}, depth: {topic: /eye/all}",
+).replace("image: camera.image", "image: camera.depth")
+INTERNAL = (
+    BASE
+    + """\
+nodes:
+  eye: {implements: camera, internal: {publishes: {state: {topic: /s, message: std_msgs/msg/String, qos: {reliability: reliable}}}}}
+  mind: {implements: tracker, internal: {subscribes: {state: {topic: /s, message: std_msgs/msg/String, qos: {reliability: reliable}}}}}
+"""
+)
 NAMES = {
     "a topic": (NODES, [("/eye/image", "/eye/rgb")], ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")]),
     "a topic of another reader's of one's own": (
@@ -87,6 +100,56 @@ NAMES = {
             )
         ],
     ),
+    "a group after which the topic is called": (
+        DERIVED,
+        [("sensing", "seeing")],
+        ["seeing sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/seeing/camera/image` now"],
+    ),
+    "a shared topic that the output of the reader keeps": (
+        SHARED + "ros: {shared_topics: [/eye/all]}\n",
+        [("image: {topic: /eye/all}", "image: {topic: /eye/rgb}")],
+        [],
+    ),
+    "a topic that the output of the reader keeps, where another one left it": (
+        SHARED,
+        [("image: {topic: /eye/all}", "image: {topic: /eye/rgb}")],
+        ["eye.publishes.image/topic sssa: takes the topic `/eye/all` from sssa, whose `mind` subscribes to it; it is `/eye/rgb` now"],
+    ),
+    "a topic that a node without a port of it listens to": (
+        SHARED.replace("mind: {", "mind: {internal: {subscribes: {all: {topic: /eye/rgb, message: sensor_msgs/msg/Image}}}, ").replace("image: {topic: /eye/all}", "image: {topic: /eye/rgb}"),
+        [("image: {topic: /eye/rgb}", "image: {topic: /eye/rgba}")],
+        ["eye.publishes.image/topic sssa: takes the topic `/eye/rgb` from sssa, whose `mind` subscribes to it; it is `/eye/rgba` now"],
+    ),
+    "a topic that another partner publishes too": (
+        NODES.replace("mind: {", "echo: {owner: tum, internal: {publishes: {image: {topic: /eye/image, message: sensor_msgs/msg/Image}}}}\n  mind: {"),
+        [("{topic: /eye/image, qos", "{topic: /eye/rgb, qos")],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")],
+    ),
+    "a topic whose reader becomes optional": (
+        NODES,
+        [("/eye/image", "/eye/rgb"), ("{image: camera.image}", "{image: {from: camera.image, optional: true}}")],
+        [],
+    ),
+    "a topic whose reader is removed with it": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), (INTERNAL[INTERNAL.index("  mind:") :], "")],
+        [],
+    ),
+    "a topic whose reader is called otherwise": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind:", "brain:")],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `brain` subscribes to it; it is `/t` now"],
+    ),
+    "a topic of no component beside a new one of another node": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind: {", "lamp: {internal: {publishes: {on: {topic: /on, message: std_msgs/msg/Bool}}}}\n  mind: {")],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
+    ),
+    "a topic that another node publishes under its own name": (
+        NODES,
+        [("  mind:", "  lens: {implements: camera, publishes: {image: {topic: /lens/image}}}\n  mind:"), ("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}", "publishes: {depth: {topic: /eye/depth}}")],
+        ["eye.publishes.image sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; it is `/lens/image` now"],
+    ),
     "a service": (
         BASE.replace("Colour image", "std_srvs/srv/Trigger")
         + "nodes:\n  eye: {implements: camera, serves: {image: {topic: /eye/trigger}}}\n  mind: {implements: tracker}\n".replace(
@@ -117,8 +180,58 @@ NAMES = {
     ),
     "quality that was not enough before": (NODES.replace(*FEWER), [("deadline: 50 ms", "deadline: 80 ms")], []),
     "quality for oneself": (NODES.replace("owner: sssa", "owner: certh"), [FEWER], []),
+    "quality that a reader without a node asks for": (NODES[: NODES.index("  mind:")], [FEWER], []),
+    "quality that a writer without a node offers": (
+        NODES[: NODES.index("  eye:")] + NODES[NODES.index("  mind:") :].replace("{reliability: reliable", "{durability: volatile"),
+        [("durability: volatile", "durability: transient_local")],
+        [],
+    ),
+    "quality for an optional input": (
+        NODES.replace("{image: camera.image}", "{image: {from: camera.image, optional: true}}"),
+        [FEWER],
+        [],
+    ),
+    "quality for a node that another partner owns": (
+        NODES.replace("mind: {", "mind: {owner: tum, "),
+        [FEWER],
+        [f"eye.publishes.image/qos tum: {UNHEARD.replace('sssa', 'tum')}"],
+    ),
+    "quality for nobody": (NODES.replace("owner: sssa", "title: T"), [FEWER], []),
+    "quality of a topic that is called otherwise": (
+        NODES,
+        [FEWER, ("/eye/image", "/eye/rgb")],
+        [
+            "eye.publishes.image/qos sssa: " + UNHEARD.replace("/eye/image", "/eye/rgb"),
+            "eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb"),
+        ],
+    ),
+    "quality of two kinds": (
+        NODES.replace("{qos: {reliability: reliable}}", "{qos: {reliability: reliable, deadline: 60 ms}}"),
+        [("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 80 ms")],
+        ["eye.publishes.image/qos sssa: offers best effort only and one every 80 ms on `/eye/image`, where `mind` of sssa asks for reliable delivery and a message every 60 ms: it receives nothing any more"],
+    ),
+    "quality that is not enough while the reader asks for more": (
+        NODES.replace("{qos: {reliability: reliable}}", "{qos: {reliability: reliable, deadline: 60 ms}}"),
+        [FEWER, ("deadline: 60 ms", "deadline: 40 ms")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
+    "quality of a component that is called otherwise": (
+        NODES,
+        [FEWER, ("camera", "colour_camera")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
+    "quality for a component that is called otherwise": (
+        NODES,
+        [FEWER, ("tracker", "follower")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
+    "quality of a topic of no component": (
+        INTERNAL,
+        [("{topic: /s, message: std_msgs/msg/String, qos: {reliability: reliable}}}}}\n  mind", "{topic: /s, message: std_msgs/msg/String, qos: {reliability: best_effort}}}}}\n  mind")],
+        [f"eye.internal.publishes.state/qos sssa: {UNHEARD.replace('/eye/image', '/s')}"],
+    ),
     "quality in ROS 1": (NODES + "ros: {distro: noetic}\n", [FEWER], []),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("project", "edits", "said"), NAMES.values(), ids=NAMES.keys())

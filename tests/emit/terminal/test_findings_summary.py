@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts
 from archgen.emit.terminal.findings_summary import LONG_LIST, WAITING_SENTENCE, render_rule_table
-from archgen.emit.terminal.findings_text import render_finding_text, render_findings_text
+from archgen.emit.terminal.findings_text import render_findings_text
 
 
 def _findings(count: int) -> list[Diagnostic]:
@@ -29,20 +29,4 @@ def test_more_findings_than_fit_end_with_a_table_by_rule() -> None:
         "",
         WAITING_SENTENCE,
         "1 error, 19 warnings, 1 note",
-    ]
-
-
-def test_message_and_help_keep_to_the_width_of_a_terminal() -> None:
-    diagnostic = Diagnostic(
-        "wrong-type", "one two three four five", NO_SPAN, Severity.ERROR, help="six seven eight a_word_longer_than_that"
-    )
-    assert list(render_finding_text(diagnostic, SourceTexts(), width=27)) == [
-        "error[wrong-type]: one two",
-        "    three four five",
-        "   = help: six seven eight",
-        "           a_word_longer_than_that",
-    ]
-    assert list(render_finding_text(diagnostic, SourceTexts())) == [
-        "error[wrong-type]: one two three four five",
-        "   = help: six seven eight a_word_longer_than_that",
     ]

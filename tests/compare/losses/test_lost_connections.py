@@ -1,0 +1,73 @@
+"""Outputs that were removed or renamed while a partner read them, and which change did that."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import pytest
+
+from archgen.compare import Change
+from archgen.compare.losses.change_context import ChangeContext
+from archgen.compare.losses.lost_connections import find_lost_connections, find_output_causes
+from archgen.compare.matched_ids import MatchedIds
+from tests.compare.conftest import Compared
+from tests.compare.elements import by_key, element, pair
+from tests.compare.losses.test_change_context import change, context
+from tests.compare.losses.test_losses import PARTNERS, broken
+
+SCREEN = (
+    PARTNERS
+    + """\
+groups:
+  sensing:
+    owner: certh
+    components:
+      camera: {functionality: Sees what is there, outputs: {image: Colour image}}
+      screen: {inputs: {image: camera.image}}
+  tracking: {owner: sssa, components: {tracker: {inputs: {image: sensing.camera.image}}}}
+"""
+)
+TAKEN = "takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+
+
+@pytest.mark.parametrize(
+    ("edits", "said"),
+    [
+        ([("camera: {", "eye: {"), ("{image: camera", "{image: eye")], f"sensing.eye sssa: {TAKEN}"),
+        ([("  sensing:\n", "  seeing:\n")], f"seeing sssa: {TAKEN}"),
+        ([("  sensing:\n", "  seeing:\n"), ("sensing.camera", "seeing.camera")], ""),
+        ([("{image: camera.image}", "{title: Screen}")], ""),
+    ],
+)
+def test_what_a_reader_does_not_follow(compared: Compared, edits: list[tuple[str, str]], said: str) -> None:
+    assert broken(compared, SCREEN, edits) == ([said] if said else [])
+
+
+def test_the_output_itself_is_the_cause_before_its_component_and_its_group() -> None:
+    group, component = change("renamed", "group g"), change("moved", "component g.a")
+    output, removal = change("renamed", "output g.a.x"), change("removed", "output g.gone.x")
+    assert find_output_causes(context(group, component, output), "g.a.x") == [2]
+    assert find_output_causes(context(group, component), "g.a.x") == [1]
+    assert find_output_causes(context(component, group), "g.c.x") == [1]
+    assert find_output_causes(context(component), "g.c.x") == []
+    assert find_output_causes(context(output, removal), "g.gone.x") == [1]
+    assert find_output_causes(context(change("changed", "output g.a.x", "type")), "g.a.x") == []
+
+
+@pytest.mark.parametrize(
+    ("lost", "said"),
+    [
+        ("", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
+        ("other", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
+        ("a", []),
+    ],
+)
+def test_an_output_that_may_be_in_what_could_not_be_read_is_not_taken_away(lost: str, said: list[str]) -> None:
+    reader = element("input g.b.i", owner="sssa")
+    versions = pair(
+        by_key(element("output g.a.x", owner="certh"), reader), by_key(reader), ("g.b.i <- g.a.x", ""), ("", lost)
+    )
+    removal = Change("removed", "output", "g.a.x")
+    nothing = cast("Any", None)
+    found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), versions, [removal]))
+    assert [f"{loss.partner} {loss.reason}" for loss in found] == said
