@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
@@ -77,15 +78,52 @@ def _validate_slice(parsed_slice: Slice) -> ValidatedSlice:
             partial=True,
             settings=_recover_settings(parsed_slice),
         )
-    schema_diagnostics = validate_document(parsed_slice.document)
+    repetitions, schema_diagnostics = _merge_repetitions(parsed_slice, validate_document(parsed_slice.document))
     lost_keys = (
         tuple(_find_lost_keys(parsed_slice, parsed_slice.document, schema_diagnostics)) if schema_diagnostics else ()
     )
     # Both before normalise: it removes empty sections, which are not lost but simply not written.
     partial = len(parsed_slice.document.root.entries) < len(parsed_slice.sections)
     return ValidatedSlice(
-        (*parsed_slice.diagnostics, *schema_diagnostics, *normalise_document(parsed_slice.document)), lost_keys, partial
+        (*repetitions, *schema_diagnostics, *normalise_document(parsed_slice.document)), lost_keys, partial
     )
+
+
+def _merge_repetitions(
+    parsed_slice: Slice, schema_diagnostics: tuple[Diagnostic, ...]
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Return the findings of parsing and of the schema, without repeated keys that an element's wrong column explains.
+
+    An element whose first line alone is indented too far becomes an unknown key of the element above, and its keys
+    repeat those of that element: that is one slip.
+    """
+    if not any(diagnostic.rule == "duplicate-key" for diagnostic in parsed_slice.diagnostics):
+        return parsed_slice.diagnostics, schema_diagnostics
+    lines_by_column: dict[int, list[int]] = {}
+    for span in sorted(d.span for d in schema_diagnostics if d.rule == "unknown-key"):
+        lines_by_column.setdefault(span.column, []).append(span.line)
+    repetitions: list[Diagnostic] = []
+    causes = set[tuple[int, int]]()
+    for diagnostic in parsed_slice.diagnostics:
+        line = _find_cause(diagnostic, lines_by_column.get(diagnostic.span.column, []))
+        if line:
+            causes.add((line, diagnostic.span.column))
+        else:
+            repetitions.append(diagnostic)
+    return tuple(repetitions), tuple(
+        replace(d, help=_COLUMN_HELP) if (d.span.line, d.span.column) in causes else d for d in schema_diagnostics
+    )
+
+
+_COLUMN_HELP = "if this is an element of its own, begin it in the column of the element above it"
+
+
+def _find_cause(repetition: Diagnostic, unknown_lines: list[int]) -> int:
+    """Return the line of the unknown key between a key and its repetition, in their column; 0 where there is none."""
+    position = bisect_left(unknown_lines, repetition.span.line)
+    line = unknown_lines[position - 1] if position else 0
+    first_lines = [label.span.line for label in repetition.labels]
+    return line if repetition.rule == "duplicate-key" and first_lines and first_lines[0] < line else 0
 
 
 _WRITTEN_KEY = re.compile(r"(?<![A-Za-z0-9_.-])([A-Za-z0-9][A-Za-z0-9_.-]*+)[\"']?[ \t]*+:")

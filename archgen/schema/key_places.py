@@ -93,6 +93,22 @@ def find_section_of(entry: MappingEntry) -> str | None:
     return sections[0] if len(sections) == 1 else None
 
 
+def find_other_section(entry: MappingEntry) -> str | None:
+    """Return the section whose elements stand below another section's name; None where its own may be meant."""
+    own_kind = _ELEMENT_SECTIONS.get(entry.key)
+    if own_kind is None or not isinstance(entry.value, MappingNode):
+        return None
+    bodies = [
+        part.value.entries.keys() - _TELLING_NOTHING for part in entry.value if isinstance(part.value, MappingNode)
+    ]
+    foreign_keys = [key for body in bodies for key in body if key not in _list_keys(own_kind)]
+    # One such key may be a slip in an element of this section.
+    if len(foreign_keys) < 2 or any(body and body <= _list_keys(own_kind) for body in bodies):  # noqa: PLR2004
+        return None
+    sections = [name for name, kind in _ELEMENT_SECTIONS.items() if all(body <= _list_keys(kind) for body in bodies)]
+    return sections[0] if len(sections) == 1 else None
+
+
 def may_be_section(entry: MappingEntry, section: str) -> bool:
     """Whether what an entry holds may be meant as a section: its elements have keys that those of the section have."""
     kind = _ELEMENT_SECTIONS.get(section)
@@ -152,9 +168,17 @@ def _list_keys(kind: str) -> frozenset[str]:
 
 def _looks_like(node: YamlNode, kind: str) -> bool:
     """Whether a mapping has keys of a kind only, and one that not every kind has."""
-    if not isinstance(node, MappingNode):
-        return False
-    return _list_keys(kind).issuperset(node.entries) and not _TELLING_NOTHING.issuperset(node.entries)
+    return looks_like_part(node, load_schema()["$defs"][kind])
+
+
+def looks_like_part(node: YamlNode, schema_part: dict[str, Any]) -> bool:
+    """Whether a mapping has keys of a part of the schema only, and one that not every kind of element has."""
+    known_keys = schema_part.get("properties", {})
+    return (
+        isinstance(node, MappingNode)
+        and all(key in known_keys for key in node.entries)
+        and not _TELLING_NOTHING.issuperset(node.entries)
+    )
 
 
 def _phrase_kind(title: str) -> str:

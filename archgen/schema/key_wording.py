@@ -39,7 +39,7 @@ def diagnose_unknown_keys(
         yield _diagnose_foreign_keys(place, keys, schema_part, foreign_kind)
         return
     for entry in entries:
-        yield _diagnose_unknown_key(entry, schema_part, place.path)
+        yield diagnose_unknown_key(entry, schema_part, place.path)
 
 
 def _diagnose_foreign_keys(
@@ -56,7 +56,7 @@ def _diagnose_foreign_keys(
     return Diagnostic("unknown-key", message, span, help=help_line, element=element_of_path(place.path))
 
 
-def _diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
+def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path: tuple[str | int, ...]) -> Diagnostic:
     """Report a key that the schema does not have at its place, with the most likely meaning as help."""
     known_keys = tuple(schema_part.get("properties", ()))
     message = (

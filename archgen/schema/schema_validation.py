@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import jsonschema_rs
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema import exchanged_ports, key_wording, schema_wording
+from archgen.schema import exchanged_ports, key_wording, misplaced_elements, schema_wording
 from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -33,6 +33,10 @@ def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     validator = _get_validator()
     if validator.is_valid(data):
         return tuple(diagnostics)
+    misplaced = tuple(misplaced_elements.mend_misplaced_elements(document))
+    if misplaced:
+        diagnostics.extend(misplaced)
+        data = _to_validator_data(document.root)
     wrong_places: list[tuple[ErrorPlace, str | None]] = []
     seen_paths = set[tuple[str | int, ...]]()
     for error in _sort_by_weight(validator.iter_errors(data)):

@@ -26,7 +26,7 @@ from archgen.emit.text.template_limits import TemplateLimits, confine_process
 _MAX_TEMPLATE_BYTES = 1_000_000
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
 _MAX_OBJECT_NAME = 200
-_MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]{6,16}(?:>|&gt;|, file )", re.IGNORECASE)
+_MEMORY_ADDRESS = re.compile(r" at (0x[0-9a-f]{6,16})(?:>|&gt;|, file )", re.IGNORECASE)
 _OBJECT_START = re.compile(
     r"(?:<|&lt;)(function .*|(?:bound|built-in) method .*|(?:generator|code) object .*|[\w.]+ object)\Z",
     re.IGNORECASE | re.DOTALL,
@@ -57,16 +57,18 @@ class TemplateLoader(BaseLoader):
         return path.read_text("utf-8"), template, None
 
 
-def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> ImmutableSandboxedEnvironment:
+def create_sandbox(
+    folder: Path, escapes: Mapping[str, Mapping[str, str]], project_values: object = None
+) -> ImmutableSandboxedEnvironment:
     """Create the sandbox: what is undefined is an error, HTML and XML are escaped, nothing is random.
 
-    `escapes` become filters of these names.
+    `escapes` become filters of these names. The texts in `project_values` are printed whatever they say.
     """
     sandbox = ImmutableSandboxedEnvironment(
         loader=TemplateLoader(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
         undefined=StrictUndefined,
-        finalize=_refuse_printed_objects,
+        finalize=lambda value: _refuse_printed_objects(value, project_values),
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -80,15 +82,28 @@ def create_sandbox(folder: Path, escapes: Mapping[str, Mapping[str, str]]) -> Im
     return sandbox
 
 
-def _refuse_printed_objects(value: object) -> object:
-    """Return what a template prints, unless it is a function or the like: its place in memory is another in each run."""
+def _refuse_printed_objects(value: object, project_values: object) -> object:
+    """Return what a template prints, unless it is a function or the like: its place in memory is another in each run.
+
+    Filters and `~` make text of an object before it is printed, so texts are searched too. In a text of the project's own,
+    such as a quoted message of Python, the place is one that the project names.
+    """
     text = value if isinstance(value, str) else "" if isinstance(value, int) else str(value)
     for address in _MEMORY_ADDRESS.finditer(text):
         printed_object = _OBJECT_START.search(text, max(0, address.start() - _MAX_OBJECT_NAME), address.start())
-        if printed_object:
+        if printed_object and not _holds_text(project_values, address[1].lower()):
             msg = f"it prints what is no text: a {printed_object[1]}; a function is called with `()`, a list is made with `|list`"
             raise TemplateBoundError(msg)
     return value
+
+
+def _holds_text(value: object, lower_text: str) -> bool:
+    """Whether a text stands in plain data, as a part of a key or a value, in letters of either case."""
+    if isinstance(value, dict):
+        return any(_holds_text(part, lower_text) for pair in value.items() for part in pair)
+    if isinstance(value, list):
+        return any(_holds_text(part, lower_text) for part in value)
+    return isinstance(value, str) and lower_text in value.lower()
 
 
 def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
@@ -99,7 +114,12 @@ def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
         return {
             "files": list(
                 _render_files(
-                    create_sandbox(Path(request["templates"]), request["escapes"]), request, limits, current_template
+                    create_sandbox(
+                        Path(request["templates"]), request["escapes"], [request["data"], request["options"]]
+                    ),
+                    request,
+                    limits,
+                    current_template,
                 )
             )
         }

@@ -225,6 +225,25 @@ def test_what_is_text_or_data_is_printed(make: Make, template: str) -> None:
     assert files(make(template))
 
 
+@pytest.mark.parametrize("filters", ["", "|upper", "|markdown", "|code", "|replace('f', 'g')", "|escape"])
+def test_text_of_the_project_may_quote_what_python_prints(make: Make, filters: str) -> None:
+    quoted = "It logs <function f at 0x7f3A5c74c6>, and <a.B object at 0x7f0000000000> once"
+    tree, diagnostics = text.render_backend(
+        make(f"{{{{ record.note{filters} }}}}{{{{ record }}}}"),
+        {"record": {"note": quoted}},
+        QUICK,
+    )
+    assert diagnostics == ()
+    assert tree is not None
+
+
+def test_functions_stay_refused_beside_text_that_quotes_one(make: Make) -> None:
+    data = {"record": {"note": "<function f at 0x7f3a5c74c6>"}}
+    tree, (found,) = text.render_backend(make("{{ record.note }}{{ range ~ '' }}"), data, QUICK)
+    assert tree is None
+    assert "it prints what is no text: a function safe_range" in found.message
+
+
 def test_a_mistake_in_a_path_is_the_manifests(make: Make) -> None:
     assert fault(make("x", "{{ nobody }}.md")).startswith("backends/mine/backend.yaml:1: the backend `mine` fails: ")
 
