@@ -191,11 +191,14 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
-    merged_table, merge_findings = slice_merging.merge_documents(loaded_project.documents, loaded_project.lost_keys)
-    known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table)
     # These errors mean that something is missing in the architecture: the findings that they explain wait, so that one
     # mistake is reported once.
     reading_errors = _list_structural_errors(loaded_project.diagnostics)
+    damaged_elements = frozenset(error.element for error in reading_errors if error.element)
+    merged_table, merge_findings = slice_merging.merge_documents(
+        loaded_project.documents, loaded_project.lost_keys, damaged_elements
+    )
+    known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table)
     linked_architecture, link_findings = link.link_project(
         merged_table,
         default_id=loaded_project.id,
@@ -203,7 +206,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         shipped_types=shipped_types.load_shipped_types(guess_distro(loaded_project.distro)),
         interfaces=known_interfaces,
         lost_keys=loaded_project.lost_keys,
-        damaged_elements=frozenset(error.element for error in reading_errors if error.element),
+        damaged_elements=damaged_elements,
         is_partial=loaded_project.partial,
     )
     architecture = transform.transform_architecture(linked_architecture)

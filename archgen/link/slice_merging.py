@@ -21,17 +21,20 @@ _SUPPORTING_KEYS = frozenset({"timing", "requirements", "tags", "urls", "layout"
 
 
 def merge_documents(
-    documents: Sequence[YamlDocument], lost_keys: frozenset[str] = frozenset()
+    documents: Sequence[YamlDocument],
+    lost_keys: frozenset[str] = frozenset(),
+    damaged_elements: frozenset[str] = frozenset(),
 ) -> tuple[MappingNode, tuple[Diagnostic, ...]]:
     """Merge documents in normal form into one mapping.
 
     The documents are not changed (they may be cached for other revisions); the result shares their nodes. `lost_keys`
     are the keys in files that could not be read: an element that one of them may declare is not reported as undeclared.
+    Nor are `damaged_elements`, in which there is an error of reading: what declares them may have been taken out.
     """
     diagnostics: list[Diagnostic] = []
     root = _merge_mappings([document.root for document in documents], (), diagnostics)
     # Before incomplete elements are looked for, so that an undeclared element is a single finding.
-    root, undeclared_diagnostics = _drop_undeclared(root, documents, lost_keys)
+    root, undeclared_diagnostics = _drop_undeclared(root, documents, lost_keys, damaged_elements)
     return root, (*diagnostics, *undeclared_diagnostics, *_find_incomplete(root))
 
 
@@ -50,6 +53,9 @@ def _merge_mappings(mappings: Sequence[MappingNode], path: KeyPath, diagnostics:
 
 def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics: list[Diagnostic]) -> MappingEntry:
     """Merge the entries at one path: mappings key by key; of anything else the first stays, the others are reported."""
+    if len(same_entries) > 1:
+        # What validation has taken out and reported left an empty list that stands nowhere: what others write counts.
+        same_entries = [entry for entry in same_entries if entry.value.span.file] or same_entries[:1]
     first_entry = same_entries[0]
     if len(same_entries) == 1:
         return first_entry
@@ -82,14 +88,21 @@ def _diagnose_conflict(entry: MappingEntry, first_entry: MappingEntry, path: Key
 
 
 def _drop_undeclared(
-    root: MappingNode, documents: Sequence[YamlDocument], lost_keys: frozenset[str]
+    root: MappingNode,
+    documents: Sequence[YamlDocument],
+    lost_keys: frozenset[str],
+    damaged_elements: frozenset[str],
 ) -> tuple[MappingNode, list[Diagnostic]]:
     """Remove the components and groups that no file declares, and report them."""
     groups = root.get("groups")
     if not isinstance(groups, MappingNode):
         return root, []
     # Normal form turns a bare id into `{}`, which merging makes invisible: it must be looked for in the documents.
-    undeclared_paths = [path for path in _find_candidates(groups) if not _is_empty_somewhere(path, documents)]
+    undeclared_paths = [
+        path
+        for path in _find_candidates(groups)
+        if ".".join(path) not in damaged_elements and not _is_empty_somewhere(path, documents)
+    ]
     if not undeclared_paths:
         return root, []
     # Only what is declared is offered as a guess: two slips of the same kind must not suggest each other.

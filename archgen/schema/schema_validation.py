@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import jsonschema_rs
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema import exchanged_ports, key_wording, misplaced_elements, schema_wording
+from archgen.schema import exchanged_ports, key_wording, misplaced_elements, schema_wording, swallowed_components
 from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -28,7 +28,10 @@ _USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
 
 def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Report what the schema does not allow, and remove it from the document's tree in place."""
-    diagnostics = list(exchanged_ports.mend_exchanged_ports(document))
+    diagnostics = [
+        *exchanged_ports.mend_exchanged_ports(document),
+        *swallowed_components.find_swallowed_components(document),
+    ]
     data = _to_validator_data(document.root)
     validator = _get_validator()
     if validator.is_valid(data):

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.slice_merging import merge_documents
+from archgen.pipeline import check_project, check_text
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import YamlDocument, node_to_data
@@ -161,3 +166,23 @@ def test_a_merged_mapping_stands_where_its_first_slice_does() -> None:
     root, _ = merge_documents(slices("groups: {g: {title: G}}", "groups: {h: {title: H}}"))
     assert (root.span.file, root.entries["groups"].value.span.file) == ("a", "a")
     assert merge_documents([])[0].span == NO_SPAN
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_value_that_cannot_be_read_conflicts_with_none(tmp_path: Path, order: int) -> None:
+    for name, text in zip(
+        ("archgen.yaml", "b.yaml"),
+        ("nodes: {n: {implements: {x: y}}}", "nodes: {n: {implements: g.a}}")[::order],
+        strict=True,
+    ):
+        (tmp_path / name).write_text(text)
+    with (tmp_path / "archgen.yaml").open("a") as file:
+        file.write("\narchgen: 1\ngroups: {g: {title: G, components: {a: {outputs: {}}}}}\n")
+    assert [d.message for d in check_project(tmp_path).findings if d.severity == "error"] == [
+        "`implements` is a mapping, but must be text or a list"
+    ]
+
+
+def test_an_element_whose_declaration_cannot_be_read_is_declared() -> None:
+    text = "groups:\n  g: {title: [G]}\n  h: {components: {a: {inputs: 3}, b: {functionality: {}, timing: {rate: 1 Hz}}}}\n"
+    assert not [d.message for d in check_text(text) if d.rule == "undeclared-element"]
