@@ -10,7 +10,6 @@ import codecs
 import io
 import re
 import struct
-import zipfile
 from pathlib import Path
 from typing import BinaryIO
 
@@ -88,6 +87,8 @@ def name_written_format(stream: BinaryIO) -> str | None:
 
 def _has_program_name(stream: BinaryIO) -> bool:
     """Whether a Word document says that archgen wrote it, and no other program saved it since."""
+    import zipfile
+
     try:
         stream.seek(-_ZIP_END.size, io.SEEK_END)
         before, signature, _, list_size, _ = _ZIP_END.unpack(stream.read(_ZIP_END.size))

@@ -9,7 +9,8 @@ from pathlib import Path
 from archgen import pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
-from archgen.git import GitError, MergeFolder, PathConflict, open_merge_folder
+from archgen.git import GitError
+from archgen.git.tree_merge import MergeFolder, PathConflict, open_merge_folder
 from archgen.merge.file_merge import merge_contents
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from archgen.git import merge_lines
+from archgen.git.text_merge import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 
 

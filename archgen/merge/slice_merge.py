@@ -12,7 +12,8 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from archgen.git import GitError, merge_lines
+from archgen.git import GitError
+from archgen.git.text_merge import merge_lines
 from archgen.merge.change_transfer import transfer_changes
 from archgen.merge.sequence_merge import ConflictingRun, MergedRun, merge_sequences
 from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_value

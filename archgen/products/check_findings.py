@@ -13,7 +13,6 @@ from pathlib import Path
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
-from archgen.emit import file_tree
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES, CheckedProject, VersionCache
 from archgen.products import baseline_entries
@@ -155,6 +154,8 @@ def update_baseline(checked_project: CheckedProject, baseline_file: Path) -> Bas
 
     Raise OutputError instead of replacing a file that is no baseline.
     """
+    from archgen.emit import file_tree
+
     known_entries: tuple[BaselineEntry, ...] = ()
     # `lexists`: a dangling link is in the way as well and must not be replaced unread.
     if os.path.lexists(baseline_file):

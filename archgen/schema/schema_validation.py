@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import jsonschema_rs
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema import exchanged_ports, key_wording, misplaced_elements, schema_wording, swallowed_components
+from archgen.schema import exchanged_ports, schema_wording, swallowed_components
 from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -36,6 +36,8 @@ def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     validator = _get_validator()
     if validator.is_valid(data):
         return tuple(diagnostics)
+    from archgen.schema import misplaced_elements
+
     misplaced = tuple(misplaced_elements.mend_misplaced_elements(document))
     if misplaced:
         diagnostics.extend(misplaced)
@@ -100,6 +102,9 @@ def _record_error(
     wrong_places: list[tuple[ErrorPlace, str | None]],
     seen_paths: set[tuple[str | int, ...]],
 ) -> None:
+    # Sound files, which are nearly all, need no words for what is wrong with keys.
+    from archgen.schema import key_wording
+
     # `seen_paths` are those already reported: one finding for each place, the first one, which is a wrong type if any.
     place = _locate_error(document.root, [_remove_key_mark(step) for step in error.instance_path])
     schema_part = _find_schema_part(error.schema_path)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from archgen.emit.terminal.list_formats import format_columns
-
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -21,6 +19,8 @@ def render_rule_table(findings: Sequence[Diagnostic]) -> Iterator[str]:
     """Yield the lines of a table of the rules of many findings, the gravest and most frequent first; few yield none."""
     if len(findings) <= LONG_LIST:
         return
+    from archgen.emit.terminal.list_formats import format_columns
+
     # Rules that a project or a finding gives several severities have a row for each of them.
     counts = Counter((finding.rule, finding.effective_severity) for finding in findings)
     ordered_counts = sorted(counts.items(), key=lambda item: (-item[0][1].rank, -item[1], item[0][0]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv as csv_
 import io
 from collections.abc import Sequence
 
@@ -23,8 +22,10 @@ def format_csv(columns: Sequence[str], rows: TextRows) -> str:
 
     It may be printed in a terminal or in a workflow: what either would obey is made visible.
     """
+    import csv
+
     out = io.StringIO()
-    writer = csv_.writer(out)
+    writer = csv.writer(out)
     writer.writerow(columns)
     writer.writerows([_defuse_formula(cell) for cell in row] for row in rows)
     return out.getvalue()
