@@ -14,7 +14,6 @@ from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys, parse_slice
 from archgen.schema import list_sections
-from archgen.schema.key_places import is_meant_for_language
 from archgen.syntax import file_patterns
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
@@ -110,6 +109,8 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
 
 def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
+    from archgen.schema.key_places import is_meant_for_language
+
     known_sections, ignored_files = list_sections(), list[tuple[str, str | None]]()
     for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
         if file in state.seen_files:
