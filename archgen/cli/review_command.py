@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, finding_documents, review_log
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
@@ -118,7 +119,7 @@ def command(  # noqa: PLR0913 - one for each option
             _write_comparison(change, target)
         if build:
             _build_outputs(checked_project, target / "outputs", backend, trusted_revision)
-    is_refused = change is not None and change.comparison.is_refused
+    is_refused = change.comparison.is_refused if change else bool(merge_target) and _refuses_breaks(checked_project)
     sys.exit(command_support.exit_status(whole_report.findings, strict=strict) | int(is_refused))
 
 
@@ -132,6 +133,11 @@ def _explain_in_comment(target: Path, base: str | None) -> Iterator[None]:
             with command_support.explain_write_errors():
                 _write_unjudged(target, error.message)
         raise
+
+
+def _refuses_breaks(checked_project: CheckedProject) -> bool:
+    """Whether the project's policy is to fail: then it fails, too, where nobody can say what a change breaks."""
+    return checked_project.architecture.review.breaking is Severity.ERROR
 
 
 def _write_unjudged(target: Path, reason: str) -> None:

@@ -189,7 +189,7 @@ def test_what_cannot_be_judged_has_a_comment_and_the_files_of_later_steps(
     ran = run("review", folder, "--base", base, "--no-build")
     assert ran.status == 2
     assert reason in ran.err
-    assert comment(folder).startswith("### This change cannot be judged\n\n")
+    assert comment(folder).startswith("### Cannot be judged\n\n")
     assert reason.replace("`", "") in comment(folder).replace("`", "")
     assert "unused-type" in ran.out
     assert (folder / "archgen-out/review/findings.sarif").exists()
@@ -197,19 +197,20 @@ def test_what_cannot_be_judged_has_a_comment_and_the_files_of_later_steps(
     assert run("review", folder, "--base", "main", "--no-build").status == 0
 
 
-def test_a_project_that_is_gone_or_new_has_a_comment(run: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("policy", "status"), [("error", 1), ("warning", 0)])
+def test_a_project_that_is_gone_or_new_has_a_comment(run: Run, tmp_path: Path, policy: str, status: int) -> None:
     folder = branch(tmp_path, "groups: {}\n", ROBOT, "robot/archgen.yaml")
     repositories.git(folder, "checkout", "-q", "main")
     repositories.git(folder, "rm", "-q", "-r", "robot")
     repositories.commit(folder, {"README.md": "x"})
     repositories.git(folder, "checkout", "-q", "-B", "work")
-    repositories.commit(folder, {"robot/archgen.yaml": ROBOT})
+    repositories.commit(folder, {"robot/archgen.yaml": ROBOT.replace("breaking: error", f"breaking: {policy}")})
     ran = run("review", folder / "robot", "--base", "main", "--no-build")
-    assert ran.status == 0
+    assert ran.status == status
     assert "there is nothing to compare with" in comment(folder / "robot")
     ran = run("review", folder / "gone", "--base", "main", "--no-build", "-o", tmp_path / "out")
     assert ran.status == 2
-    assert (tmp_path / "out/comment.md").read_text(encoding="utf-8").startswith("### This change cannot be judged\n")
+    assert (tmp_path / "out/comment.md").read_text(encoding="utf-8").startswith("### Cannot be judged\n")
 
 
 def test_a_pull_request_is_named_in_the_title_and_the_command_can_be_repeated(

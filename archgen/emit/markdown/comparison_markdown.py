@@ -57,7 +57,7 @@ def write_comparison_markdown(
 
 def write_unjudged_markdown(reason: str) -> str:
     """Write the comment on a change that could not be compared: never nothing, and never a clean verdict."""
-    return f"### This change cannot be judged\n\n{write_sentence(reason)}\n"
+    return f"### Cannot be judged\n\n{write_sentence(reason)}\n"
 
 
 def _heading_line(document: ComparisonDocument) -> str:
