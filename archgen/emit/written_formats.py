@@ -39,7 +39,7 @@ _HEAD_MARKS = tuple(
         ),
         ("picture", rb'<\?xml[^>]*>\s*<svg class="archgen"'),
         ("JSON comparison", rb'\{\n  "version": \d+,\n  "changes": \['),
-        ("Markdown comparison", "### [^\n]*\n\n`[^\n]*` → `".encode()),
+        ("Markdown comparison", "### (?:Cannot be judged\n|[^\n]*\n\n`[^\n]*` → `)".encode()),
         ("Markdown agreement", rb"# [^\n]*\n\nInterface agreement\n"),
         (
             "SARIF list of findings",
