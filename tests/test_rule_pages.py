@@ -10,6 +10,7 @@ import pytest
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
+from archgen.findings.comparison_rules import COMPARISON_RULES
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES, check_project, check_text
 
@@ -46,7 +47,7 @@ def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule,
 
 
 def test_the_pages_are_fresh() -> None:
-    rules = index_rules(ALL_RULES)
+    rules = index_rules((*ALL_RULES, *COMPARISON_RULES))
     folder = resources.resource_path("docs", "rules")
     wanted = {
         "README.md": rule_pages.format_rule_index(rules),

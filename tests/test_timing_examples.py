@@ -32,6 +32,8 @@ def run(words: str) -> str:
 
 
 def test_the_output_on_the_page_is_real(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    # pytest-xdist exports the width of its own terminal.
+    monkeypatch.delenv("COLUMNS", raising=False)
     monkeypatch.chdir(ROOT)
     page = PAGE.read_text(encoding="utf-8")
     fresh = _BLOCK.sub(lambda block: run(block[1]), page)

@@ -166,6 +166,113 @@ def test_gitlab_runs_the_same_commands(tmp_path: Path, runner: Path) -> None:
     assert (folder / wanted).exists()
 
 
+def merge_branches(folder: Path) -> tuple[str, str]:
+    """Make a robot whose main line and branch changed different things, check out their merge; return fork and tip."""
+    repositories.repository(folder, {"archgen.yaml": ROBOT, "README.md": "x\n"})
+    fork = repositories.git(folder, "rev-parse", "HEAD")
+    repositories.git(folder, "checkout", "-q", "-b", "work")
+    repositories.commit(folder, {"archgen.yaml": ROBOT.replace("Grasps.", "Grasps and holds.")})
+    tip = repositories.git(folder, "rev-parse", "HEAD")
+    repositories.git(folder, "checkout", "-q", "main")
+    repositories.commit(folder, {"more.yaml": "requirements: {R-1: It works}\n"})
+    repositories.git(folder, "checkout", "-q", "--detach")
+    repositories.git(folder, "merge", "-q", "--no-ff", "-m", "x", "work")
+    return fork, tip
+
+
+@pytest.mark.parametrize("kind", ["merged_result", "merge_train"])
+def test_a_merged_results_pipeline_of_gitlab_tells_only_what_the_request_changes(
+    tmp_path: Path, runner: Path, kind: str
+) -> None:
+    template = read("ci/gitlab.yml")
+    folder = tmp_path / "work"
+    fork, tip = merge_branches(folder)
+    done = subprocess.run(  # noqa: S603 - what stands in our own file
+        ["bash", "-eo", "pipefail", "-c", "\n".join(template["archgen"]["script"])],  # noqa: S607 - as GitLab starts it
+        cwd=folder,
+        env={
+            **os.environ,
+            **{key: str(value) for key, value in template["variables"].items()},
+            "PATH": f"{runner}/archgen/bin:{os.environ['PATH']}",
+            "ARCHGEN_BASE": fork,
+            "ARCHGEN_BUILD": "false",
+            "GITHUB_ACTIONS": "",
+            "CI_MERGE_REQUEST_IID": "3",
+            "CI_MERGE_REQUEST_EVENT_TYPE": kind,
+            "CI_MERGE_REQUEST_TARGET_BRANCH_NAME": "main",
+            "CI_MERGE_REQUEST_SOURCE_BRANCH_SHA": tip,
+            "CI_COMMIT_SHA": repositories.git(folder, "rev-parse", "HEAD"),
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    comment = (folder / "archgen-out/review/comment.md").read_text(encoding="utf-8")
+    main = repositories.git(folder, "rev-parse", "--short=7", "main")
+    assert f"`main ({main})` → `this merge request ({tip[:7]})`" in comment
+    assert "R-1" not in comment
+    assert "functionality" in comment
+
+
+def test_the_action_reviews_what_waits_in_a_merge_queue(tmp_path: Path, runner: Path) -> None:
+    folder = tmp_path / "work"
+    merge_branches(folder)
+    base = repositories.git(folder, "rev-parse", "main")
+    step = next(one for one in read("action.yml")["runs"]["steps"] if one.get("id") == "review")
+    event = runner / "event.json"
+    event.write_text(f'{{"merge_group": {{"base_ref": "refs/heads/main", "base_sha": "{base}"}}}}')
+    told = run(
+        step,
+        folder,
+        runner,
+        **defaults(step, base=base, build="false"),
+        GITHUB_WORKSPACE=str(folder),
+        GITHUB_EVENT_NAME="merge_group",
+        GITHUB_EVENT_PATH=str(event),
+        GITHUB_REF="refs/heads/gh-readonly-queue/main/pr-7-x",
+    )
+    assert told == {"status": "0"}
+    comment = (folder / "archgen-out/review/comment.md").read_text(encoding="utf-8")
+    head = repositories.git(folder, "rev-parse", "--short=7", "HEAD")
+    assert f"`main ({base[:7]})` → `the merge queue ({head})`" in comment
+    assert "R-1" not in comment
+
+
+def test_the_action_leaves_a_comment_where_the_change_cannot_be_judged(tmp_path: Path, runner: Path) -> None:
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": ROBOT})
+    step = next(one for one in read("action.yml")["runs"]["steps"] if one.get("id") == "review")
+    given = defaults(step, base="0" * 40, build="false")
+    assert run(step, folder, runner, **given, GITHUB_WORKSPACE=str(folder)) == {"status": "2"}
+    made = {file.name for file in (folder / given["ARCHGEN_OUTPUT"]).iterdir()}
+    assert made == {"findings.sarif", "findings.xml", "comment.md"}
+
+
+def test_every_job_of_a_workflow_may_have_an_artifact_of_its_own() -> None:
+    steps = read("action.yml")["runs"]["steps"]
+    (upload,) = (step for step in steps if "upload-artifact" in step.get("uses", ""))
+    (download,) = (step for step in read("comment/action.yml")["runs"]["steps"] if "download" in step.get("uses", ""))
+    assert upload["with"]["name"] == download["with"]["name"] == "${{ inputs.artifact }}"
+    assert [read(name)["inputs"]["artifact"]["default"] for name in ("action.yml", "comment/action.yml")] == [
+        "archgen",
+        "archgen",
+    ]
+
+
+def test_the_examples_of_the_manual_name_inputs_and_variables_that_exist() -> None:
+    manual = (ROOT / "docs/pull_requests.md").read_text(encoding="utf-8")
+    examples = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", manual, re.DOTALL)]
+    jobs = [job for example in examples if "jobs" in example for job in example["jobs"].values()]
+    steps = [step for job in jobs for step in job["steps"] if step.get("uses", "").startswith(REPOSITORY)]
+    assert len(steps) == 5, "a review and a comment twice, and the comment after the review of a fork"
+    for step in steps:
+        action = read("comment/action.yml" if "/comment@" in step["uses"] else "action.yml")
+        assert step.get("with", {}).keys() <= action["inputs"].keys()
+    (extended,) = (example for example in examples if "archgen_arm" in example)
+    assert extended["archgen_arm"]["extends"] in read("ci/gitlab.yml")
+    assert extended["archgen_arm"]["variables"].keys() <= read("ci/gitlab.yml")["variables"].keys()
+
+
 WORDS_FOR_USERS = (
     "README.md",
     "docs",

@@ -126,8 +126,11 @@ def _mutate_values(source: SourceText, node: ast.AST) -> Iterator[Mutant]:
     elif isinstance(node, ast.Constant) and isinstance(node.value, int):
         changed = str(not node.value) if isinstance(node.value, bool) else str(node.value + 1)
         yield source.mutant(node, source.start_of(node), source.end_of(node), changed)
-    elif isinstance(node, (ast.If, ast.While, ast.IfExp)) and isinstance(
-        node.test, (ast.Name, ast.Attribute, ast.Call)
+    elif (
+        isinstance(node, (ast.If, ast.While, ast.IfExp))
+        and isinstance(node.test, (ast.Name, ast.Attribute, ast.Call))
+        # What is imported for type checkers alone changes nothing that runs.
+        and not (isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING")
     ):
         start = source.start_of(node.test)
         yield source.mutant(node.test, start, start, "not ")

@@ -162,7 +162,7 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     # A sentence that means requirements is reported by `unknown-requirement`, too.
     id_by_title = _index_titles(architecture)
     sentences = {use.text for c in architecture.components.values() for use in c.requirements if not use.is_id}
-    for sentence in sentences:
+    for sentence in sorted(sentences):
         named_ids.update(_list_meant_requirements(architecture, sentence, id_by_title))
     # A misspelt id is reported by `unknown-requirement`; the requirement that it means is not reported once more.
     misspelt_ids = {

@@ -90,6 +90,18 @@ def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_versio
     return comparison_documents.render_comparison_svg(comparison, _make_output_options())
 
 
+def _write_github(comparison: Comparison, _old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+    from archgen.cli.finding_documents import folder_in_repository
+    from archgen.diagnostics.diagnostic import sort_gravest_first
+    from archgen.emit.data.github_commands import format_github_commands
+    from archgen.products.break_findings import find_breaks
+
+    breaks = find_breaks(comparison, new_version.checked_project)
+    findings = (*breaks, *sort_gravest_first(comparison.new_findings))
+    folder = folder_in_repository(new_version.checked_project.root)
+    return "".join(f"{line}\n" for line in format_github_commands(findings, folder=folder))
+
+
 def _make_output_options() -> OutputOptions:
     from archgen.products.output_options import OutputOptions
 
@@ -101,6 +113,7 @@ COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
     "json": _write_json,
     "markdown": _write_markdown,
     "html": _write_html,
+    "github": _write_github,
     "svg": _write_svg,
 }
 """The functions that write a comparison, by the name of the format."""

@@ -20,6 +20,8 @@ def render_findings(
 ) -> str:
     """Render findings as json, GitHub's commands, sarif or junit. With `strict`, warnings are failures too."""
     from archgen.emit.data import findings_json, github_commands, junit_results, sarif_document
+    from archgen.findings.comparison_rules import COMPARISON_RULES
+    from archgen.findings.rule_table import index_rules
     from archgen.products.check_findings import RULES_BY_NAME
     from archgen.project import PROJECT_FILE
 
@@ -39,7 +41,8 @@ def render_findings(
     sarif_scan = sarif_document.SarifScan(
         checked_project.architecture.project.id, file, folder, __version__, is_compared=reported_findings.was_compared
     )
-    return sarif_document.format_sarif(reported_findings.findings, RULES_BY_NAME, sarif_scan)
+    rules = {**RULES_BY_NAME, **index_rules(COMPARISON_RULES)}
+    return sarif_document.format_sarif(reported_findings.findings, rules, sarif_scan)
 
 
 def folder_in_repository(root: Path) -> str:

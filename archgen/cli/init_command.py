@@ -60,6 +60,11 @@ if TYPE_CHECKING:
     multiple=True,
     help='What a heading of a table means, such as "Baugruppe=group"; may be repeated.',
 )
+@click.option(
+    "--merge-driver",
+    is_flag=True,
+    help="Let git merge slices by what they say, in this clone; alone, also in a project that is there already.",
+)
 @click.option("-y", "--yes", is_flag=True, help="Ask nothing: take the defaults for what no flag says.")
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     folder: Path | None,
@@ -71,6 +76,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     tables: tuple[Path, ...],
     headings: tuple[str, ...],
     *,
+    merge_driver: bool,
     yes: bool,
 ) -> None:
     """Start a project in FOLDER (the current one if left out): a small robot that checks clean, to be changed.
@@ -83,6 +89,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.start.start_answers import add_partners
 
     target = folder or Path()
+    if merge_driver and not any((title, partners, groups, distro, ci, tables, headings)) and _has_project(target):
+        _set_up_merge_driver(target)
+        return
     _refuse_existing_project(target)
     if tables and groups:
         msg = "--from takes the groups from the table: leave out --group"
@@ -106,13 +115,46 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if imported:
         answers = add_partners(answers, imported.data.get("partners", {}))
     _write_project(target, answers, imported)
+    if merge_driver:
+        _set_up_merge_driver(target)
+
+
+def _has_project(target: Path) -> bool:
+    from archgen.project import PROJECT_FILE
+
+    return os.path.lexists(target / PROJECT_FILE)
+
+
+def _set_up_merge_driver(target: Path) -> None:
+    """Let git merge slices by what they say: say what was written and run, and what is left to do."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.git import GitError, NoRepositoryError
+    from archgen.start import merge_driver_setup
+
+    path = target / merge_driver_setup.ATTRIBUTES_FILE
+    with command_support.explain_write_errors():
+        if merge_driver_setup.add_attribute(target):
+            command_support.print_written(path, "merge driver; commit it for everybody")
+        else:
+            click.echo(f"kept {command_support.shorten_path(path)}: it names the merge driver already")
+    commands = [merge_driver_setup.format_setting(*setting) for setting in merge_driver_setup.list_settings().items()]
+    try:
+        merge_driver_setup.configure_git(target)
+    except NoRepositoryError:
+        click.echo("There is no git repository yet. After `git init`, in this clone and in every other one, call")
+    except GitError as error:
+        raise click.ClickException(make_visible(str(error))) from None
+    else:
+        click.echo("ran, for this clone (every other one needs `archgen init --merge-driver` too):")
+    for command_line in commands:
+        click.echo(f"    {command_line}")
 
 
 def _refuse_existing_project(target: Path) -> None:
     """Refuse a folder that has a project already."""
     from archgen.project import PROJECT_FILE
 
-    if os.path.lexists(target / PROJECT_FILE):
+    if _has_project(target):
         msg = f"{target / PROJECT_FILE} is there already; nothing was written"
         raise click.ClickException(msg)
 
@@ -208,6 +250,8 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
         click.echo(f"By rule: {', '.join(f'{rule_counts[rule]} {rule}' for rule in sorted_rules)}.")
     if project_plan.repository_folder != target.resolve():
         click.echo(f"The repository begins at {project_plan.repository_folder}: what the forge reads stands there.")
+    if project_plan.repository_folder / ".gitlab-ci.yml" in project_plan.existing_files:
+        click.echo("That .gitlab-ci.yml does not check this project yet: docs/pull_requests.md says which job to add.")
     if project_plan.reviewers_missing:
         click.echo(
             "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"

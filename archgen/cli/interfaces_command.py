@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
     from archgen.products.agreement_documents import AgreementFormat
     from archgen.products.compared_versions import ProjectVersion
+    from archgen.views.agreement import PartnerAgreement
 
 _AGREEMENT_FORMATS = ("markdown", "html", "docx")
 
@@ -36,6 +38,11 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
     help="The format, where the file's ending does not say it.",
 )
 @click.option("--since", metavar="REV", help="Mark what changed since a git revision (or a folder or packed file).")
+@click.option(
+    "--signed",
+    metavar="REV",
+    help="As --since, with the revision that was signed; end with 1 where terms are others now.",
+)
 @shared_options.revision_option
 @shared_options.keep_going_option
 def command(  # noqa: PLR0913 - one for each option
@@ -45,6 +52,7 @@ def command(  # noqa: PLR0913 - one for each option
     output: Path | None,
     form: AgreementFormat | None,
     since: str | None,
+    signed: str | None,
     revision: str | None,
     keep_going: bool,
 ) -> None:
@@ -57,9 +65,14 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import agreement_documents, product_writing
     from archgen.products.output_options import OutputOptions
 
+    if since and signed:
+        msg = "--signed marks what changed as --since does: give one of them"
+        raise click.UsageError(msg)
     form = _choose_format(form, output)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    earlier_version = _read_earlier(since, project) if since else None
+    earlier_version = _read_earlier(since, "--since", project) if since else None
+    if signed:
+        earlier_version = _read_earlier(signed, "--signed", project)
     try:
         agreement = agreement_documents.make_project_agreement(checked_project, *pair, earlier_version, revision)
     except agreement_documents.PartnersError as error:
@@ -68,7 +81,7 @@ def command(  # noqa: PLR0913 - one for each option
     with command_support.explain_write_errors():
         if form == "markdown" and output is None:
             sys.stdout.write(agreement_documents.render_agreement_markdown(agreement))
-            command_support.exit_by_findings(checked_project)
+            _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
         endings = {"markdown": "md", "html": "html", "docx": "docx"}
         target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
         product_writing.refuse_leaving_links(checked_project, target)
@@ -76,7 +89,28 @@ def command(  # noqa: PLR0913 - one for each option
     command_support.print_written(
         target, f"{agreement.interface_count} interfaces" if agreement.interface_count != 1 else "1 interface"
     )
-    command_support.exit_by_findings(checked_project)
+    _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
+
+
+def _exit_by_terms(
+    checked_project: CheckedProject, agreement: PartnerAgreement, signed_version: ProjectVersion | None
+) -> NoReturn:
+    """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.views.agreement.signed_terms import list_departures
+
+    if signed_version is None or agreement.changes is None:
+        command_support.exit_by_findings(checked_project)
+    for version in (signed_version.checked_project, checked_project):
+        if version.structural_errors:
+            where = f"at {signed_version.title}" if version is signed_version.checked_project else "now"
+            click.echo(make_visible(f"cannot be judged: the architecture cannot be read whole {where}"), err=True)
+            sys.exit(1)
+    departures = list(list_departures(agreement.changes))
+    verdict = f"not as signed at {signed_version.title}:" if departures else f"as signed at {signed_version.title}"
+    for line in (verdict, *(f"  {departure}" for departure in departures)):
+        click.echo(make_visible(line), err=True)
+    sys.exit(1 if departures else command_support.exit_status(checked_project.findings))
 
 
 def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> AgreementFormat:
@@ -92,7 +126,7 @@ def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> 
     return format_of_ending
 
 
-def _read_earlier(revision: str, project: Path | None) -> ProjectVersion:
+def _read_earlier(revision: str, option: str, project: Path | None) -> ProjectVersion:
     """Read the project as it was. A revision that cannot be read is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
@@ -102,4 +136,4 @@ def _read_earlier(revision: str, project: Path | None) -> ProjectVersion:
     try:
         return compared_versions.read_version(revision, project)
     except (GitError, ProjectNotFoundError) as error:
-        raise click.UsageError(make_visible(f"--since: {error}")) from None
+        raise click.UsageError(make_visible(f"{option}: {error}")) from None

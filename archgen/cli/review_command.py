@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import command_support, finding_documents
+from archgen.cli import command_support, finding_documents, review_log
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
-    from archgen.pipeline import CheckedProject
+    from archgen.pipeline import CheckedProject, VersionCache
     from archgen.products.check_findings import ReportedFindings
+    from archgen.products.reviewed_change import ReviewedChange
     from archgen.products.trusted_backends import TrustedRevision
 
 REVIEW_FOLDER = "archgen-out/review"
@@ -36,6 +40,12 @@ REVIEW_FOLDER = "archgen-out/review"
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
     envvar="ARCHGEN_BASELINE",
     help="Keep the findings that FILE knows quiet.",
+)
+@click.option(
+    "--all-findings",
+    is_flag=True,
+    envvar="ARCHGEN_ALL_FINDINGS",
+    help="With --base, print old findings too, not only what the change brings and what makes the check fail.",
 )
 @click.option(
     "--build/--no-build",
@@ -63,59 +73,125 @@ def command(  # noqa: PLR0913 - one for each option
     base: str | None,
     strict: bool,
     baseline: Path | None,
+    all_findings: bool,
     build: bool,
     backend: tuple[str, ...],
     output: Path | None,
 ) -> None:
     """Check PROJECT, say what a change of it means, and make its outputs: all that a reviewer needs, in one folder.
 
-    It prints the findings, as annotations in a workflow of GitHub, and writes findings.sarif, findings.xml (JUnit) and, with
+    It prints findings, as annotations in a workflow of GitHub: with --base what the change breaks and what is new, and of the
+    rest only what makes the check fail. It writes findings.sarif and findings.xml (JUnit) with all findings and, with
     --base, comment.md (for the pull request), diff.json and diff.html; below outputs/ the report, the site, the diagrams and
     the packed file. Every option can be set by the environment: ARCHGEN_PROJECT, ARCHGEN_BASE, ARCHGEN_STRICT and so on.
 
     The exit status is 0 if all is well, 1 with errors or with a breaking change that the project does not accept, 2 for
-    wrong usage.
+    wrong usage; where the change cannot be compared, comment.md says why.
     """
+    from archgen.pipeline import VersionCache
     from archgen.products import check_findings
 
-    checked_project = command_support.check_or_exit(project)
+    version_cache = VersionCache()
+    with _explain_in_comment(output or (project or Path()) / REVIEW_FOLDER, base):
+        checked_project = command_support.check_or_exit(project, version_cache)
     target = output or checked_project.root / REVIEW_FOLDER
-    merge_target = _find_merge_target(base)
-    trusted_revision = command_support.read_trusted_revision(project, merge_target)
     reported = check_findings.report_findings(checked_project, baseline)
-    exit_status = command_support.exit_status(reported.findings, strict=strict)
-    _print_findings(reported, checked_project, strict=strict)
+    try:
+        with _explain_in_comment(target, base):
+            merge_target = _find_merge_target(project, base)
+            trusted_revision = command_support.read_trusted_revision(project, merge_target)
+            change = (
+                _compare_change(checked_project, project, merge_target, target, version_cache) if merge_target else None
+            )
+    except click.UsageError:
+        # The change cannot be judged: what was found is worth its files and annotations all the same.
+        _write_findings(reported, checked_project, target, strict=strict)
+        review_log.print_findings(reported, checked_project, strict=strict)
+        raise
+    breaks = change.breaks if change else ()
+    whole_report = replace(reported, findings=(*breaks, *reported.findings))
+    review_log.print_review(
+        change if not all_findings else None, whole_report, checked_project, baseline, strict=strict
+    )
+    _write_findings(whole_report, checked_project, target, strict=strict)
+    with command_support.explain_write_errors():
+        if change:
+            _write_comparison(change, target)
+        if build:
+            _build_outputs(checked_project, target / "outputs", backend, trusted_revision)
+    is_refused = change.comparison.is_refused if change else bool(merge_target) and _refuses_breaks(checked_project)
+    sys.exit(command_support.exit_status(whole_report.findings, strict=strict) | int(is_refused))
+
+
+@contextmanager
+def _explain_in_comment(target: Path, base: str | None) -> Iterator[None]:
+    """Write why a change cannot be judged into comment.md: the job that posts it would fail without the file."""
+    try:
+        yield
+    except click.UsageError as error:
+        if base:
+            with command_support.explain_write_errors():
+                _write_unjudged(target, error.message)
+        raise
+
+
+def _refuses_breaks(checked_project: CheckedProject) -> bool:
+    """Whether the project's policy is to fail: then it fails, too, where nobody can say what a change breaks."""
+    return checked_project.architecture.review.breaking is Severity.ERROR
+
+
+def _write_unjudged(target: Path, reason: str) -> None:
+    from archgen.emit.markdown.comparison_markdown import write_unjudged_markdown
+
+    comment = write_unjudged_markdown(reason)
+    _write_document(target / "comment.md", comment)
+    _add_to_summary(comment)
+
+
+def _find_merge_target(project: Path | None, base: str | None) -> str | None:
+    """Return the revision that the change is merged into, or None. What cannot be found is wrong usage."""
+    from archgen import git
+    from archgen.forge.reviewed_request import find_reviewed_request
+    from archgen.products.reviewed_change import find_merge_target
+
+    try:
+        return find_merge_target(project, base, find_reviewed_request()) if base else None
+    except git.GitError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
+def _compare_change(
+    checked_project: CheckedProject, project: Path | None, merge_target: str, target: Path, version_cache: VersionCache
+) -> ReviewedChange | None:
+    """Compare with what the change is merged into; None where the project did not exist there, which the comment says.
+
+    What cannot be compared is wrong usage.
+    """
+    from archgen import git
+    from archgen.forge.reviewed_request import find_reviewed_request
+    from archgen.products.reviewed_change import compare_change
+    from archgen.project import NotAtRevisionError
+
+    try:
+        return compare_change(checked_project, project, merge_target, find_reviewed_request(), version_cache)
+    except NotAtRevisionError as error:
+        reason = f"{error}: there is nothing to compare with"
+    except git.GitError as error:
+        raise click.UsageError(make_visible(str(error))) from None
+    command_support.print_warning(reason)
+    with command_support.explain_write_errors():
+        _write_unjudged(target, reason)
+    return None
+
+
+def _write_findings(
+    reported_findings: ReportedFindings, checked_project: CheckedProject, target: Path, *, strict: bool
+) -> None:
+    """Write all findings for code scanning and test reports."""
     with command_support.explain_write_errors():
         for name, form in (("findings.sarif", "sarif"), ("findings.xml", "junit")):
-            _write_document(
-                target / name, finding_documents.render_findings(form, reported, checked_project, strict=strict)
-            )
-        if merge_target:
-            # `REV...` is where the branch left REV. The first parent of GitHub's merge commit needs no dots:
-            # HEAD has all of it.
-            exit_status |= _write_comparison(project, merge_target if merge_target != base else f"{base}...", target)
-        if build:
-            exit_status |= _build_outputs(checked_project, target / "outputs", backend, trusted_revision)
-    sys.exit(exit_status)
-
-
-def _find_merge_target(base: str | None) -> str | None:
-    """Return the revision that the change is merged into, or None.
-
-    GitHub makes a merge commit of a pull request: its first parent is that revision, and what the event names as base
-    may be older.
-    """
-    merge_ref = re.fullmatch(r"refs/pull/\d+/merge", os.environ.get("GITHUB_REF", ""))
-    return "HEAD^1" if base and merge_ref else base or None
-
-
-def _print_findings(reported_findings: ReportedFindings, checked_project: CheckedProject, *, strict: bool) -> None:
-    if os.environ.get("GITHUB_ACTIONS"):
-        sys.stdout.write(finding_documents.render_findings("github", reported_findings, checked_project, strict=strict))
-    elif reported_findings.findings:
-        command_support.print_findings(reported_findings.findings, checked_project, sys.stdout)
-    else:
-        click.echo("no findings")
+            document = finding_documents.render_findings(form, reported_findings, checked_project, strict=strict)
+            _write_document(target / name, document)
 
 
 def _write_document(path: Path, document: str | bytes) -> None:
@@ -125,45 +201,32 @@ def _write_document(path: Path, document: str | bytes) -> None:
     command_support.print_written(path)
 
 
-def _write_comparison(project: Path | None, start: str, target: Path) -> int:
-    """Write what changed. Return the exit status that the project's policy asks for."""
-    from archgen import git
+def _write_comparison(change: ReviewedChange, target: Path) -> None:
+    """Write what changed, for people, programs and the job's summary."""
     from archgen.products import comparison_documents
-    from archgen.products.compared_versions import compare_named_versions, read_versions
     from archgen.products.output_options import OutputOptions
-    from archgen.project import NotAtRevisionError
 
-    try:
-        old_version, new_version = read_versions(start, None, project)
-    except NotAtRevisionError as error:
-        command_support.print_warning(f"{error}: there is nothing to compare with")
-        return 0
-    except git.GitError as error:
-        raise click.UsageError(make_visible(str(error))) from None
-    comparison = compare_named_versions(old_version, new_version)
-    comment = comparison_documents.render_comparison_markdown(comparison, old_version, new_version)
+    compared = (change.comparison, change.old_version, change.new_version)
+    comment = comparison_documents.render_comparison_markdown(*compared, change.command)
     _write_document(target / "comment.md", comment)
-    _write_document(
-        target / "diff.json",
-        comparison_documents.render_comparison_json(comparison, old_version, new_version),
-    )
-    _write_document(
-        target / "diff.html",
-        comparison_documents.render_comparison_html(
-            comparison, old_version, new_version, OutputOptions(warn=command_support.print_warning)
-        ),
-    )
+    _write_document(target / "diff.json", comparison_documents.render_comparison_json(*compared))
+    options = OutputOptions(warn=command_support.print_warning)
+    _write_document(target / "diff.html", comparison_documents.render_comparison_html(*compared, options))
+    _add_to_summary(comment)
+
+
+def _add_to_summary(comment: str) -> None:
+    """Add a comment to the summary of GitHub's job."""
     summary = os.environ.get("GITHUB_STEP_SUMMARY")
     if summary:
         with Path(summary).open("a", encoding="utf-8") as stream:
             stream.write(comment)
-    return int(comparison.is_refused)
 
 
 def _build_outputs(
     checked_project: CheckedProject, target: Path, backends: tuple[str, ...], trusted_revision: TrustedRevision | None
-) -> int:
-    """Build the outputs of what is sound. Return 0: outputs do not decide the status."""
+) -> None:
+    """Build the outputs of what is sound; they do not decide the status."""
     from archgen.products import full_build
     from archgen.products.output_options import OutputOptions
     from archgen.products.product_inputs import ProductInputs
@@ -178,7 +241,6 @@ def _build_outputs(
     full_build.build_outputs(
         ProductInputs(checked_project, output_options), products, target, command_support.print_written
     )
-    return 0
 
 
 def _drop_untrusted(

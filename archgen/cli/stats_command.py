@@ -117,7 +117,9 @@ def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[P
         if row.components
     ]
     if populated_rows:
-        lines += format_table(("Progress", "components", *PROGRESS_STEPS), populated_rows, width, has_figures=True)
+        headings = ("Progress", "components", *PROGRESS_STEPS)
+        table_lines = format_table(headings, populated_rows, width and width - 2, has_figures=True)
+        lines += [f"  {line}" for line in table_lines]
     return "\n".join(map(defuse_command, lines)) + "\n"
 
 

@@ -95,6 +95,8 @@ class Rule:
     doc: str
     fixed: bool = False
     options: tuple[RuleOption, ...] = ()
+    setting: str = ""
+    """The line of archgen.yaml that sets the severity, where that is not an entry below `rules`."""
 
     @classmethod
     def from_function(

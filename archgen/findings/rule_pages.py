@@ -73,7 +73,9 @@ def rule_page_to_markdown(rule: Rule) -> str:
     blocks += ["## Options", "\n".join(f"- {line}" for line in _describe_options(rule))] if rule.options else []
     for title, example in (("Reported", rule_page.bad), ("Not reported", rule_page.good)):
         blocks += [f"## {title}", f"```yaml\n{example}\n```"] if example else []
-    if not rule.fixed:
+    if rule.setting:
+        blocks += ["## To change it", f"In `archgen.yaml`:\n\n```yaml\n{rule.setting}\n```"]
+    elif not rule.fixed:
         setting = f"rules: {{{rule.name}: note}}  # off, note, warning or error"
         comment = f"# archgen: ignore[{rule.name}] because ..."
         blocks += ["## To change it", f"For the whole project, in `archgen.yaml`:\n\n```yaml\n{setting}\n```"]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.findings.comparison_rules import COMPARISON_RULES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -58,11 +59,17 @@ Good:
 )
 
 
+_REVIEW_RULES = index_rules(COMPARISON_RULES)
+
+
 def check_rule_settings(settings: Iterable[tuple[str, Span]], rules: Mapping[str, Rule]) -> Iterator[Diagnostic]:
     """Check the names below `rules:`, each with the span of its key."""
     for name, span in settings:
         rule = rules.get(name)
-        if rule is None:
+        if name in _REVIEW_RULES:
+            setting = _REVIEW_RULES[name].setting.partition("  #")[0]
+            yield Diagnostic("unknown-rule", f"`{name}` is not set below `rules`", span, help=f"write `{setting}`")
+        elif rule is None:
             help_text = did_you_mean(name, (candidate.name for candidate in rules.values() if not candidate.fixed))
             yield Diagnostic("unknown-rule", f"there is no rule `{name}`", span, help=help_text)
         elif rule.fixed:

@@ -6,6 +6,8 @@ import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
 
 from archgen.forge.comment_post import CommentTarget
 from archgen.forge.forge_api import ForgeApi, ForgeError
@@ -28,20 +30,37 @@ def find_pull_request(environment: Mapping[str, str]) -> CommentTarget:
     headers = {"Authorization": f"Bearer {token}", "X-GitHub-Api-Version": "2022-11-28"}
     api = ForgeApi(environment.get("GITHUB_API_URL", "https://api.github.com"), headers)
     issues = f"/repos/{repository}/issues"
-    comments = f"{issues}/{_read_number(environment)}/comments"
+    comments = f"{issues}/{_find_number(environment, api, repository)}/comments"
     return CommentTarget(
         api, comments, f"{issues}/comments", "PATCH", ("user", "login", _token_author(api)), MAX_COMMENT_LENGTH
     )
 
 
-def _read_number(environment: Mapping[str, str]) -> int:
-    """Read the pull request's number from the event that started the job."""
+def _find_number(environment: Mapping[str, str], api: ForgeApi, repository: str) -> int:
+    """Find the pull request's number by the event that started the job."""
     try:
         event = json.loads(Path(environment["GITHUB_EVENT_PATH"]).read_bytes())
+        if "workflow_run" in event:
+            return _find_reviewed_number(event["workflow_run"], api, repository)
         return int(event["pull_request"]["number"])
     except (KeyError, OSError, ValueError, TypeError):
         msg = "the event that started this job is no pull request"
         raise ForgeError(msg) from None
+
+
+def _find_reviewed_number(workflow_run: Mapping[str, Any], api: ForgeApi, repository: str) -> int:
+    """Find the pull request whose review has ended, by its branch and commit.
+
+    For a fork the event lists no pull requests. What the review uploaded could name one, but the fork wrote that, and
+    might name a stranger's.
+    """
+    owner, branch = workflow_run["head_repository"]["owner"]["login"], workflow_run["head_branch"]
+    query = urlencode({"state": "open", "head": f"{owner}:{branch}", "per_page": 100})
+    for pull_request in api.send_request("GET", f"/repos/{repository}/pulls?{query}"):
+        if pull_request["head"]["sha"] == workflow_run["head_sha"]:
+            return int(pull_request["number"])
+    msg = "no open pull request ends with the commit that was reviewed: it was closed, or its branch moved on"
+    raise ForgeError(msg)
 
 
 def _token_author(api: ForgeApi) -> object:
@@ -67,7 +86,9 @@ def find_merge_request(environment: Mapping[str, str]) -> CommentTarget:
             "ARCHGEN_TOKEN is not set: a job's own token cannot write comments, a project access token (scope api) can"
         )
         raise ForgeError(msg)
-    project, number = environment.get("CI_PROJECT_ID", ""), environment.get("CI_MERGE_REQUEST_IID", "")
+    # A fork's pipeline runs in the fork, whose merge requests are others.
+    project = environment.get("CI_MERGE_REQUEST_PROJECT_ID") or environment.get("CI_PROJECT_ID", "")
+    number = environment.get("CI_MERGE_REQUEST_IID", "")
     if not (project.isascii() and project.isdecimal() and number.isascii() and number.isdecimal()):
         msg = "this job runs for no merge request"
         raise ForgeError(msg)

@@ -20,11 +20,14 @@ def find_revision(root: Path, files: Iterable[str]) -> str:
     commit = _run_git(root, "log", "-1", "--no-show-signature", "--format=%h", "HEAD", "--", *file_names)
     if not commit:
         return ""
-    return commit.strip() + ("+" if _differs_from_head(root, file_names) else "")
+    return commit.strip() + ("+" if differs_from_head(root, file_names) else "")
 
 
-def _differs_from_head(root: Path, file_names: list[str]) -> bool:
-    """Whether some file differs from HEAD's blob; differences that git's conversion of line ends makes do not count."""
+def differs_from_head(root: Path, file_names: Iterable[str]) -> bool:
+    """Whether some file differs from HEAD's blob; differences that git's conversion of line ends makes do not count.
+
+    Files are relative to `root`.
+    """
     # `git status` or `git diff` would run the filters that a repository configures: hashes are compared instead.
     listing = _run_git(root, "ls-tree", "-r", "-z", "HEAD", "--", *file_names)
     head_blobs = {

@@ -128,8 +128,8 @@ def key_of_heading(text: str, heading_map: HeadingMap | None = None) -> str | No
         if key := (heading_map or {}).get(folded) or KEY_BY_HEADING.get(folded):
             return key
     # `Komponente / Component`: both halves mean the same.
-    keys = {KEY_BY_HEADING.get(fold_heading(part)) for part in _UNIT_PATTERN.sub("", text).split("/")}
-    return keys.pop() if len(keys) == 1 else None
+    keys = [KEY_BY_HEADING.get(fold_heading(part)) for part in _UNIT_PATTERN.sub("", text).split("/")]
+    return keys[0] if len(set(keys)) == 1 else None
 
 
 def list_spellings(text: str) -> tuple[str, ...]:

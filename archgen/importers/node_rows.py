@@ -63,8 +63,9 @@ def _import_listed_node(project: ImportedProject, row: TableRecord) -> None:
     node: dict[str, object] = {"implements": [part.strip() for part in implements.one_line.split(",")]}
     node |= {key: row.cells[key].one_line for key in ("package", "status") if key in row.cells}
     project.nodes[cell.one_line] = node
-    for key in {"node", "component", "package", "status"} & set(row.cells):
-        project.ledger.take_cell(row.cells[key], key, ("nodes", cell.one_line))
+    for key in ("node", "component", "package", "status"):
+        if key in row.cells:
+            project.ledger.take_cell(row.cells[key], key, ("nodes", cell.one_line))
 
 
 def _get_node(project: ImportedProject, row: TableRecord, component: ImportedComponent) -> str:

@@ -6,82 +6,24 @@ archgen does not hold, only the project's own definitions are known.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, lru_cache
-from pathlib import Path
-from typing import Any
+from functools import lru_cache
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceField, Interfaces
+from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces
+from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition, parse_definition
 
-_DATA_FOLDER = Path(__file__).resolve().parent / "ros_interfaces"
 _DEFINITION_PATH = re.compile(
     r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII
 )
 _FULL_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 _ROS2_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*\Z", re.ASCII)
-_SAME_FIELDS_AS = {
-    "rolling": "lyrical"
-}  # tools/make_ros_interfaces.py writes no fields for rolling: they are lyrical's
-
-
-class LazyInterfaces(Mapping[str, Interface]):
-    """The definitions of interfaces by full name: the project's own, and those that ship, which are read on first use.
-
-    A file of fields is read only when one of its messages is asked for, and then only that message is parsed.
-    """
-
-    __slots__ = ("_distros", "_own_interfaces")
-
-    def __init__(self, distros: tuple[str, ...], own_interfaces: Mapping[str, Interface]) -> None:
-        """Remember the project's own interfaces, and the distributions to search after them, in order."""
-        self._distros = distros
-        self._own_interfaces = own_interfaces
-
-    def __getitem__(self, name: str) -> Interface:
-        """Return the definition of `package/msg/Name`; raise KeyError where there is none."""
-        if name in self._own_interfaces:
-            return self._own_interfaces[name]
-        for distro in self._distros:
-            fields = _load_fields(distro).get(name)
-            if fields is not None:
-                return Interface(name, (tuple(_parse_field(text) for text in fields),))
-        raise KeyError(name)
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over all names, the project's own first, each once."""
-        return iter(
-            dict.fromkeys([*self._own_interfaces, *(name for distro in self._distros for name in _load_fields(distro))])
-        )
-
-    def __len__(self) -> int:
-        """Count the definitions."""
-        return sum(1 for _ in self)
-
-
-class LazyHoldingDistros(Mapping[str, tuple[str, ...]]):
-    """The distributions that have an interface, by full name; read when the first name is asked for."""
-
-    __slots__ = ()
-
-    def __getitem__(self, name: str) -> tuple[str, ...]:
-        """Return the distributions that have `package/msg/Name`; raise KeyError where there is none."""
-        return _load_holding_distros()[name]
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names that any distribution has."""
-        return iter(_load_holding_distros())
-
-    def __len__(self) -> int:
-        """Count these names."""
-        return len(_load_holding_distros())
 
 
 def load_interfaces(
@@ -95,7 +37,7 @@ def load_interfaces(
     name, each with the span of its text.
     """
     if not definition_files and not inline_definitions:
-        return _load_shipped_interfaces(distro), ()
+        return load_shipped_interfaces(distro), ()
     return _load_own_definitions(distro, tuple(definition_files), tuple((inline_definitions or {}).items()))
 
 
@@ -107,7 +49,7 @@ def _load_own_definitions(
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Lay the project's own definitions over what ships; cached, because most revisions of a project share them."""
     # The arguments are tuples, not a list and a dict, to be hashable for the cache.
-    shipped = _load_shipped_interfaces(distro)
+    shipped = load_shipped_interfaces(distro)
     is_ros1 = is_ros_1(distro)
     diagnostics = list[Diagnostic]()
     own_definitions = dict[str, InterfaceDefinition]()
@@ -245,74 +187,6 @@ def _merge_interfaces(shipped: Interfaces, own_interfaces: Mapping[str, Interfac
         shipped,
         names=shipped.names | frozenset(own_interfaces),
         complete_packages=shipped.complete_packages | (packages - shipped_packages),
-        definitions=LazyInterfaces(_list_distros(shipped.distro), own_interfaces),
+        definitions=LazyInterfaces(list_answering_distros(shipped.distro), own_interfaces),
         project_packages=packages,
     )
-
-
-def _list_distros(distro: str | None) -> tuple[str, ...]:
-    """Return the distributions whose data answer for a project's distribution: all for None, none if unknown."""
-    return KNOWN_DISTROS if distro is None else (distro,) if distro in KNOWN_DISTROS else ()
-
-
-@cache
-def _load_shipped_interfaces(distro: str | None) -> Interfaces:
-    """Return the interfaces that ship for a distribution; for None, those of all distributions."""
-    names, whole_packages, patch_packages = set[str](), set[str](), set[str]()
-    for data_distro in _list_distros(distro):
-        names.update(_list_names(data_distro))
-        # Without a distribution nothing is "whole": a name that one lacks may exist in another.
-        if distro is not None:
-            packages = _load_names(data_distro)
-            whole_packages.update(package for package, entry in packages.items() if entry["whole"])
-            patch_packages.update(package for package, entry in packages.items() if entry.get("patch"))
-    return Interfaces(
-        distro,
-        frozenset(names),
-        frozenset(whole_packages),
-        LazyInterfaces(_list_distros(distro), {}),
-        has_names=bool(_list_distros(distro)),
-        patch_packages=frozenset(patch_packages),
-        holding_distros=LazyHoldingDistros(),
-    )
-
-
-@cache
-def _load_holding_distros() -> dict[str, tuple[str, ...]]:
-    distros_by_name = dict[str, tuple[str, ...]]()
-    for distro in sorted(KNOWN_DISTROS):
-        for name in _list_names(distro):
-            distros_by_name[name] = (*distros_by_name.get(name, ()), distro)
-    return distros_by_name
-
-
-def _list_names(distro: str) -> Iterator[str]:
-    return (
-        f"{package}/{kind}/{name}"
-        for package, kinds in _load_names(distro).items()
-        for kind in ("msg", "srv", "action")
-        for name in kinds.get(kind, ())
-    )
-
-
-@cache
-def _load_names(distro: str) -> dict[str, dict[str, Any]]:
-    names_by_package: dict[str, dict[str, Any]] = json.loads(
-        (_DATA_FOLDER / f"{distro}.names.json").read_text(encoding="utf-8")
-    )
-    return names_by_package
-
-
-# Cached, and shared with callers that only look names up: LazyInterfaces asks for every single message.
-@cache
-def _load_fields(distro: str) -> dict[str, list[str]]:
-    file = _DATA_FOLDER / f"{_SAME_FIELDS_AS.get(distro, distro)}.fields.json"
-    fields_by_interface: dict[str, list[str]] = json.loads(file.read_text(encoding="utf-8"))
-    return fields_by_interface
-
-
-def _parse_field(text: str) -> InterfaceField:
-    """Parse a field as the data files hold it: `float64[36] covariance`."""
-    type_text, name = text.split(" ")
-    base, bracket, size = type_text.partition("[")
-    return InterfaceField(name, base, bracket + size)

@@ -215,11 +215,8 @@ def _index_packages(names: frozenset[str]) -> Mapping[str, tuple[str, ...]]:
 def _index_names(names: frozenset[str], package: str, kind: str) -> Mapping[str, str]:
     """Index the full names of a package by their last part; if two kinds share a last part, the wanted kind wins."""
     # Names of the wanted kind are sorted to the end: the last one written stays.
-    package_names = [name for name in names if name.startswith(f"{package}/")]
-    return {
-        name.rsplit("/", 1)[1]: name
-        for name in sorted(package_names, key=lambda name: (name.split("/")[1] == kind, name))
-    }
+    package_names = sorted(name for name in names if name.startswith(f"{package}/"))
+    return {name.rsplit("/", 1)[1]: name for name in sorted(package_names, key=lambda name: name.split("/")[1] == kind)}
 
 
 def guess_distro(distro: str | None) -> str | None:

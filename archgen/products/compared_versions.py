@@ -20,15 +20,16 @@ WORKING_TREE_NAME = "the working tree"
 
 @dataclass(frozen=True, slots=True)
 class ProjectVersion:
-    """A checked project, and its name as the user typed it."""
+    """A checked project, and its name as the user typed it. `checkout_commit` is the commit that files on disk are at."""
 
     name: str
     checked_project: CheckedProject
+    checkout_commit: str = ""
 
     @property
     def commit(self) -> str:
-        """Return the full hash of the commit that it was read from, empty for files on disk."""
-        return self.checked_project.loaded_project.files.commit
+        """Return the full hash of the commit that it was read from or is at, empty for other files on disk."""
+        return self.checked_project.loaded_project.files.commit or self.checkout_commit
 
     @property
     def title(self) -> str:

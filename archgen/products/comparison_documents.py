@@ -57,14 +57,18 @@ def render_comparison_json(comparison: Comparison, old_version: ProjectVersion, 
     return comparison_json.write_comparison_json(comparison, find_reading_errors(old_version, new_version))
 
 
-def render_comparison_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    """Write a comparison as the comment on a pull request."""
+def render_comparison_markdown(
+    comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, command: str = ""
+) -> str:
+    """Write a comparison as the comment on a pull request. `command` shows the same, by default that with the names."""
     from archgen.emit.markdown import comparison_markdown
     from archgen.views.graphs import changes as pictures
 
     graphs = pictures.draw_changes(comparison, pictures.SMALL_BUDGET)
     document = describe_versions(comparison, old_version, new_version, graphs)
-    return comparison_markdown.write_comparison_markdown(document, _terminal_command(old_version, new_version))
+    return comparison_markdown.write_comparison_markdown(
+        document, command or _terminal_command(old_version, new_version)
+    )
 
 
 def _terminal_command(old_version: ProjectVersion, new_version: ProjectVersion) -> str:

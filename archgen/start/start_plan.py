@@ -59,7 +59,9 @@ def plan_files(
     wanted_files = {
         target / name: data for name, data in {**yaml_files, **_project_files(answers, checked_project)}.items()
     }
-    wanted_files |= {repository_folder / name: data for name, data in _forge_files(answers, prefix).items()}
+    wanted_files |= {
+        repository_folder / name: data for name, data in _forge_files(answers, prefix, repository_folder).items()
+    }
     reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
     if any(partner.reviewers for partner in answers.partners):
         # Without a forge any of them may be meant.
@@ -91,9 +93,14 @@ def _project_files(answers: StartAnswers, checked_project: CheckedProject) -> di
     }
 
 
-def _forge_files(answers: StartAnswers, project_path: str) -> dict[str, bytes]:
+def _forge_files(answers: StartAnswers, project_path: str, repository_folder: Path) -> dict[str, bytes]:
     if answers.forge == "github":
-        return {".github/workflows/architecture.yml": start_templates.fill_workflow(project_path)}
+        folder, name = ".github/workflows", "architecture.yml"
+        # The workflow of another project, which never checks this one.
+        is_taken = bool(project_path) and os.path.lexists(repository_folder / folder / name)
+        if is_taken:
+            name = f"architecture-{start_templates.make_slug(project_path) or 'project'}.yml"
+        return {f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken)}
     return {".gitlab-ci.yml": start_templates.fill_pipeline(project_path)} if answers.forge == "gitlab" else {}
 
 

@@ -75,11 +75,29 @@ def fill_readme(answers: StartAnswers) -> bytes:
     return fill_template("README.md.j2", title=answers.title, forge=answers.forge, partners=answers.partners)
 
 
-def fill_workflow(folder: str) -> bytes:
-    """Return GitHub's workflow for a project in a folder of the repository (empty: the repository itself)."""
+def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
+    """Return GitHub's workflow for a project in a folder of the repository (empty: the repository itself).
+
+    Only one of a repository `publishes`: there is one site.
+    """
     paths = [f"{folder}/**"] if _PLAIN_PATH_PATTERN.match(folder) else []
     # A folder's name must not become an expression of GitHub; below, not a variable of GitLab.
-    return fill_template("github.yml.j2", folder=folder.replace("${{", "${{ '${{' }}"), paths=paths)
+    inert_folder = folder.replace("${{", "${{ '${{' }}")
+    return fill_template(
+        "github.yml.j2",
+        folder=inert_folder,
+        paths=paths,
+        # Two projects of a repository must not cancel each other's runs.
+        workflow_name=f"Architecture of {inert_folder}" if folder else "Architecture",
+        group="-".join(filter(None, ("architecture", inert_folder, "${{ github.ref }}"))),
+        key=f"diff/{make_slug(folder)}",
+        publishes=publishes,
+    )
+
+
+def make_slug(folder: str) -> str:
+    """Return a folder's path as one word of letters, digits, `_`, `.` and `-`."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", folder).strip("-.")
 
 
 def fill_pipeline(folder: str) -> bytes:

@@ -170,6 +170,29 @@ def test_in_a_repository_the_workflow_goes_to_its_top(run: Run, tmp_path: Path) 
     assert not (tmp_path / "robots/one/.github").exists()
 
 
+def test_a_second_project_of_a_repository_has_a_workflow_of_its_own(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    for name in ("alpha", "beta"):
+        assert run("init", tmp_path / "robots" / name, "--yes").status == 0
+    workflows = {file.name: yaml.safe_load(file.read_bytes()) for file in (tmp_path / ".github/workflows").iterdir()}
+    assert {
+        name: (workflow["jobs"]["check"]["steps"][1]["with"]["project"], "publish" in workflow["jobs"])
+        for name, workflow in workflows.items()
+    } == {
+        "architecture.yml": ("robots/alpha", True),
+        "architecture-robots-beta.yml": ("robots/beta", False),
+    }
+
+
+def test_a_pipeline_that_is_there_does_not_check_the_new_project(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    run("init", tmp_path / "alpha", "--yes", "--ci", "gitlab")
+    ran = run("init", tmp_path / "beta", "--yes", "--ci", "gitlab")
+    assert (
+        "That .gitlab-ci.yml does not check this project yet: docs/pull_requests.md says which job to add." in ran.out
+    )
+
+
 def test_a_folder_with_strange_letters_is_quoted_in_the_workflow(run: Run, tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
     assert run("init", tmp_path / "a: ${{ b }} *").status == 0

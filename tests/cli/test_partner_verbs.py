@@ -8,7 +8,7 @@ import pytest
 
 from tests.agreeing import DUO, written
 from tests.cli.conftest import Run
-from tests.repositories import repository
+from tests.repositories import git, repository
 
 
 @pytest.fixture
@@ -199,3 +199,50 @@ def test_a_component_in_another_group_is_moved_in_the_agreement_as_in_the_diff(r
     diff, agreement = since_head(run, tmp_path / "pair", text, *edits)
     assert "1 moved" in diff
     assert "): 1 moved.\n" in agreement
+
+
+@pytest.mark.parametrize(
+    ("edits", "verdict"),
+    [
+        ([], []),
+        ([("Colour camera", "Eye")], []),
+        (RENAMES, []),
+        (
+            [("topic: /image", "topic: /rgb")],
+            ["  `sensing.camera.image`: Topic was signed as /image, and is /rgb"],
+        ),
+        ([("inputs: {image: camera.image}", "title: S")], ["  `sensing.camera.image` was signed, and is gone"]),
+        (
+            [
+                ("outputs: {image: Image}", "outputs: {image: Image, more: Image}"),
+                ("camera.image}", "camera.image, more: camera.more}"),
+            ],
+            ["  `sensing.camera.more` was not signed"],
+        ),
+    ],
+)
+def test_what_is_not_as_it_was_signed_is_said_and_ends_with_1(
+    run: Run, tmp_path: Path, edits: list[tuple[str, str]], verdict: list[str]
+) -> None:
+    text = PAIR + NODES
+    root = repository(tmp_path / "pair", {"archgen.yaml": text})
+    git(root, "tag", "signed")
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    (root / "archgen.yaml").write_text(text, encoding="utf-8")
+    ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed")
+    head = git(root, "rev-parse", "--short=7", "signed")
+    said = f"not as signed at signed ({head}):" if verdict else f"as signed at signed ({head})"
+    assert (ran.status, ran.err.splitlines()) == (1 if verdict else 0, [said, *verdict])
+
+
+def test_a_signed_state_with_errors_cannot_be_judged(run: Run, tmp_path: Path) -> None:
+    root = repository(tmp_path / "pair", {"archgen.yaml": PAIR, "more.yaml": "groups: {x: ["})
+    git(root, "tag", "signed")
+    (root / "more.yaml").unlink()
+    ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed")
+    assert ran.status == 1
+    assert ran.err.startswith("cannot be judged: the architecture cannot be read whole at signed (")
+    ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed", "--since", "signed")
+    assert (ran.status, "give one of them" in ran.err) == (2, True)

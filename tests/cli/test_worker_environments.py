@@ -38,7 +38,7 @@ def environments(monkeypatch: pytest.MonkeyPatch) -> Mapping[str, dict[str, str]
                 name for name in ("drawing_worker", "template_worker", "history.workers") if name in str(command)
             )
             # None means that the process gets everything.
-            started[kind] = dict(options.get("env") or os.environ)
+            started[kind] = dict(os.environ if options.get("env") is None else options["env"])
         start_process(process, command, *words, **options)
 
     monkeypatch.setattr(subprocess.Popen, "__init__", record_process)

@@ -25,6 +25,7 @@ class Forge:
     """What the server holds, and what it was asked."""
 
     comments: list[dict[str, Any]] = field(default_factory=list)
+    pulls: list[dict[str, Any]] = field(default_factory=list)
     user: dict[str, Any] | None = None
     refuse: int = 0
     asked: list[tuple[str, str]] = field(default_factory=list)
@@ -57,6 +58,9 @@ def forge() -> Iterator[Forge]:
     def reply(method: str, path: str, query: dict[str, list[str]], body: Any) -> tuple[int, object]:  # noqa: ANN401
         if path == "/user":
             return (200, held.user) if held.user else (403, {})
+        if path.endswith("/pulls"):
+            branch = query["head"][0]
+            return 200, [one for one in held.pulls if one["head"]["label"] == branch and query["state"] == ["open"]]
         if held.refuse and method != "GET":
             return held.refuse, {}
         if method == "GET":
@@ -160,6 +164,52 @@ def test_a_job_that_cannot_comment_says_why(forge: Forge, tmp_path: Path, change
     with pytest.raises(ForgeError, match=said):
         post_comment("text", "diff", github(forge, tmp_path) | change)
     assert not forge.comments
+
+
+RUN = {"head_repository": {"owner": {"login": "kite"}}, "head_branch": "arm", "head_sha": "c2", "pull_requests": []}
+
+
+@pytest.mark.parametrize(
+    ("pulls", "commented"),
+    [
+        ([{"number": 7, "head": {"label": "kite:arm", "sha": "c2"}}], "/repos/robots/rover/issues/7/comments"),
+        (
+            [
+                {"number": 8, "head": {"label": "kite:arm", "sha": "c1"}},
+                {"number": 9, "head": {"label": "kite:arm", "sha": "c2"}},
+            ],
+            "/repos/robots/rover/issues/9/comments",
+        ),
+        # The branch moved on, or another fork has a commit of that hash.
+        ([{"number": 7, "head": {"label": "kite:arm", "sha": "c3"}}], None),
+        ([{"number": 7, "head": {"label": "mallory:arm", "sha": "c2"}}], None),
+        ([], None),
+    ],
+)
+def test_a_job_after_the_review_finds_the_pull_request_of_a_fork(
+    forge: Forge, tmp_path: Path, pulls: list[dict[str, Any]], commented: str | None
+) -> None:
+    forge.pulls = pulls
+    job = github(forge, tmp_path, {"workflow_run": RUN})
+    if commented:
+        assert post_comment("text", "diff", job) == "created"
+        assert ("POST", commented) in forge.asked
+    else:
+        with pytest.raises(ForgeError, match="no open pull request ends with the commit that was reviewed"):
+            post_comment("text", "diff", job)
+        assert not forge.comments
+
+
+@pytest.mark.parametrize("event", [{"workflow_run": None}, {"workflow_run": {}}, {"workflow_run": 7}, 7])
+def test_an_odd_event_names_no_pull_request(forge: Forge, tmp_path: Path, event: object) -> None:
+    with pytest.raises(ForgeError, match="no pull request"):
+        post_comment("text", "diff", github(forge, tmp_path, event))
+
+
+def test_a_merge_request_of_a_fork_belongs_to_the_project_that_it_is_merged_into(forge: Forge) -> None:
+    forge.user = {"id": 5}
+    assert post_comment("text", "diff", {**gitlab(forge), "CI_MERGE_REQUEST_PROJECT_ID": "1"}) == "created"
+    assert ("POST", "/projects/1/merge_requests/3/notes") in forge.asked
 
 
 def test_a_push_has_no_pull_request(forge: Forge, tmp_path: Path) -> None:

@@ -7,13 +7,15 @@ from collections.abc import Callable
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import input_wiring
 from archgen.link.project_linking import link_project
-from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
+from archgen.syntax.yaml_tree import ScalarNode
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 Told = Callable[[str], list[str]]
@@ -353,3 +355,12 @@ def test_after_the_suspects_are_taken_no_reference_is_resolved() -> None:
     assert resolver.finish_resolving() == frozenset()
     with pytest.raises(RuntimeError, match="after the suspects were taken"):
         resolver.resolve_plain_id(None, "host", "n")
+
+
+def test_a_guess_that_stands_nowhere_has_no_label() -> None:
+    reference = ScalarNode("camra", "camra", Span("a.yaml", 3, 5, 3, 10))
+    declared = Span("b.yaml", 1, 1, 1, 7)
+    told = diagnose_unknown_reference(reference, "node", "camera", declared, "x")
+    assert ([label.span for label in told.labels], told.help) == ([declared], "did you mean `camera`?")
+    assert diagnose_unknown_reference(reference, "node", "camera", NO_SPAN, "x").labels == ()
+    assert diagnose_unknown_reference(reference, "node", None, declared, "x").labels == ()

@@ -48,6 +48,26 @@ def test_a_folder_is_no_expression_of_a_workflow(folder: str) -> None:
     assert ("paths:" in workflow) == (folder == "robot")
 
 
+def test_two_projects_of_a_repository_have_nothing_in_common_that_could_clash() -> None:
+    first, second = (yaml.safe_load(start_templates.fill_workflow(f"robots/{name}")) for name in ("alpha", "beta"))
+    assert first["concurrency"]["group"] == "architecture-robots/alpha-${{ github.ref }}"
+    assert second["concurrency"]["group"] == "architecture-robots/beta-${{ github.ref }}"
+    assert [each["name"] for each in (first, second)] == ["Architecture of robots/alpha", "Architecture of robots/beta"]
+    keys = [each["jobs"]["comment"]["steps"][0]["with"]["key"] for each in (first, second)]
+    assert keys == ["diff/robots-alpha", "diff/robots-beta"]
+
+
+@pytest.mark.parametrize("folder", ["", "robot"])
+def test_a_merge_queue_is_answered(folder: str) -> None:
+    triggers = yaml.safe_load(start_templates.fill_workflow(folder))[True]
+    assert triggers["merge_group"] is None
+
+
+def test_only_one_project_publishes() -> None:
+    jobs = [yaml.safe_load(start_templates.fill_workflow("a", publishes=each))["jobs"] for each in (True, False)]
+    assert [list(each) for each in jobs] == [["check", "comment", "publish"], ["check", "comment"]]
+
+
 @pytest.mark.parametrize(("folder", "written"), [("", "."), ("$HOME", "$$HOME"), ("robot", "robot")])
 def test_a_folder_is_no_variable_of_a_pipeline(folder: str, written: str) -> None:
     assert written in start_templates.fill_pipeline(folder).decode()

@@ -55,6 +55,11 @@ def write_comparison_markdown(
     return comment.write_text()
 
 
+def write_unjudged_markdown(reason: str) -> str:
+    """Write the comment on a change that could not be compared: never nothing, and never a clean verdict."""
+    return f"### Cannot be judged\n\n{write_sentence(reason)}\n"
+
+
 def _heading_line(document: ComparisonDocument) -> str:
     """Return the heading: how many changes there are, and whom they break and concern."""
     broken, further = document.broken_partners, document.further_partners

@@ -58,7 +58,7 @@ def render_findings_text(
     table_lines = tuple(findings_summary.render_rule_table(diagnostics))
     yield from (*table_lines, "") if table_lines else ()
     if is_waiting:
-        yield findings_summary.WAITING_SENTENCE
+        yield from wrap_line(findings_summary.WAITING_SENTENCE, width)
     yield format_summary(diagnostics)
 
 

@@ -128,8 +128,5 @@ def _bound_global(
         interference = divide_demand(((subtract_demand(carried_demand, own_demand), resource.cores),))
     if len(thread.works) == 1:
         return WorstResponse(worst_response(thread.works[0], interference, budget), "cores")
-    is_alone = len(siblings) + 1 == len(all_threads)
-    return WorstResponse(
-        longest_busy_period(add_demands(GrowingLoad(thread.works).demand_function(), interference), budget),
-        "executor" if is_alone else "cores",
-    )
+    own_work = GrowingLoad(thread.works).demand_function()
+    return WorstResponse(longest_busy_period(add_demands(own_work, interference), budget), "cores")

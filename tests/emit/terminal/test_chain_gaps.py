@@ -81,3 +81,12 @@ def test_where_no_bound_was_found_is_said_on_one_core_and_on_several(tmp_path: P
     architecture = check_project(tmp_path / "robot.yaml").architecture
     lines = list(format_timing(analyse_architecture(architecture), {}, ()))
     assert lines[-1] == f"{word}: no bound was found for s, e, f, p, q"
+
+
+def test_several_cores_that_have_bounds_are_not_said_to_lack_them(tmp_path: Path) -> None:
+    light = HEAVY.replace("cores: 1", "cores: 2").replace("8 ms}}", "1 ms}}")
+    (tmp_path / "robot.yaml").write_text(light, encoding="utf-8")
+    analysis = analyse_architecture(check_project(tmp_path / "robot.yaml").architecture)
+    assert {response.tier for response in analysis.responses.values()} == {"cores"}
+    assert analysis.boundless_on_cores == ()
+    assert "no bound" not in list(format_timing(analysis, {}, ()))[-1]

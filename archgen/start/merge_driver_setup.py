@@ -1,0 +1,70 @@
+"""Set up the merge driver: a line in .gitattributes for everybody, two settings of git for this clone."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+from archgen import git
+from archgen.emit import file_tree
+from archgen.git.git_call import run_git
+
+ATTRIBUTES_FILE = ".gitattributes"
+_PATTERN, _ATTRIBUTE = b"*.yaml", b"merge=archgen"
+_DRIVER_ARGUMENTS = "merge-driver --marker-size=%L %O %A %B %P"
+
+
+def list_settings() -> dict[str, str]:
+    """Return the settings of git that name the driver.
+
+    Where the shell that git calls would not find `archgen`, they name this Python: git takes a program that is missing for
+    a conflict, and leaves our side without any marker.
+    """
+    program = "archgen" if shutil.which("archgen") else f"{shlex.quote(Path(sys.executable).as_posix())} -m archgen"
+    return {
+        "merge.archgen.name": "slices of archgen by what they say",
+        "merge.archgen.driver": f"{program} {_DRIVER_ARGUMENTS}",
+    }
+
+
+def format_setting(name: str, value: str) -> str:
+    """Return the command that makes a setting."""
+    return f"git config --local {name} {shlex.quote(value)}"
+
+
+def add_attribute(folder: Path) -> bool:
+    """Add the line to a project's .gitattributes, behind what is there. Return whether it was missing.
+
+    Raise OutputError for a symbolic link, which git does not read, and OSError.
+    """
+    path = folder / ATTRIBUTES_FILE
+    if path.is_symlink():
+        msg = f"{path} is a symbolic link, which git does not read; nothing was written"
+        raise file_tree.OutputError(msg, f"make it a file with the line `{(_PATTERN + b' ' + _ATTRIBUTE).decode()}`")
+    content = path.read_bytes() if path.exists() else b""
+    merge_lines = [
+        words for line in content.splitlines() if (words := line.split())[:1] == [_PATTERN] and _sets_merge(words)
+    ]
+    # The last line counts: another driver behind ours would be taken instead.
+    if merge_lines and _ATTRIBUTE in merge_lines[-1]:
+        return False
+    line_end = b"\r\n" if b"\r\n" in content else b"\n"
+    separator = b"" if not content or content.endswith(b"\n") else line_end
+    file_tree.replace_file(path, content + separator + _PATTERN + b" " + _ATTRIBUTE + line_end)
+    return True
+
+
+def _sets_merge(words: list[bytes]) -> bool:
+    return any(word.lstrip(b"-!").partition(b"=")[0] == b"merge" for word in words[1:])
+
+
+def configure_git(folder: Path) -> None:
+    """Make the settings in the repository around a folder. Raise `git.NoRepositoryError` or `git.GitError`."""
+    repository = git.find_repository(folder)
+    for name, value in list_settings().items():
+        result = run_git(repository.top, "config", "--local", name, value)
+        if result.status:
+            msg = f"git does not take the setting {name}: {result.error_text}"
+            raise git.GitError(msg)

@@ -1,0 +1,102 @@
+"""`archgen init --merge-driver`: what it writes and runs, in new projects and in those that are there."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests import repositories
+from tests.cli.conftest import Run
+from tests.running import ROOT
+
+PROJECT = "archgen: 1\nnodes:\n  n: {package: a_b, executable: x}\n"
+DRIVER = "archgen merge-driver --marker-size=%L %O %A %B %P"
+
+
+@pytest.fixture(autouse=True)
+def _archgen_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: f"/usr/bin/{name}")
+
+
+def read_setting(folder: Path, name: str) -> str:
+    return repositories.git(folder, "config", "--local", f"merge.archgen.{name}")
+
+
+def list_texts(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def test_in_a_project_that_is_there_nothing_else_is_touched(run: Run, tmp_path: Path) -> None:
+    folder = repositories.repository(
+        tmp_path, {"archgen.yaml": PROJECT, "README.md": "mine\n", ".gitattributes": "*.png binary"}
+    )
+    before = list_texts(folder)
+    ran = run("init", folder, "--merge-driver")
+    assert (ran.status, ran.err) == (0, "")
+    assert list_texts(folder) == before | {".gitattributes": b"*.png binary\n*.yaml merge=archgen\n"}
+    assert (read_setting(folder, "driver"), read_setting(folder, "name")) == (
+        DRIVER,
+        "slices of archgen by what they say",
+    )
+    assert ran.out.splitlines()[1:] == [
+        "ran, for this clone (every other one needs `archgen init --merge-driver` too):",
+        "    git config --local merge.archgen.name 'slices of archgen by what they say'",
+        f"    git config --local merge.archgen.driver '{DRIVER}'",
+    ]
+    ran = run("init", folder, "--merge-driver")
+    assert ran.status == 0
+    assert "names the merge driver already" in ran.out
+    assert (folder / ".gitattributes").read_bytes() == b"*.png binary\n*.yaml merge=archgen\n"
+
+
+def test_a_new_project_outside_of_a_repository_says_what_to_do(run: Run, tmp_path: Path) -> None:
+    ran = run("init", tmp_path / "robot", "--yes", "--merge-driver")
+    assert ran.status == 0
+    lines = (tmp_path / "robot/.gitattributes").read_text(encoding="utf-8").splitlines()
+    assert lines[-1] == "*.yaml merge=archgen"
+    assert "*.yaml text eol=lf" in lines
+    assert "There is no git repository yet. After `git init`, in this clone and in every other one, call\n" in ran.out
+    assert f"    git config --local merge.archgen.driver '{DRIVER}'\n" in ran.out
+
+
+def test_other_options_still_do_not_touch_a_project_that_is_there(run: Run, tmp_path: Path) -> None:
+    folder = repositories.repository(tmp_path, {"archgen.yaml": PROJECT})
+    ran = run("init", folder, "--merge-driver", "--title", "X")
+    assert (ran.status, "is there already; nothing was written" in ran.err) == (2, True)
+    assert not (folder / ".gitattributes").exists()
+
+
+def test_a_link_in_its_place_is_refused(run: Run, tmp_path: Path) -> None:
+    folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": PROJECT})
+    (tmp_path / "other").write_text("x")
+    (folder / ".gitattributes").symlink_to(tmp_path / "other")
+    ran = run("init", folder, "--merge-driver")
+    assert (ran.status, "is a symbolic link, which git does not read; nothing was written" in ran.err) == (2, True)
+    assert (tmp_path / "other").read_text() == "x"
+
+
+def test_settings_that_git_refuses_are_said(run: Run, tmp_path: Path) -> None:
+    folder = repositories.repository(tmp_path, {"archgen.yaml": PROJECT})
+    (folder / ".git/config.lock").write_text("")
+    ran = run("init", folder, "--merge-driver")
+    assert (ran.status, "git does not take the setting merge.archgen.name: " in ran.err) == (2, True)
+
+
+def test_git_merges_with_what_was_set_up_also_where_archgen_is_on_no_path(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    folder = repositories.repository(tmp_path / "a robot", {"archgen.yaml": PROJECT})
+    run("init", folder, "--merge-driver")
+    assert Path(sys.executable).as_posix() in read_setting(folder, "driver")
+    repositories.commit(folder, {})
+    repositories.git(folder, "checkout", "-q", "-b", "other")
+    repositories.commit(folder, {"archgen.yaml": PROJECT.replace("a_b", "c_d")})
+    repositories.git(folder, "checkout", "-q", "main")
+    repositories.commit(folder, {"archgen.yaml": PROJECT.replace("executable: x", "executable: y")})
+    repositories.git(folder, "merge", "-q", "--no-edit", "other")
+    assert (folder / "archgen.yaml").read_text() == "archgen: 1\nnodes:\n  n: {package: c_d, executable: y}\n"
