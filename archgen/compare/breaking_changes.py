@@ -16,6 +16,7 @@ from archgen.compare.losses.overloaded_resources import find_overloaded_cores, f
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_promises import find_weakened_deadlines
 from archgen.compare.losses.weakened_qos import find_weakened_publishers
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
@@ -74,6 +75,7 @@ def _find_losses(
     if timing_pair:
         causes = TimingCauses(context, timing_pair)
         yield from find_late_chains(context, chains, causes)
+        yield from find_weakened_deadlines(context, chains, causes)
         yield from find_overloaded_cores(context, causes)
         yield from find_saturated_links(context, causes)
 
