@@ -61,10 +61,13 @@ def change_record(architecture_change: Change) -> dict[str, Any]:
         # The keys are the format, not the names of attributes: they stay when those change.
         "breaks": list(architecture_change.broken_partners),
         "because": [
-            {"partner": partner_break.partner, "why": partner_break.reason}
+            {"partner": partner_break.partner, "why": partner_break.reason, "agreed": partner_break.agreement}
             for partner_break in architecture_change.breaks
         ],
         "accepted": architecture_change.acceptance_reason,
+        "said": [
+            {"file": entry.at.file, "key": entry.key, "reason": entry.reason} for entry in architecture_change.claims
+        ],
         "text": architecture_change.text,
         "parts": [change_record(part) for part in architecture_change.parts],
     }

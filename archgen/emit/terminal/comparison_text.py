@@ -69,8 +69,7 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
         if not told_reasons.isdisjoint(reasons):
             yield "      as above" if told_reasons.issuperset(reasons) else "      and as above"
         told_reasons |= reasons
-        if item.acceptance:
-            yield make_visible(f"      {item.acceptance}")
+        yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
         yield make_visible(f"  {comparison_document.REFUSAL_LEAD}{document.refusal_help}")
     yield ""

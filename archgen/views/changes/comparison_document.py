@@ -48,11 +48,11 @@ class NamedVersion:
 
 @dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """A change that breaks partners: for each reason whom, and why it is accepted (empty: it is not)."""
+    """A change that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
 
     change: Change
     partners_by_reason: Mapping[str, tuple[str, ...]]
-    acceptance: str
+    agreements: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,12 +157,14 @@ def describe_comparison(
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
-                change, _partners_by_reason(change), breaking_verdict.describe_acceptance(change, comparison)
+                change, _partners_by_reason(change), tuple(breaking_verdict.describe_agreements(change, comparison))
             )
             for change in comparison.changes
             if change.breaks
         ),
-        refusal_help=breaking_verdict.describe_refusal(comparison.changes, is_refused=comparison.is_refused),
+        refusal_help=breaking_verdict.describe_refusal(
+            comparison.changes, comparison.matched_ids, is_refused=comparison.is_refused
+        ),
         verdict=verdict,
         changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
         change_groups=tuple(group_changes(other_changes, comparison)),

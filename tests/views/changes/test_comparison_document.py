@@ -33,7 +33,10 @@ groups:
 chains: {see: {through: [camera, screen], deadline: 100 ms}}
 """
 RETYPED = OLD.replace("msg/Image", "msg/CompressedImage")
-REFUSED = "mend it, or agree on it and say why: `review: {accepted: {sensing.camera.image: THE REASON}}`"
+REFUSED = (
+    "mend it, or sssa says why it is right, in `review/sssa.yaml`: "
+    "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`"
+)
 FORMS = ("terminal", "markdown", "page")
 Sides = tuple[ProjectVersion, ProjectVersion]
 ReadSides = Callable[[str, str], Sides]
