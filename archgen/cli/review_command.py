@@ -93,7 +93,8 @@ def command(  # noqa: PLR0913 - one for each option
         if merge_target:
             # `REV...` is where the branch left REV. The first parent of GitHub's merge commit needs no dots:
             # HEAD has all of it.
-            exit_status |= _write_comparison(project, merge_target if merge_target != base else f"{base}...", target)
+            start = merge_target if merge_target != base else f"{base}..."
+            exit_status |= _write_comparison(project, start, target, checked_project)
         if build:
             exit_status |= _build_outputs(checked_project, target / "outputs", backend, trusted_revision)
     sys.exit(exit_status)
@@ -125,7 +126,27 @@ def _write_document(path: Path, document: str | bytes) -> None:
     command_support.print_written(path)
 
 
-def _write_comparison(project: Path | None, start: str, target: Path) -> int:
+def _write_obstacle(checked_project: CheckedProject, obstacle: str, target: Path) -> int:
+    """Say in the comment why nothing can be compared. Return the exit status that the project's policy asks for."""
+    from archgen.diagnostics.diagnostic import Severity
+    from archgen.emit.markdown.comment_sentences import write_sentence
+
+    command_support.print_warning(obstacle)
+    comment = f"### Cannot be judged\n\n{write_sentence(obstacle)}\n"
+    _write_document(target / "comment.md", comment)
+    _add_summary(comment)
+    return int(checked_project.architecture.review.breaking is Severity.ERROR)
+
+
+def _add_summary(comment: str) -> None:
+    """Add a comment to the summary of a job of GitHub."""
+    summary = os.environ.get("GITHUB_STEP_SUMMARY")
+    if summary:
+        with Path(summary).open("a", encoding="utf-8") as stream:
+            stream.write(comment)
+
+
+def _write_comparison(project: Path | None, start: str, target: Path, checked_project: CheckedProject) -> int:
     """Write what changed. Return the exit status that the project's policy asks for."""
     from archgen import git
     from archgen.products import comparison_documents
@@ -136,8 +157,7 @@ def _write_comparison(project: Path | None, start: str, target: Path) -> int:
     try:
         old_version, new_version = read_versions(start, None, project)
     except NotAtRevisionError as error:
-        command_support.print_warning(f"{error}: there is nothing to compare with")
-        return 0
+        return _write_obstacle(checked_project, f"{error}: there is nothing to compare with", target)
     except git.GitError as error:
         raise click.UsageError(make_visible(str(error))) from None
     comparison = compare_named_versions(old_version, new_version)
@@ -153,10 +173,7 @@ def _write_comparison(project: Path | None, start: str, target: Path) -> int:
             comparison, old_version, new_version, OutputOptions(warn=command_support.print_warning)
         ),
     )
-    summary = os.environ.get("GITHUB_STEP_SUMMARY")
-    if summary:
-        with Path(summary).open("a", encoding="utf-8") as stream:
-            stream.write(comment)
+    _add_summary(comment)
     return int(comparison.is_refused)
 
 

@@ -112,10 +112,17 @@ class Comparison:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the project's policy refuses this comparison: a partner is broken, and nobody accepted it."""
-        return self.breaking_severity is Severity.ERROR and any(
-            change.breaks and change.acceptance_reason is None for change in self.changes
+        """Whether the project's policy refuses this comparison: a partner is broken and did not agree, or nobody can
+        say that none is.
+        """
+        return self.breaking_severity is Severity.ERROR and (
+            not self.is_judged or any(change.unheard_partners for change in self.changes)
         )
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether both versions were read as a whole: what was not read may break anybody."""
+        return not (self.before.unread_files or self.after.unread_files)
 
     @property
     def is_empty(self) -> bool:

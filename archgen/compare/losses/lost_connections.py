@@ -50,7 +50,7 @@ def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], p
     old_name = f"`{context.old_id('output', output_id)}`"
     if ("output", output_id) in context.versions.elements_after:
         return f"takes {old_name} from {partner}, who still reads it under that name as {input_names}"
-    gone_ids = [name for name in input_ids if ("input", name) not in context.versions.elements_after]
+    gone_ids = [name for name in input_ids if context.versions.is_removed("input", name)]
     if gone_ids:
         gone_names = "" if len(gone_ids) == len(input_ids) else f" {tick_sorted_names(gone_ids)}"
         return f"takes {old_name} from {partner}, who read it as {input_names}; the same change takes the reader{gone_names} away"

@@ -57,7 +57,7 @@ def _weakenings(
 
 
 def _find_passed_parts(causes: TimingCauses, chain_change: ChainChange) -> list[str]:
-    """Return the parts that a chain was asked to lead through and no longer does: its ends, and what is still there."""
+    """Return the parts that a chain was asked to lead through and no longer does, of those that are still there."""
     if chain_change.before is None or chain_change.after is None:
         return []
     old_system, new_system = causes.timing_pair.before.system, causes.timing_pair.after.system
@@ -66,17 +66,15 @@ def _find_passed_parts(causes: TimingCauses, chain_change: ChainChange) -> list[
     }
     present_parts = {_part_name(causes.activity_key(activity)) for activity in new_system.activities.values()}
     passed_names = []
-    old_ids = [term.activity for term in chain_change.before.terms]
-    for activity_id in old_ids:
-        activity = old_system.activities[activity_id]
+    for term in chain_change.before.terms:
+        activity = old_system.activities[term.activity]
         part = _part_name(causes.old_activity_key(activity))
-        is_end = activity_id in {old_ids[0], old_ids[-1]}
         is_waypoint = any(
             point in {activity.component, activity.node} or point.rpartition(".")[0] == activity.component
             for point in chain_change.before.through
         )
-        if part not in new_parts and is_waypoint and (is_end or part in present_parts):
-            passed_names.append(activity_id)
+        if is_waypoint and part in present_parts - new_parts:
+            passed_names.append(term.activity)
     return passed_names
 
 

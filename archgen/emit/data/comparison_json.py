@@ -35,6 +35,7 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
         "breaking": {
             "severity": str(comparison.breaking_severity),
             "fails": comparison.is_refused,
+            "judged": comparison.is_judged,
             "idle": [
                 {"element": acceptance.element, "key": acceptance.key, "reason": acceptance.reason}
                 for acceptance in comparison.idle_acceptances

@@ -34,7 +34,7 @@ def write_comparison_lines(
         yield from map(make_visible, document.verdict[1:])
         return
     if document.is_empty:
-        yield f"no changes{document.caveat}"
+        yield make_visible(document.obstacle) or f"no changes{document.caveat}"
         return
     for change_group in document.change_groups:
         yield _paint_text(make_visible(change_group.heading), "1", colour=colour)
@@ -44,7 +44,7 @@ def write_comparison_lines(
     yield from _chain_lines(document.chain_rows, colour=colour)
     for finding_group in document.finding_groups:
         yield from _finding_lines(finding_group, colour=colour)
-    yield make_visible(document.summary)
+    yield make_visible(document.summary + (f"; {document.obstacle}" if document.obstacle else ""))
 
 
 def _unsound_lines(version: NamedVersion, sources: SourceTexts, *, colour: bool) -> Iterator[str]:

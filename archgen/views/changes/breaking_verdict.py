@@ -9,21 +9,41 @@ from collections.abc import Iterator, Sequence
 from archgen.compare import Change, Comparison
 from archgen.compare.agreements import agreement_key, find_partner_id
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.review_settings import AcceptedChange, agreement_file
 from archgen.views.inline_text import count_noun
 
+_MAX_FILES = 4
 _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 """A text that YAML reads as itself; the words that it reads as something else are no ids."""
 
 
 def describe_verdict(comparison: Comparison) -> Iterator[str]:
     """Yield how many changes break whom and what the policy says, then the accepted entries that are idle."""
-    yield _describe_policy(comparison)
+    obstacle = describe_obstacle(comparison)
+    policy = _describe_policy(comparison)
+    if obstacle and comparison.breaking_severity is not Severity.OFF:
+        certain_note = (
+            f"; certain: {policy.removeprefix(f'{comparison.breaking_severity}: ')}"
+            if any(change.breaks for change in comparison.changes)
+            else ""
+        )
+        yield f"{comparison.breaking_severity}: {obstacle}{certain_note}"
+    else:
+        yield policy
     for entry in comparison.idle_acceptances:
         yield _describe_idle(comparison, entry)
+
+
+def describe_obstacle(comparison: Comparison) -> str:
+    """Describe what keeps a comparison from being judged, empty if nothing does."""
+    old_files, new_files = comparison.before.unread_files, comparison.after.unread_files
+    notes = [f"{tick_names(new_files, _MAX_FILES)} cannot be read"] if new_files else []
+    notes += [f"{tick_names(old_files, _MAX_FILES)} could not be read before"] if old_files else []
+    return f"cannot be judged: {join_words(notes)}" if notes else ""
 
 
 def describe_refusal(changes: Sequence[Change], matched_ids: MatchedIds, *, is_refused: bool) -> str:

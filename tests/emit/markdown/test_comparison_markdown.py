@@ -190,7 +190,7 @@ def test_a_version_with_errors_says_so_first_and_does_not_call_anything_cured(to
 
 
 def test_a_version_that_does_not_parse(told: Told) -> None:
-    assert told(("types: {", "types: [{")).startswith("### No change of the architecture in what could be read\n")
+    assert told(("types: {", "types: [{")).startswith("### Cannot be judged: `robot.yaml` cannot be read\n")
 
 
 def test_texts_and_cured_findings_are_folded(told: Told) -> None:
