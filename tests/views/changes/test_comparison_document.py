@@ -160,5 +160,7 @@ def test_the_headline(read_sides: ReadSides, new: str, only_breaking: bool, head
     assert texts["markdown"].startswith(f"### {words}")
     assert (f"{words}." in texts["page"]) == document.is_empty
     if document.is_empty:
-        sentence = "no change breaks another partner" if only_breaking else document.obstacle.replace("`", "") or "no changes"
+        sentence = (
+            "no change breaks another partner" if only_breaking else document.obstacle.replace("`", "") or "no changes"
+        )
         assert texts["terminal"].endswith(f"{sentence}\n")
