@@ -49,6 +49,7 @@ ALL_RULES: tuple[Rule, ...] = (
 )
 """All rules, in the order in which the stages run."""
 _RULES_BY_NAME = rule_table.index_rules(ALL_RULES)
+_READING_RULES = frozenset(rule.name for rule in (*interface_files.RULES, *schema.RULES, *project.RULES))
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +105,11 @@ class CheckedProject:
     def structural_errors(self) -> tuple[Diagnostic, ...]:
         """The errors of reading and linking: what they are about is missing in the architecture."""
         return tuple(d for d in self.findings if d.severity is Severity.ERROR and _RULES_BY_NAME[d.rule].fixed)
+
+    @property
+    def reading_errors(self) -> tuple[Diagnostic, ...]:
+        """The errors of reading: what stands there is unknown, not only what it refers to."""
+        return tuple(error for error in self.structural_errors if error.rule in _READING_RULES)
 
     def pack_project(self) -> PackedProject:
         """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""

@@ -90,6 +90,7 @@ def command(  # noqa: PLR0913 - one for each option
     """
     from archgen.pipeline import VersionCache
     from archgen.products import check_findings
+    from archgen.views.changes.breaking_verdict import describe_obstacle
 
     version_cache = VersionCache()
     with _explain_in_comment(output or (project or Path()) / REVIEW_FOLDER, base):
@@ -113,6 +114,9 @@ def command(  # noqa: PLR0913 - one for each option
     review_log.print_review(
         change if not all_findings else None, whole_report, checked_project, baseline, strict=strict
     )
+    if change and (obstacle := describe_obstacle(change.comparison)):
+        # Under `error` this alone makes the job fail.
+        command_support.print_warning(obstacle)
     _write_findings(whole_report, checked_project, target, strict=strict)
     with command_support.explain_write_errors():
         if change:

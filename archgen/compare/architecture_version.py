@@ -30,5 +30,9 @@ class ArchitectureVersion:
     unnamed_keys: frozenset[str] = frozenset()
     analysis: Analysis | None = None
     """The timing analysis that its rules judged, if there is one already."""
+    sound_files: frozenset[str] = frozenset()
+    """The files that were read without an error."""
+    unread_files: tuple[str, ...] = ()
+    """The files that could not be read, or not as a whole."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that errors of reading and linking kept from being judged."""

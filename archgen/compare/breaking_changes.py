@@ -1,4 +1,4 @@
-"""Decide which changes break another partner, whom and why, and which of them the project accepts."""
+"""Decide which changes break another partner, whom and why, and to which of them the partner agreed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from archgen.compare.agreements import judge_agreements, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
@@ -16,6 +17,7 @@ from archgen.compare.losses.overloaded_resources import find_overloaded_cores, f
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_promises import find_weakened_deadlines
 from archgen.compare.losses.weakened_qos import find_weakened_publishers
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
@@ -49,15 +51,9 @@ def mark_breaking_changes(
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
     for loss in _find_losses(context, chains, timing_pair):
         breaks_by_index[loss.change_index][PartnerBreak(loss.partner, loss.reason)] = None
-    # Only the second version's agreements count, although the stricter policy of both does: an acceptance belongs into
-    # the branch that it is about (docs/decisions/0007-breaking-changes.md).
-    accepted_entries = context.after.review.accepted
+    entries = context.before.review.accepted, context.after.review.accepted
     marked_changes = [
-        replace(
-            change,
-            breaks=tuple(breaks_by_index[index]),
-            acceptance_reason=_acceptance_reason(change, accepted_entries.get(change.element_id)),
-        )
+        judge_agreements(change, breaks_by_index[index], entries, context.matched_ids)
         if index in breaks_by_index
         else change
         for index, change in enumerate(context.changes)
@@ -74,24 +70,17 @@ def _find_losses(
     if timing_pair:
         causes = TimingCauses(context, timing_pair)
         yield from find_late_chains(context, chains, causes)
+        yield from find_weakened_deadlines(context, chains, causes)
         yield from find_overloaded_cores(context, causes)
         yield from find_saturated_links(context, causes)
 
 
-def _acceptance_reason(change: Change, entry: AcceptedChange | None) -> str | None:
-    return entry.reason if entry and entry.key in {None, change.key} else None
-
-
 def find_idle_acceptances(changes: Sequence[Change], review: ReviewSettings) -> tuple[AcceptedChange, ...]:
     """Return the accepted entries that name no breaking change."""
-    entries = review.accepted.values()
     return tuple(
         entry
-        for entry in entries
-        if not any(
-            change.breaks and change.element_id == entry.element and _acceptance_reason(change, entry)
-            for change in changes
-        )
+        for entry in review.accepted
+        if not any(change.breaks and names_change(entry, change) for change in changes)
     )
 
 

@@ -42,6 +42,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         (_components_by_requirement(elements[0]), _components_by_requirement(elements[1])),
         lost_keys,
         _find_unnamed_outputs(after.architecture),
+        (before.sound_files, after.sound_files),
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
     judged_findings = judge_findings(before, after, matched_ids)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 SOME_PORTS = "some"
 """Value of the keys "inputs" and "outputs" of a component that has ports: these are elements of their own."""
@@ -30,3 +30,5 @@ class ComparedElement:
     is_declared: bool = True
     component_refs: tuple[str, ...] = ()
     """Common ids of the components behind it; for a port of a node, the id of the component's port."""
+    file: str = field(default="", compare=False)
+    """Where it is declared: an element that moves between files has not changed."""

@@ -20,10 +20,13 @@ ChangeKind = Literal["added", "removed", "changed", "renamed", "moved"]
 class PartnerBreak:
     """What a partner loses by a change. `reason` completes a sentence after the change: "takes `a.b.c` from sssa, who
     ...".
+
+    `agreement` is why the partner agrees, None if it does not.
     """
 
     partner: str
     reason: str
+    agreement: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +35,8 @@ class Change:
 
     `old_id` is the id before a rename or a move. `key` is what changed of an element, `before` and `after` are its
     values as plain data (None: not written). `confidence` is below 1 where a rename or a move was only recognised by
-    likeness. `breaks` are the losses of partners other than the owner, those of the parts included; `acceptance_reason`
-    is why the project accepts them (None: it does not). `parts` are what came or went with an element, and what follows
+    likeness. `breaks` are the losses of partners other than the owner, those of the parts included; `claims` are the
+    accepted entries that speak of the change and excuse nothing. `parts` are what came or went with an element, and what follows
     from the change.
     """
 
@@ -46,7 +49,7 @@ class Change:
     after: object = None
     confidence: float = 1.0
     breaks: tuple[PartnerBreak, ...] = ()
-    acceptance_reason: str | None = None
+    claims: tuple[AcceptedChange, ...] = ()
     text: str = ""
     parts: tuple[Change, ...] = ()
 
@@ -54,6 +57,17 @@ class Change:
     def broken_partners(self) -> tuple[str, ...]:
         """Return the partners who lose something, sorted."""
         return tuple(sorted({partner_break.partner for partner_break in self.breaks}))
+
+    @property
+    def unheard_partners(self) -> tuple[str, ...]:
+        """Return the partners who lose something and did not agree, sorted."""
+        return tuple(sorted({each.partner for each in self.breaks if each.agreement is None}))
+
+    @property
+    def acceptance_reason(self) -> str | None:
+        """Return why all who lose something agree, None if one of them does not."""
+        reasons = dict.fromkeys(each.agreement for each in self.breaks if each.agreement is not None)
+        return "; ".join(reasons) if reasons and not self.unheard_partners else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,10 +112,17 @@ class Comparison:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the project's policy refuses this comparison: a partner is broken, and nobody accepted it."""
-        return self.breaking_severity is Severity.ERROR and any(
-            change.breaks and change.acceptance_reason is None for change in self.changes
+        """Whether the project's policy refuses this comparison: a partner is broken and did not agree, or nobody can
+        say that none is.
+        """
+        return self.breaking_severity is Severity.ERROR and (
+            not self.is_judged or any(change.unheard_partners for change in self.changes)
         )
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether both versions were read as a whole: what was not read may break anybody."""
+        return not (self.before.unread_files or self.after.unread_files)
 
     @property
     def is_empty(self) -> bool:

@@ -15,6 +15,7 @@ from archgen.compare.kinds.shared_keys import key_values
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.node_ports import list_node_ports
 from archgen.compare.normal_values import drop_unset_values
+from archgen.diagnostics.source_span import NO_SPAN
 
 
 def list_elements(
@@ -52,4 +53,6 @@ def _list_kind(kind: KindSpec, context: ReadContext) -> Iterator[ComparedElement
             kind.owner(element, context),
             kind.is_declared(element),
             kind.components(element, context),
+            # Chapters and settings have no place in a slice.
+            getattr(element, "at", NO_SPAN).file,
         )

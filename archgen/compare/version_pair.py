@@ -26,10 +26,19 @@ class VersionPair:
     unnamed_outputs: frozenset[str] = frozenset()
     """Outputs whose topic, service or action is called after them, since no node names it otherwise."""
 
+    sound_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """The files that were read without an error, before and after."""
+
     def may_be_unread(self, key: ElementKey) -> bool:
         """Whether an element that is missing in one version may be in a part of it that could not be read."""
         # The version in which it is missing: the first one for an added element, the second one for a removed element.
-        lost_words = self.lost_keys[0 if key in self.elements_after else 1]
+        side, element = (
+            (0, self.elements_after[key]) if key in self.elements_after else (1, self.elements_before.get(key))
+        )
+        lost_words = self.lost_keys[side]
+        # What its own file, which was read well, does not hold is not there.
+        if element and element.file in self.sound_files[side]:
+            return False
         # Any part of the path may be the lost key; ports of nodes have ids with a use in them.
         return bool(lost_words) and not lost_words.isdisjoint(
             word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
@@ -71,8 +80,9 @@ class VersionPair:
         )
 
     def is_removed(self, kind: str, name: str) -> bool:
-        """Whether an element was removed."""
-        return (kind, name) in self.elements_before and (kind, name) not in self.elements_after
+        """Whether an element was removed, as far as can be said."""
+        is_gone = (kind, name) in self.elements_before and (kind, name) not in self.elements_after
+        return is_gone and not self.may_be_unread((kind, name))
 
     def is_added(self, kind: str, name: str) -> bool:
         """Whether an element was added."""

@@ -50,7 +50,7 @@ _HEAD_MARKS = tuple(
 _ZIP_SIGNATURE = int.from_bytes(b"PK\x05\x06", "little")
 _BINARY_BYTE = re.compile(rb"[\0-\x08\x0e-\x1a\x1c-\x1f]")
 _COMPARISON_END = re.compile(
-    rb"(?m)^(?:no changes(?: in what could be read)?$|\d+ changes?(?:[,;]| \(|$)|no change breaks another partner$"
+    rb"(?m)^(?:(?:\w+: )?cannot be judged: |no changes(?: in what could be read)?$|\d+ changes?(?:[,;]| \(|$)|no change breaks another partner$"
     rb"|(?:\w+: )?\d+ breaking changes? for |`review\.breaking` is off)"
 )
 """A line near the end of a comparison in plain text."""

@@ -8,7 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.schema import element_of_path
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -59,6 +59,10 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
     first_entry = same_entries[0]
     if len(same_entries) == 1:
         return first_entry
+    if path[:2] == ("review", "accepted") and all(isinstance(entry.value, SequenceNode) for entry in same_entries):
+        # Each partner who loses something by a change agrees in a file of its own.
+        items = [item for entry in same_entries if isinstance(entry.value, SequenceNode) for item in entry.value.items]
+        return MappingEntry(first_entry.key, first_entry.key_span, SequenceNode(items, first_entry.value.span))
     # A mapping and a leaf at one path conflict whatever comes first; the mappings among them are merged all the same.
     if isinstance(first_entry.value, MappingNode) and not _is_parameter(path):
         mappings = [entry.value for entry in same_entries if isinstance(entry.value, MappingNode)]
@@ -207,8 +211,9 @@ def _find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
     for section, needed_paths in _NEEDED_KEYS.items():
         section_node = _node_at(root, section)
         for entry in section_node if isinstance(section_node, MappingNode) else ():
+            nodes = entry.value.items if isinstance(entry.value, SequenceNode) else (entry.value,)
             for path in needed_paths:
-                if not _has_path(entry.value, path):
+                if not all(_has_path(node, path) for node in nodes):
                     message = f"`{entry.key}` lacks `{'.'.join(path)}`"
                     yield Diagnostic(
                         "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
@@ -218,7 +223,7 @@ def _find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
 _MISSING_KEY_HELP = {
     "views": 'say what the view shows: `show: "tag:safety"`',
     "policies": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
-    "accepted": "say why the change is right: `camera.image: the tracker moved to depth images`",
+    "accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
 }
 
 

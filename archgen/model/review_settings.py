@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 
+AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
+
+
+def agreement_file(partner_id: str) -> str:
+    """Return the file in which a partner says what it agrees on, from the project's folder."""
+    return f"{AGREEMENT_FOLDER}/{partner_id}{AGREEMENT_SUFFIX}"
+
 
 @dataclass(frozen=True, slots=True)
 class AcceptedChange:
-    """A breaking change that was agreed on: the element as the diff names it, and the reason.
+    """A breaking change that was agreed on: the element as the diff names it, what of it changed, and the reason.
 
-    `key` limits the acceptance to one key of the element; None accepts all changes of it.
+    Without a `key` it excuses nothing, since it would excuse whatever happens to the element later.
     """
 
     element: str
     reason: str
     key: str | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+    @property
+    def partner(self) -> str | None:
+        """Return the partner in whose own file the entry stands, None if it stands in any other file."""
+        folder, _, name = self.at.file.rpartition("/")
+        return (
+            name.removesuffix(AGREEMENT_SUFFIX)
+            if folder == AGREEMENT_FOLDER and name.endswith(AGREEMENT_SUFFIX)
+            else None
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,5 +48,5 @@ class ReviewSettings:
 
     main: str | None = None
     breaking: Severity | None = None
-    accepted: Mapping[str, AcceptedChange] = field(default_factory=dict)
+    accepted: tuple[AcceptedChange, ...] = ()
     backends: tuple[str, ...] = ()

@@ -14,27 +14,25 @@ from archgen.views.changes.breaking_verdict import describe_refusal
 
 
 def find_breaks(comparison: Comparison, checked_project: CheckedProject) -> tuple[Diagnostic, ...]:
-    """Return a finding for each change that breaks a partner and is not accepted, in the order of the comparison.
+    """Return a finding for each change that breaks a partner who did not agree, in the order of the comparison.
 
     `checked_project` is the second version: the findings stand in its files.
     """
     if comparison.breaking_severity is Severity.OFF:
         return ()
     return tuple(
-        _describe_break(change, comparison, checked_project)
-        for change in comparison.changes
-        if change.breaks and change.acceptance_reason is None
+        _describe_break(change, comparison, checked_project) for change in comparison.changes if change.unheard_partners
     )
 
 
 def _describe_break(change: Change, comparison: Comparison, checked_project: CheckedProject) -> Diagnostic:
-    reasons = dict.fromkeys(partner_break.reason for partner_break in change.breaks)
+    reasons = dict.fromkeys(partner_break.reason for partner_break in change.breaks if partner_break.agreement is None)
     return Diagnostic(
         BREAKING_CHANGE.name,
-        f"breaks {join_words(change.broken_partners)}: {change.text}; this {join_words(list(reasons))}",
+        f"breaks {join_words(change.unheard_partners)}: {change.text}; this {join_words(list(reasons))}",
         _find_span(change, comparison, checked_project),
         comparison.breaking_severity,
-        help=describe_refusal([change], is_refused=True),
+        help=describe_refusal([change], comparison.matched_ids, is_refused=True),
         element=change.element_id,
     )
 

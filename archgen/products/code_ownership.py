@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from archgen.emit import codeowners_file as emitter
 from archgen.emit.codeowners_file import CodeownersFile
 from archgen.git import NoRepositoryError, find_repository
 from archgen.link.element_files import find_element_files
+from archgen.model.review_settings import agreement_file
 from archgen.pipeline import CheckedProject
 from archgen.views.partner_ownership import Ownership
 from archgen.views.partner_ownership import assign_ownership as sorted_out
@@ -28,8 +30,22 @@ def make_codeowners(checked_project: CheckedProject, prefix: str | None = None) 
     `prefix` is the project's folder relative to the root of the repository; None asks git.
     """
     return emitter.render_codeowners(
-        find_ownership(checked_project), _repository_prefix(checked_project.root) if prefix is None else prefix
+        _add_shared_files(find_ownership(checked_project), checked_project),
+        _repository_prefix(checked_project.root) if prefix is None else prefix,
     )
+
+
+def _add_shared_files(ownership: Ownership, checked_project: CheckedProject) -> Ownership:
+    """Return an ownership in which all partners review what is nobody's, and each the file of its agreements.
+
+    What is nobody's decides about everybody: archgen.yaml holds the policy, and types and messages cross all borders.
+    """
+    partners = tuple(checked_project.architecture.partners.values())
+    shared_files = dict.fromkeys(checked_project.loaded_project.interface_files, partners)
+    owned_files = {file: owners or partners for file, owners in ownership.files.items()}
+    agreement_files = {agreement_file(partner.id): (partner,) for partner in partners}
+    policy_file = {checked_project.loaded_project.first_file: partners}
+    return replace(ownership, files={**shared_files, **owned_files, **policy_file, **agreement_files})
 
 
 def _repository_prefix(root: Path) -> str:

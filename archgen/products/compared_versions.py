@@ -52,15 +52,17 @@ def read_versions(
     if first is not None and second is None and ".." in first and not _is_path(first):
         # Three dots first, since they contain the two.
         left, dots, right = first.partition("..." if "..." in first else "..")
+        after = read_version(right or "HEAD", path, version_cache)
         if dots == "...":
-            before = _read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache)
-            return before, read_version(right or "HEAD", path, version_cache)
-        return read_version(left or "HEAD", path, version_cache), read_version(right or "HEAD", path, version_cache)
+            return read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache, after), after
+        return _read_earlier(left or "HEAD", path, version_cache, after), after
     if first is not None:
-        return read_version(first, path, version_cache), read_version(second, path, version_cache)
+        after = read_version(second, path, version_cache)
+        return _read_earlier(first, path, version_cache, after), after
     # The newer version first here: it names the main line that the older one is found by.
     after = read_version(second, path, version_cache)
-    return read_fork_point(path, after.checked_project.architecture.review.main, version_cache), after
+    main_line = after.checked_project.architecture.review.main
+    return read_at_base(_find_base(path, main_line), path, version_cache, after), after
 
 
 def read_version(
@@ -92,14 +94,46 @@ def read_fork_point(
 
     `main_line` is the main line that the project names; None asks git.
     """
-    return _read_at_base(
-        git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line), path, version_cache
+    return read_at_base(_find_base(path, main_line), path, version_cache)
+
+
+def _find_base(path: Path | None, main_line: str | None) -> git.BaseCommit:
+    return git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
+
+
+def read_at_base(
+    base: git.BaseCommit, path: Path | None, version_cache: VersionCache | None, later: ProjectVersion | None = None
+) -> ProjectVersion:
+    """Read the project at a commit of git, also where it lay in another folder than in a later version.
+
+    Raise `git.GitError`, and `project.NotAtRevisionError` where it did not exist there.
+    """
+    try:
+        return ProjectVersion(base.description, pipeline.check_at_revision(path, base.commit_id, version_cache))
+    except project.NotAtRevisionError:
+        if later is None:
+            raise
+        return ProjectVersion(base.description, _check_moved(base.commit_id, path, version_cache, later))
+
+
+def _read_earlier(
+    version_text: str, path: Path | None, version_cache: VersionCache, later: ProjectVersion
+) -> ProjectVersion:
+    """Read a version, also where the project lay in another folder than in a later version."""
+    try:
+        return read_version(version_text, path, version_cache)
+    except project.NotAtRevisionError:
+        return ProjectVersion(version_text, _check_moved(version_text, path, version_cache, later))
+
+
+def _check_moved(
+    revision: str, path: Path | None, version_cache: VersionCache | None, later: ProjectVersion
+) -> CheckedProject:
+    """Check the project at a revision at which it lay in another folder."""
+    moved_project = project.find_moved_project(
+        project.find_tracked_project(path), revision, later.checked_project.architecture.project.id, later.commit
     )
-
-
-def _read_at_base(base: git.BaseCommit, path: Path | None, version_cache: VersionCache | None) -> ProjectVersion:
-    """Read the project at a commit of git."""
-    return ProjectVersion(base.description, pipeline.check_at_revision(path, base.commit_id, version_cache))
+    return pipeline.check_tracked_project(moved_project, revision, version_cache)
 
 
 def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
@@ -125,6 +159,7 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
 
 def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:
     """Return what a comparison looks at."""
+    unread_files = dict.fromkeys(error.span.file for error in checked_project.reading_errors)
     return ArchitectureVersion(
         architecture=checked_project.architecture,
         findings=checked_project.findings,
@@ -142,6 +177,8 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         # Where a project does not write them, they come from the name of its folder: that is no change of the project.
         unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
         analysis=checked_project.analysis,
+        sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
+        unread_files=tuple(sorted(unread_files)),
         waiting_rules=checked_project.waiting_rules,
     )
 

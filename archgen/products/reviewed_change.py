@@ -17,9 +17,14 @@ from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit
-from archgen.pipeline import CheckedProject, VersionCache, check_tracked_project
+from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products.break_findings import find_breaks
-from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, compare_named_versions
+from archgen.products.compared_versions import (
+    WORKING_TREE_NAME,
+    ProjectVersion,
+    compare_named_versions,
+    read_at_base,
+)
 from archgen.project import PROJECT_FILE
 from archgen.project.project_tracking import TrackedProject, load_at_commit
 
@@ -81,8 +86,8 @@ def compare_change(
     if fork.commit_id == git.resolve_revision(repository, target):
         fork = fork._replace(description=target)
     old_name = request.target_branch if request and request.target_branch else fork.description
-    old_version = ProjectVersion(old_name, check_tracked_project(tracked_project, fork.commit_id, version_cache))
     new_version = _name_version(checked_project, tracked_project, request, version_cache)
+    old_version = read_at_base(git.BaseCommit(fork.commit_id, old_name), path, version_cache, new_version)
     comparison = compare_named_versions(old_version, new_version)
     return ReviewedChange(
         old_version,

@@ -8,6 +8,7 @@ from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError
 from archgen.project.project_tracking import (
     NotAtRevisionError,
     TrackedProject,
+    find_moved_project,
     find_tracked_project,
     load_at_commit,
     load_at_revision,
@@ -23,6 +24,7 @@ __all__ = [
     "ParsedSlices",
     "ProjectNotFoundError",
     "TrackedProject",
+    "find_moved_project",
     "find_tracked_project",
     "load_at_commit",
     "load_at_revision",

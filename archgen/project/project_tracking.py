@@ -16,8 +16,13 @@ from archgen.git import (
 )
 from archgen.project.project_loading import LoadedProject, load_from_files
 from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, find_project
-from archgen.project.slice_parsing import ParsedSlices
+from archgen.project.slice_parsing import ParsedSlices, parse_slice
 from archgen.syntax.committed_files import list_committed_files
+from archgen.syntax.project_files import MAX_BYTES
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+_MAX_GONE_PROJECTS = 100
+"""Maximal number of projects that are read to find one that moved."""
 
 
 class NotAtRevisionError(ProjectNotFoundError):
@@ -58,6 +63,43 @@ def find_tracked_project(path: Path | None = None) -> TrackedProject:
         return _find_in_commits(path, nothing)
     git_repository = find_repository(root)
     return TrackedProject(GitObjects(git_repository), ((git_repository.prefix, first_file),))
+
+
+def find_moved_project(
+    tracked_project: TrackedProject, revision: str, project_id: str, later_revision: str = ""
+) -> TrackedProject:
+    """Find a project that lay in another folder at a revision: the one with its id, else the only one that is gone.
+
+    Only those count that are not there any more, on disk or at a later revision: what is still there did not move.
+    Raises `NotAtRevisionError` if there is none, or nobody can say which of several it is.
+    """
+    objects = tracked_project.objects
+    tree = objects.list_tree(tracked_project.resolve_commit(revision)) or {}
+    later_tree = objects.list_tree(tracked_project.resolve_commit(later_revision)) if later_revision else None
+    top = objects.repository.top
+    gone_files = [
+        path
+        for path in tree
+        if posixpath.basename(path) == PROJECT_FILE
+        and not (path in later_tree if later_tree is not None else (top / path).exists())
+    ][:_MAX_GONE_PROJECTS]
+    named_files = [path for path in gone_files if _read_project_id(objects, tree[path].object_id) == project_id]
+    candidates = named_files or gone_files
+    if len(candidates) == 1:
+        return TrackedProject(objects, ((posixpath.dirname(candidates[0]), PROJECT_FILE),))
+    folder, first_file = tracked_project.locations[0]
+    msg = f"the project `{posixpath.join(folder, first_file)}` does not exist in `{revision}`"
+    raise NotAtRevisionError(f"{msg}, and which of {len(candidates)} others it was is not clear" if candidates else msg)
+
+
+def _read_project_id(objects: GitObjects, blob_id: str) -> str | None:
+    """Return the id that an archgen.yaml writes for its project."""
+    size = objects.blob_size(blob_id)
+    data = objects.read_blob(blob_id) if size is not None and size <= MAX_BYTES else None
+    document = parse_slice(PROJECT_FILE, data.decode("utf-8", "replace")).document if data is not None else None
+    section = document.root.get("project") if document else None
+    project_id = section.get("id") if isinstance(section, MappingNode) else None
+    return project_id.text if isinstance(project_id, ScalarNode) else None
 
 
 def _find_in_commits(path: Path | None, not_found: ProjectNotFoundError) -> TrackedProject:

@@ -73,9 +73,7 @@ _ROOT_FORM = ElementForm(
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
     },
-    part_forms={
-        "review": ElementForm(list_keys=frozenset({"backends"}), keyed_forms={"accepted": ElementForm(("reason",))})
-    },
+    part_forms={"review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"}))},
 )
 
 
@@ -87,7 +85,20 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     groups = document.root.get("groups")
     indicator_diagnostics = tuple(_collect_overall(groups)) if isinstance(groups, MappingNode) else ()
     _normalise_mapping(document.root, _ROOT_FORM)
+    review = document.root.get("review")
+    accepted = review.get("accepted") if isinstance(review, MappingNode) else None
+    for entry in accepted if isinstance(accepted, MappingNode) else ():
+        entry.value = _list_accepted(entry)
     return type_diagnostics + indicator_diagnostics
+
+
+def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:
+    """Return what is accepted of an element as a list of mappings: one for each key of it and partner."""
+    node, form = accepted_entry.value, ElementForm(("reason",))
+    if isinstance(node, SequenceNode):
+        return SequenceNode([_normalise_element(item, form) for item in node.items], node.span)
+    body = _normalise_element(node, form)
+    return SequenceNode([MappingNode(body.entries, accepted_entry.key_span)], node.span)
 
 
 def fold_type_name(name: str) -> str:

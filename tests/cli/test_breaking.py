@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import jsonschema_rs
@@ -44,15 +45,20 @@ def both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def write(folder: Path, before: str, after: str) -> None:
-    """Write both versions."""
-    (folder / "a.yaml").write_text(before, encoding="utf-8")
-    (folder / "b.yaml").write_text(after, encoding="utf-8")
+def write(folder: Path, before: str, after: str, *agreements: str, old_agreements: tuple[str, ...] = ()) -> None:
+    """Write both versions; an agreement is a file and what it accepts: `review/sssa.yaml: ...`."""
+    for side, text, said in (("a", before, old_agreements), ("b", after, agreements)):
+        shutil.rmtree(folder / side, ignore_errors=True)
+        (folder / side / "review").mkdir(parents=True)
+        (folder / side / "archgen.yaml").write_text(text, encoding="utf-8")
+        for agreement in said:
+            file, _, entries = agreement.partition(": ")
+            (folder / side / file).write_text(f"review: {{accepted: {{{entries}}}}}\n", encoding="utf-8")
 
 
 def diff(run: Run, *words: str) -> tuple[int, str]:
     """Compare them, and give status and output."""
-    ran = run("diff", "a.yaml", "b.yaml", *words)
+    ran = run("diff", "./a", "./b", *words)
     assert ran.err == ""
     return ran.status, ran.out
 
@@ -78,7 +84,8 @@ def test_the_stricter_policy_counts(run: Run, both: Path, before: str, after: st
     assert status == 1
     assert out.endswith(
         "\nerror: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted\n"
-        "  = help: mend it, or agree on it and say why: `review: {accepted: {sensing.camera.image: THE REASON}}`\n"
+        "  = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: "
+        "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`\n"
     )
     assert diff(run)[0] == 0
 
@@ -106,60 +113,146 @@ def accepting(entries: str) -> str:
     return f"review: {{breaking: error, accepted: {{{entries}}}}}\n"
 
 
-@pytest.mark.parametrize("entry", [f"{ENTRY}: agreed in March", f"{ENTRY}: {{reason: agreed in March, key: type}}"])
-def test_what_is_accepted_is_shown_with_its_reason(run: Run, both: Path, entry: str) -> None:
-    write(both, ROBOT + STRICT, RETYPED + accepting(entry))
+AGREED = "{key: type, reason: agreed in March}"
+REFUSED = """
+error: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted
+  = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: \
+`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`
+"""
+
+
+def test_what_the_partner_accepts_in_its_own_file_is_shown_with_its_reason(run: Run, both: Path) -> None:
+    write(both, ROBOT + STRICT, RETYPED + STRICT, f"review/sssa.yaml: {ENTRY}: {AGREED}")
     assert diff(run, "--breaking") == (
         0,
-        f"{SHOWN}      accepted: agreed in March\n\n1 breaking change for sssa, accepted\n",
+        f"{SHOWN}      accepted by sssa: agreed in March\n\n1 breaking change for sssa, accepted\n",
     )
 
 
-def test_an_acceptance_from_before_is_called_so(run: Run, both: Path) -> None:
-    write(both, ROBOT + accepting(f"{ENTRY}: agreed in March"), RETYPED + accepting(f"{ENTRY}: agreed in March"))
-    assert diff(run, "--breaking") == (
-        0,
-        f"{SHOWN}      accepted (by an entry that was there before): agreed in March\n\n1 breaking change for sssa, accepted\n",
+@pytest.mark.parametrize(
+    ("agreement", "said"),
+    [
+        (f"review/certh.yaml: {ENTRY}: {AGREED}", "said in `review/certh.yaml`, not by sssa: agreed in March"),
+        (f"agreements.yaml: {ENTRY}: {AGREED}", "said in `agreements.yaml`, not by sssa: agreed in March"),
+        (
+            f"review/sssa.yaml: {ENTRY}: 'agreed: in March'",
+            (
+                "said in `review/sssa.yaml` without a `key`, which would accept whatever changes: write "
+                '`review: {accepted: {sensing.camera.image: {key: type, reason: "agreed: in March"}}}`'
+            ),
+        ),
+    ],
+)
+def test_what_the_partner_does_not_say_of_this_change_accepts_nothing(
+    run: Run, both: Path, agreement: str, said: str
+) -> None:
+    write(both, ROBOT + STRICT, RETYPED + STRICT, agreement)
+    assert diff(run, "--breaking") == (1, f"{SHOWN}      {said}\n{REFUSED}")
+    mild = STRICT.replace("error", "warning")
+    write(both, ROBOT + mild, RETYPED + mild, agreement)
+    assert diff(run, "--breaking") == (0, f"{SHOWN}      {said}\n\nwarning: 1 breaking change for sssa\n")
+
+
+def test_an_acceptance_from_before_was_of_another_change(run: Run, both: Path) -> None:
+    agreement = f"review/sssa.yaml: {ENTRY}: {AGREED}"
+    write(both, ROBOT + STRICT, RETYPED + STRICT, agreement, old_agreements=(agreement,))
+    said = "said in `review/sssa.yaml` before this change, of another one: agreed in March"
+    assert diff(run, "--breaking") == (1, f"{SHOWN}      {said}\n{REFUSED}")
+    again = agreement.replace("March", "May")
+    write(both, ROBOT + STRICT, RETYPED + STRICT, again, old_agreements=(agreement,))
+    assert diff(run, "--breaking")[0] == 0
+
+
+def test_a_partner_that_the_change_renames_agrees_in_the_file_that_it_had(run: Run, both: Path) -> None:
+    renamed = RETYPED.replace("sssa", "scuola")
+    write(both, ROBOT + STRICT, renamed + STRICT, f"review/scuola.yaml: {ENTRY}: {AGREED}")
+    assert diff(run, "--breaking")[0] == 1
+    write(both, ROBOT + STRICT, renamed + STRICT, f"review/sssa.yaml: {ENTRY}: {AGREED}")
+    assert diff(run, "--breaking")[0] == 0
+
+
+def test_everybody_who_loses_something_has_to_agree(run: Run, both: Path) -> None:
+    three = "  show: {owner: tum, components: {wall: {title: Wall, inputs: {image: camera.image}}}}\n"
+    tum = "SSSA, tum: TUM}"
+    before, after = (text.replace("SSSA}", tum) + three + STRICT for text in (ROBOT, RETYPED))
+    agreement = f"review/sssa.yaml: {ENTRY}: {AGREED}"
+    write(both, before, after, agreement)
+    status, out = diff(run, "--breaking")
+    assert (status, "      accepted by sssa: agreed in March\n" in out) == (1, True)
+    assert "mend it, or tum says why it is right, in `review/tum.yaml`: " in out
+    write(both, before, after, agreement, agreement.replace("sssa", "tum"))
+    assert diff(run, "--breaking")[0] == 0
+
+
+def test_one_element_may_have_several_changes_that_are_accepted(run: Run, both: Path) -> None:
+    entries = f"{ENTRY}: [{{key: qos, reason: other}}, {AGREED}]"
+    write(both, ROBOT + STRICT, RETYPED + STRICT, f"review/sssa.yaml: {entries}")
+    status, out = diff(run, "--breaking")
+    assert status == 0
+    assert out.endswith(
+        "\nnote: accepted entry `sensing.camera.image` with the key `qos` (review/sssa.yaml:1:44) names no breaking change here\n"
     )
+
+
+def test_what_is_removed_is_accepted_by_this_word(run: Run, both: Path) -> None:
+    gone = ROBOT.replace("outputs: {image: sensor_msgs/msg/Image}", "title: Camera").replace("camera.image", "")
+    removal = f"review/sssa.yaml: {ENTRY}: {{key: removed, reason: agreed}}"
+    write(both, ROBOT + STRICT, gone + STRICT, removal)
+    assert diff(run, "--breaking")[0] == 0
+    write(both, ROBOT + STRICT, gone + STRICT, removal.replace("removed", "type"))
+    assert diff(run, "--breaking")[0] == 1
 
 
 def test_an_acceptance_that_the_change_takes_away_does_not_count(run: Run, both: Path) -> None:
-    write(both, ROBOT + accepting(f"{ENTRY}: agreed in March"), RETYPED + STRICT)
+    write(both, ROBOT + STRICT, RETYPED + STRICT, old_agreements=(f"review/sssa.yaml: {ENTRY}: {AGREED}",))
     assert diff(run, "--breaking")[0] == 1
 
 
 @pytest.mark.parametrize(
     ("entry", "said"),
     [
-        (f"{ENTRY}: {{reason: why not, key: qos}}", " with the key `qos` (b.yaml:13:38) names no breaking change here"),
-        ("sensing.camera: why not", " (b.yaml:13:38) names no breaking change here"),
+        (
+            f"{ENTRY}: {{reason: why not, key: qos}}",
+            " with the key `qos` (review/sssa.yaml:1:21) names no breaking change here",
+        ),
+        ("sensing.camera: why not", " (review/sssa.yaml:1:21) names no breaking change here"),
         (
             "sensing.camra.image: why not",
             (
-                " (b.yaml:13:38) names no breaking change here, and nothing in either version has this id; "
+                " (review/sssa.yaml:1:21) names no breaking change here, and nothing in either version has this id; "
                 "did you mean `sensing.camera.image`?"
             ),
         ),
     ],
 )
 def test_what_accepts_something_else_is_idle(run: Run, both: Path, entry: str, said: str) -> None:
-    write(both, ROBOT, RETYPED + accepting(entry))
+    write(both, ROBOT, RETYPED + STRICT, f"review/sssa.yaml: {entry}")
     status, out = diff(run, "--breaking")
     assert (status, out.splitlines()[-1]) == (1, f"note: accepted entry `{entry.partition(':')[0]}`{said}")
 
 
 def test_json(run: Run, both: Path) -> None:
-    write(both, ROBOT, RETYPED + accepting(f"{ENTRY}: {{reason: why not, key: qos}}"))
+    write(
+        both,
+        ROBOT,
+        RETYPED + STRICT,
+        f"review/sssa.yaml: {ENTRY}: {{reason: why not, key: qos}}",
+        f"more.yaml: {ENTRY}: {{reason: because, key: type}}",
+    )
     status, out = diff(run, "--breaking", "--format", "json")
     data = json.loads(out)
     schema = json.loads(resources.resource_path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
     assert [error.message for error in jsonschema_rs.validator_for(schema).iter_errors(data)] == []
     (change,) = data["changes"]
     assert (status, change["breaks"], change["accepted"]) == (1, ["sssa"], None)
-    assert [(one["partner"], one["why"][:10]) for one in change["because"]] == [("sssa", "gives sssa")]
+    assert [(one["partner"], one["why"][:10], one["agreed"]) for one in change["because"]] == [
+        ("sssa", "gives sssa", None)
+    ]
+    assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
         "fails": True,
+        "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],
     }
     assert (data["findings"], data["chains"]) == ({"new": [], "cured": [], "silenced": []}, [])
@@ -174,7 +267,7 @@ def test_exit_code_counts_what_is_shown(run: Run, both: Path) -> None:
 
 def test_reasons_from_strangers_move_no_terminal(run: Run, both: Path) -> None:
     evil = r'"\e[2J::error::x\u202e"'
-    write(both, ROBOT, RETYPED + accepting(f"{ENTRY}: {evil}, {evil}: y"))
+    write(both, ROBOT, RETYPED + STRICT, f"review/sssa.yaml: {ENTRY}: {evil}, {evil}: y")
     for form in ("text", "json"):
         out = diff(run, "--breaking", "--format", form)[1]
         assert "\x1b" not in out
@@ -202,6 +295,6 @@ def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
             0,
             "new is not sound (1 error). What cannot be read there is left out of the comparison:",
         )
-        assert ran.out.endswith("\nno change breaks another partner\n")
+        assert ran.out.endswith(f"\nwarning: cannot be judged: `{broken}` cannot be read\n")
         (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")
     assert "breaks sssa: `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out

@@ -117,7 +117,12 @@ def test_json_follows_its_schema(run: Run, robot: Path) -> None:
     data = json.loads(run("diff", "main", "--format", "json").out)
     _valid(data)
     (group,) = [change for change in data["changes"] if change["kind"] == "renamed"]
-    assert (group["sort"], group["element"], group["was"], group["breaks"]) == ("group", "perception", "sensing", [])
+    assert (group["sort"], group["element"], group["was"], group["breaks"]) == (
+        "group",
+        "perception",
+        "sensing",
+        ["sssa"],  # the topic is called after the group, and its reader is taken away
+    )
     assert [(c["id"], c["before"]["value"], c["after"]["value"], c["deadline"]) for c in data["chains"]] == [
         ("see", 114.0, 102.0, 300.0)
     ]

@@ -98,6 +98,9 @@ def test_codeowners(run: Run, duo: Path) -> None:
         "",
         "# /archgen.yaml: west without reviewers",
         "/archgen.yaml @duo/north @duo/south lee@south.example",
+        "/review/north.yaml @duo/north",
+        "/review/south.yaml @duo/south lee@south.example",
+        "# /review/west.yaml: west without reviewers",
     ]
 
 

@@ -37,7 +37,8 @@ MESSAGE = (
     "it is read by `display.screen.image`; this gives south, who reads `sensing.camera.image` as `display.screen.image`, "
     "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
 )
-HELP = "mend it, or agree on it and say why: `review: {accepted: {sensing.camera.image: THE REASON}}`"
+ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}"
+HELP = f"mend it, or south says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
 UNUSED = "types: {Old: {message: std_msgs/msg/Empty}}\n"
 """Makes an `unused-type`."""
 
@@ -110,12 +111,19 @@ def test_sarif_and_junit_hold_a_break_with_the_severity_of_the_policy(
     ("before", "after"),
     [
         (ROBOT, ROBOT.replace("Sees.", "Sees well.")),
-        (ROBOT, BROKEN.replace("breaking: error", "breaking: error, accepted: {sensing.camera.image: agreed}")),
         (ROBOT.replace("breaking: error", "breaking: off"), BROKEN.replace("breaking: error", "breaking: off")),
     ],
 )
 def test_what_is_accepted_or_breaks_nobody_is_no_finding(run: Run, tmp_path: Path, before: str, after: str) -> None:
     ran = run("review", branch(tmp_path, before, after), "--base", "main", "--no-build")
+    assert (ran.status, ran.out.splitlines()[0]) == (0, "no new findings")
+
+
+def test_what_the_partner_accepts_in_its_own_file_is_no_finding(run: Run, tmp_path: Path) -> None:
+    sources = "sources: ['review/*.yaml']\n"
+    folder = branch(tmp_path, ROBOT + sources, BROKEN + sources)
+    repositories.commit(folder, {"review/south.yaml": ACCEPTED + "\n"})
+    ran = run("review", folder, "--base", "main", "--no-build")
     assert (ran.status, ran.out.splitlines()[0]) == (0, "no new findings")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.products.compared_versions import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
+ComparedFolders = Callable[[Mapping[str, str], Mapping[str, str]], Comparison]
 Checked = Callable[[str], Architecture]
 Told = Callable[[str, str], list[str]]
 
@@ -39,6 +40,23 @@ def compared(tmp_path: Path) -> Compared:
             folder.mkdir(exist_ok=True)
             (folder / "robot.yaml").write_text(text, encoding="utf-8")
             sides.append(make_comparison_input(pipeline.check_project(folder / "robot.yaml")))
+        return compare_versions(*sides)
+
+    return run
+
+
+@pytest.fixture
+def compared_folders(tmp_path: Path) -> ComparedFolders:
+    """Compare two projects of several files each."""
+
+    def run(*versions: Mapping[str, str]) -> Comparison:
+        sides = []
+        for number, files in enumerate(versions):
+            for name, text in files.items():
+                file = tmp_path / str(number) / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+            sides.append(make_comparison_input(pipeline.check_project(tmp_path / str(number))))
         return compare_versions(*sides)
 
     return run

@@ -15,7 +15,7 @@ from archgen.compare.select_changes import select_changes
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.selector_evaluation import Selection
 from archgen.timing.analysis import ChainResult
-from tests.compare.conftest import Compared
+from tests.compare.conftest import Compared, ComparedFolders
 
 ROBOT = """\
 partners: {certh: CERTH, sssa: SSSA, tum: TUM}
@@ -184,23 +184,32 @@ REVIEWED = ROBOT + "review: {breaking: error}\n"
 GONE = REVIEWED.replace("x: T, y: U", "x: T").replace("y: a.y", "y: ")
 
 
-def accepted(entries: str) -> str:
-    return GONE.replace("breaking: error", f"breaking: error, accepted: {{{entries}}}")
+AGREED = "{reason: Agreed, key: removed}"
 
 
 @pytest.mark.parametrize(
-    ("text", "refused", "idle"),
+    ("policy", "entries", "refused", "idle"),
     [
-        (GONE, True, []),
-        (accepted("g.a.y: Agreed"), False, []),
-        (accepted("g.a.y: {reason: Agreed, key: type}"), True, ["g.a.y"]),
-        (accepted("g.a.x: Agreed"), True, ["g.a.x"]),
-        (accepted("g.a.y: Agreed, h.c: Agreed"), False, ["h.c"]),
-        (GONE.replace("breaking: error", "breaking: warning"), True, []),  # the stricter policy of both counts
+        ("error", "", True, []),
+        ("error", f"g.a.y: {AGREED}", False, []),
+        ("error", "g.a.y: {reason: Agreed, key: type}", True, ["g.a.y"]),
+        ("error", f"g.a.x: {AGREED}", True, ["g.a.x"]),
+        ("error", f"g.a.y: {AGREED}, h.c: {AGREED}", False, ["h.c"]),
+        ("warning", "", True, []),  # the stricter policy of both counts
     ],
 )
-def test_what_the_project_refuses(compared: Compared, text: str, refused: bool, idle: list[str]) -> None:  # noqa: FBT001
-    found = compared(REVIEWED, text)
+def test_what_the_project_refuses(
+    compared_folders: ComparedFolders,
+    policy: str,
+    entries: str,
+    refused: bool,  # noqa: FBT001
+    idle: list[str],
+) -> None:
+    after = {
+        "archgen.yaml": GONE.replace("breaking: error", f"breaking: {policy}"),
+        "review/sssa.yaml": f"review: {{accepted: {{{entries}}}}}\n",
+    }
+    found = compared_folders({"archgen.yaml": REVIEWED}, after)
     assert found.is_refused is refused
     assert [entry.element for entry in find_idle_acceptances(found.changes, found.after.architecture.review)] == idle
     assert [entry.element for entry in found.idle_acceptances] == idle
@@ -226,7 +235,9 @@ def test_only_what_breaks(compared: Compared) -> None:
     assert narrowed.concerned_owners == ("certh", "sssa")
 
 
-def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(compared: Compared) -> None:
+def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(
+    compared: Compared, compared_folders: ComparedFolders
+) -> None:
     other = (
         GONE.replace("title: Robot", "title: Car")
         .replace("x: T}", "}")
@@ -239,7 +250,8 @@ def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(co
     plain = compared(base, other)
     assert [change.element_id for change in plain.changes if change.breaks] == ["g.a.x", "g.a.y"]
     assert [bool(change.breaks) for change in plain.changes][:3] == [True, True, False]
-    agreed = compared(base, other.replace("breaking: error", "breaking: error, accepted: {g.a.x: Agreed}"))
+    agreement = f"review: {{accepted: {{g.a.x: {AGREED}}}}}\n"
+    agreed = compared_folders({"archgen.yaml": base}, {"archgen.yaml": other, "review/tum.yaml": agreement})
     assert [change.element_id for change in agreed.changes if change.breaks] == ["g.a.y", "g.a.x"]
 
 

@@ -15,6 +15,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.model.review_settings import AcceptedChange
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
@@ -87,8 +88,9 @@ def comment(found: Comparison, text: str) -> str:
     """Write a comment with one text wherever it can hold one."""
     said = f"{text} `{text}` {text}"
     breaks = (PartnerBreak("p", said),)
+    claims = (AcceptedChange("x", text, "x", Span("archgen.yaml", 1, 1, 1, 1)),)
     changes = (
-        Change("changed", "component", "sensing.camera", key="x", breaks=breaks, acceptance_reason=said, text=said),
+        Change("changed", "component", "sensing.camera", key="x", breaks=breaks, claims=claims, text=said),
         Change("added", "component", "display.finder", text=said),
         Change("changed", "view", "v", key="title", text=said),
     )

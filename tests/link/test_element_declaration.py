@@ -122,13 +122,16 @@ def test_accepted_changes_have_a_reason(linked: Linked) -> None:
 review:
   main: trunk
   breaking: warning
-  accepted: {a.b: agreed, a.c: {key: qos}, a.d: {reason: moved, key: from}}
+  accepted:
+    {a.b: agreed, a.c: {key: qos}, a.d: {reason: moved, key: from}, a.e: [{reason: two}, {reason: three, key: qos}]}
   backends: [wiki]
 """)[0].review
     assert (review.main, str(review.breaking), review.backends) == ("trunk", "warning", ("wiki",))
-    assert [(c.reason, c.key, c.at.column) for c in review.accepted.values()] == [
-        ("agreed", None, 14),
-        ("moved", "from", 44),
+    assert [(c.element, c.reason, c.key, c.at.column) for c in review.accepted] == [
+        ("a.b", "agreed", None, 6),
+        ("a.d", "moved", "from", 36),
+        ("a.e", "two", None, 75),
+        ("a.e", "three", "qos", 90),
     ]
     assert linked("")[0].review.breaking is None
 

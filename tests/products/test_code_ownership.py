@@ -114,7 +114,9 @@ def test_a_shared_element_survives_packing(tmp_path: Path) -> None:
 
 
 SLICES = {
-    "archgen.yaml": 'archgen: 1\npartners:\n  p: {reviewers: "@a/p"}\n  q: {reviewers: ["@a/q", q@x.org]}\n  r: {}\n',
+    "archgen.yaml": 'archgen: 1\npartners:\n  p: {reviewers: "@a/p"}\n  q: {reviewers: ["@a/q", q@x.org]}\n  r: {}\n'
+    'ros: {interfaces: ["msg/**/*.msg"]}\n',
+    "msg/m_msgs/msg/Stop.msg": "bool stop\n",
     "groups/a.yaml": "groups: {a: {owner: p, components: {x: X, y: {title: Y, owner: q}}}}\n",
     "groups/b.yaml": "groups: {b: {owner: q, components: {z: Z}}}\n",
     "groups/b_more.yaml": "groups: {b: {components: {w: {title: W, owner: r}}}}\n",
@@ -123,10 +125,19 @@ SLICES = {
     "timing.yaml": "groups: {a: {components: {x: {timing: {rate: 1 Hz}}}}, b: {components: {z: {timing: {rate: 1 Hz}}}}}\n",
 }
 LINES = [
+    "# /robot/archgen.yaml: r without reviewers",
+    "/robot/archgen.yaml @a/p @a/q q@x.org",
     "/robot/groups/a.yaml @a/p @a/q q@x.org",
     "/robot/groups/b.yaml @a/q q@x.org",
     "# /robot/groups/b_more.yaml: r without reviewers",
+    "# /robot/groups/free.yaml: r without reviewers",
+    "/robot/groups/free.yaml @a/p @a/q q@x.org",
+    "# /robot/msg/m_msgs/msg/Stop.msg: r without reviewers",
+    "/robot/msg/m_msgs/msg/Stop.msg @a/p @a/q q@x.org",
     "/robot/nodes\\ of\\ p.yaml @a/p",
+    "/robot/review/p.yaml @a/p",
+    "/robot/review/q.yaml @a/q q@x.org",
+    "# /robot/review/r.yaml: r without reviewers",
     "/robot/timing.yaml @a/p @a/q q@x.org",
 ]
 

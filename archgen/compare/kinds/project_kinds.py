@@ -17,6 +17,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
+from archgen.model.review_settings import ReviewSettings
 
 
 def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
@@ -25,11 +26,17 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
         "main": review.main,
         "breaking": review.breaking and str(review.breaking),
         "backends": unordered_values(review.backends),
-        **{
-            f"accepted.{name}": f"{entry.reason} ({entry.key})" if entry.key else entry.reason
-            for name, entry in review.accepted.items()
-        },
+        **{f"accepted.{name}": "; ".join(texts) for name, texts in _group_accepted(review).items()},
     }
+
+
+def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
+    """Return what is accepted of each element; several partners may accept the same change."""
+    texts_by_element: dict[str, list[str]] = {}
+    for entry in review.accepted:
+        text = f"{entry.reason} ({entry.key})" if entry.key else entry.reason
+        texts_by_element.setdefault(entry.element, []).append(text)
+    return texts_by_element
 
 
 def _read_named(key: str, context: ReadContext, value: str) -> str | None:

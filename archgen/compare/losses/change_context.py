@@ -139,8 +139,12 @@ class ChangeContext:
         return element.owner if element else None
 
     def needs_source(self, input_id: str) -> bool:
-        """Whether an input still exists and is not optional."""
-        element = self.versions.elements_after.get(("input", input_id))
+        """Whether an input existed before the change and was not optional.
+
+        The second version is not asked: otherwise a branch could take the reader away, or make it optional, together
+        with what it reads (docs/decisions/0007-breaking-changes.md).
+        """
+        element = self.versions.elements_before.get(("input", input_id))
         return element is not None and not element.values.get("optional")
 
     def old_id(self, kind: str, name: str) -> str:

@@ -31,13 +31,9 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         indices, change = _type_change(
             context, output, (old_type, new_element.values.get("type")), (messages_before, messages_after)
         )
-        staying_readers = [
-            reader
-            for reader in readers & context.versions.connections_after.readers_by_output.get(output, frozenset())
-            if context.needs_source(reader)
-        ]
+        needing_readers = filter(context.needs_source, sorted(readers))
         lost_inputs = (
-            _readers_by_partner(context, staying_readers, context.lasting_owners("output", output)) if change else {}
+            _readers_by_partner(context, needing_readers, context.lasting_owners("output", output)) if change else {}
         )
         for partner, inputs in sorted(lost_inputs.items()):
             name = context.old_id("output", output)

@@ -9,8 +9,9 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, ti
 
 
 def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find outputs that were removed or renamed while a partner read them. A reader that turns away by itself loses
-    nothing.
+    """Find outputs that were removed or renamed while a partner read them, whatever became of the reader.
+
+    A reader that turns away loses nothing as long as its source stays as it is.
     """
     for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
         new_readers = context.versions.connections_after.readers_by_output.get(output, frozenset())
@@ -20,9 +21,13 @@ def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
         if not indices:
             continue
         lost_inputs: dict[str, list[str]] = defaultdict(list)
+        is_renamed = ("output", output) in context.versions.elements_after
         for reader in readers - new_readers:
             partner = context.owner_before("input", reader)
-            if partner and partner not in context.lasting_owners("output", output) and context.needs_source(reader):
+            if not partner or partner in context.lasting_owners("output", output) or not context.needs_source(reader):
+                continue
+            # An output that only has another id is still there: who no longer asks for anything turned away by itself.
+            if not is_renamed or ("input", reader) in context.versions.elements_after:
                 lost_inputs[partner].append(reader)
         for partner, inputs in sorted(lost_inputs.items()):
             yield from context.losses_of_partner(indices, partner, _loss_reason(context, output, inputs, partner))
@@ -45,6 +50,10 @@ def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], p
     old_name = f"`{context.old_id('output', output_id)}`"
     if ("output", output_id) in context.versions.elements_after:
         return f"takes {old_name} from {partner}, who still reads it under that name as {input_names}"
+    gone_ids = [name for name in input_ids if context.versions.is_removed("input", name)]
+    if gone_ids:
+        gone_names = "" if len(gone_ids) == len(input_ids) else f" {tick_sorted_names(gone_ids)}"
+        return f"takes {old_name} from {partner}, who read it as {input_names}; the same change takes the reader{gone_names} away"
     current_sources = {
         source for name in input_ids for source in context.versions.connections_after.sources_by_input.get(name, ())
     }

@@ -9,6 +9,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.overloaded_resources import find_link_causes
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.timing.chains.chain_bounds import judge_deadline
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -16,15 +17,13 @@ from archgen.timing.figures.timing_values import TimingValue
 def find_late_chains(
     context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
 ) -> Iterator[PartnerLoss]:
-    """Find chains that met their deadline and may no longer do so, or that were late and are later now."""
+    """Find chains that met their deadline and may no longer do so, or that were late and are later now.
+
+    The deadline of the first version counts, and that of the second one where it is stricter.
+    """
     for chain_change in chains:
         old_result, new_result = chain_change.before, chain_change.after
-        if (
-            old_result is None
-            or new_result is None
-            or new_result.deadline is None
-            or not (reason_text := _lateness_reason(old_result, new_result))
-        ):
+        if old_result is None or new_result is None or not (reason_text := _lateness_reason(old_result, new_result)):
             continue
         # A bound without terms means that the chain is cut: there is no sum to compare, only what took its steps away.
         if new_result.terms:
@@ -34,7 +33,8 @@ def find_late_chains(
         else:
             indices, cut_off_activities = causes.find_cuts([term.activity for term in old_result.terms])
             activities_of_owners = causes.old_activities_by_owner(cut_off_activities)
-        indices += context.change_indices("chain", chain_change.id, "deadline")
+        if _binding_deadline(old_result, new_result) is not old_result.deadline:
+            indices += context.change_indices("chain", chain_change.id, "deadline")
         indices = (
             indices or context.change_indices("chain", chain_change.id, "through") or causes.all_worsening_changes()
         )
@@ -42,22 +42,39 @@ def find_late_chains(
         yield from context.shared_losses(dict.fromkeys(indices), activities_of_owners, reason_text, "is")
 
 
+def _binding_deadline(old_result: ChainResult, new_result: ChainResult) -> TimingValue | None:
+    """Return the deadline that a change is held against: the old one, or the new one where it is stricter."""
+    old_deadline, new_deadline = old_result.deadline, new_result.deadline
+    if old_deadline is None or old_deadline.value is None:
+        return new_deadline
+    is_stricter = (
+        new_deadline is not None and new_deadline.value is not None and new_deadline.value < old_deadline.value
+    )
+    return new_deadline if is_stricter else old_deadline
+
+
 def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
     """Describe how much worse a chain is; empty if it is no worse than before."""
-    limit, chain_name = f"its deadline of {_format_bound(new_result.deadline)}", f"the chain `{new_result.id}`"
-    if old_result.verdict == "met" and new_result.verdict == "missed":
+    deadline = _binding_deadline(old_result, new_result)
+    new_verdict, chain_name = new_result.verdict, f"the chain `{new_result.id}`"
+    limit = f"its deadline of {_format_bound(deadline)}"
+    if new_result.deadline != deadline:
+        # A chain without steps is cut, which is told in words of its own.
+        new_verdict = judge_deadline(new_result.bound, deadline) if new_result.terms else "open"
+        limit = f"the deadline of {_format_bound(deadline)} that it had before"
+    if old_result.verdict == "met" and new_verdict == "missed":
         growth = (
             f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
             if old_result.bound != new_result.bound
             else f"it takes {_format_bound(new_result.bound)}"
         )
         return f"makes {chain_name} miss {limit} ({growth})"
-    if old_result.verdict == "met" and new_result.verdict == "open":
+    if old_result.verdict == "met" and new_verdict == "open":
         met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
         return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
     old_bound, new_bound = old_result.bound.value, new_result.bound.value
     if (
-        old_result.verdict == new_result.verdict == "missed"
+        old_result.verdict == new_verdict == "missed"
         and old_bound is not None
         and (new_bound is None or new_bound > old_bound)
     ):

@@ -41,15 +41,13 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def _readers_by_topic(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
-    """Return the readers of each name in the first version that can be broken: real nodes that remain."""
+    """Return the readers of each name in the first version that can be broken: those of real nodes."""
     readers: dict[TopicKey, list[Endpoint]] = defaultdict(list)
     for endpoint in context.before.endpoints:
         node = context.before.nodes[endpoint.node]
         if endpoint.use in {"publishes", "serves"} or node.status == "planned":
             continue
-        # Nodes that nobody wrote are no elements.
-        node_stays = ("node", context.matched_ids.common_id("node", endpoint.node)) in context.versions.elements_after
-        if node_stays and (
+        if node.written and (
             endpoint.port is None or context.needs_source(context.matched_ids.common_id("input", endpoint.port))
         ):
             readers[endpoint.name, endpoint.flow].append(endpoint)

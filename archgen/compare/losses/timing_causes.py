@@ -35,6 +35,10 @@ class TimingCauses:
         """Return the common key of an activity of the second version."""
         return _activity_key(activity, self.context.after, MatchedIds())
 
+    def old_activity_key(self, activity: Activity) -> ActivityKey:
+        """Return the common key of an activity of the first version."""
+        return _activity_key(activity, self.context.before, self.context.matched_ids)
+
     @property
     def _element_tables(self) -> tuple[Mapping[ElementKey, ComparedElement], Mapping[ElementKey, ComparedElement]]:
         return self.context.versions.elements_before, self.context.versions.elements_after
@@ -43,10 +47,7 @@ class TimingCauses:
     def old_activities(self) -> Mapping[ActivityKey, str]:
         """Return the activities of the first version by their common keys."""
         activities = self.timing_pair.before.system.activities
-        return {
-            _activity_key(activity, self.context.before, self.context.matched_ids): name
-            for name, activity in activities.items()
-        }
+        return {self.old_activity_key(activity): name for name, activity in activities.items()}
 
     def old_activity(self, activity_id: str) -> str | None:
         """Return the id that an activity of the second version had in the first one."""
@@ -65,8 +66,7 @@ class TimingCauses:
         """Return the given activities of the first version by owner."""
         system = self.timing_pair.before.system
         activity_keys = {
-            activity_id: _activity_key(system.activities[activity_id], self.context.before, self.context.matched_ids)
-            for activity_id in activity_ids
+            activity_id: self.old_activity_key(system.activities[activity_id]) for activity_id in activity_ids
         }
         owner_before = self.context.owner_before
         return _group_by_owner(
@@ -88,12 +88,12 @@ class TimingCauses:
     def _changes_touching(self, activity_ids: Iterable[str]) -> Iterator[int]:
         """Yield the indices of changes of the components and nodes behind activities of the first version."""
         for activity in map(self.timing_pair.before.system.activities.__getitem__, activity_ids):
-            component, node = _activity_key(activity, self.context.before, self.context.matched_ids)
+            component, node = self.old_activity_key(activity)
             yield from self._worsening_indices([("component", component), ("node", node)])
 
     def _changes_cutting(self, activity: Activity) -> Iterator[int]:
         """Yield the indices of changes that removed an activity of the first version, or what it read."""
-        component, node = _activity_key(activity, self.context.before, self.context.matched_ids)
+        component, node = self.old_activity_key(activity)
         yield from self.context.indices_by_change_kind("component", component, "removed")
         yield from self.context.indices_by_change_kind("node", node, "removed")
         for key in activity.inputs:

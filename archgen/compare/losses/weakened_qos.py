@@ -15,86 +15,73 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.model.ros_distro import is_ros_1
 
-EndpointKey = tuple[str, str, str]
-"""A written node, its port (a topic's name for internal ones) and its use, by common ids."""
+WriterKey = tuple[str, str]
+"""A written node and its port (a topic's name for internal ones), by common ids."""
 
 
 def find_weakened_publishers(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find pairs of publisher and subscriber that no longer match because of what is offered."""
-    if is_ros_1(context.after.distro):
+    """Find publishers whose offer no longer satisfies what a subscriber asked for before the change.
+
+    What the subscriber asks for now does not matter: otherwise a branch could lower both sides at once.
+    """
+    if is_ros_1(context.before.distro):
         return
-    old_endpoints: Mapping[EndpointKey, list[Endpoint]] | None = None
-    for topic in context.after.topics.values():
-        for writer, reader in _incompatible_pairs(context.after, topic):
-            # Built only when the first unmatched pair appears; most comparisons have none.
-            old_endpoints = (
-                _endpoints_by_key(context.before, context.matched_ids) if old_endpoints is None else old_endpoints
-            )
-            yield from _lost_publishers(context, topic.name, (writer, reader), old_endpoints)
+    new_writers = _writers_by_key(context.after, MatchedIds())
+    for topic in context.before.topics.values():
+        for old_writer, reader in _matching_pairs(context.before, topic):
+            if reader.port and not context.needs_source(context.matched_ids.common_id("input", reader.port)):
+                continue
+            for writer in new_writers.get(_writer_key(old_writer, context.matched_ids), ()):
+                # Nearly all offers are as they were: only the others are judged.
+                clashes = _find_clashes(writer, reader) if writer.qos != old_writer.qos else ()
+                if clashes:
+                    yield from _lost_publishers(context, writer, reader, clashes)
 
 
-def _incompatible_pairs(architecture: Architecture, topic: Topic) -> Iterator[tuple[Endpoint, Endpoint]]:
+def _matching_pairs(architecture: Architecture, topic: Topic) -> Iterator[tuple[Endpoint, Endpoint]]:
+    """Yield the publishers and subscribers of a topic that understand each other, those of written nodes."""
     if topic.flow != "topic":
         return
     for writer in topic.writers:
         for reader in topic.readers:
-            if next(find_qos_conflicts(writer.qos, reader.qos), None) is None:
-                continue
-            if architecture.nodes[writer.node].written and architecture.nodes[reader.node].written:
+            if (
+                architecture.nodes[writer.node].written
+                and architecture.nodes[reader.node].written
+                and not _find_clashes(writer, reader)
+            ):
                 yield writer, reader
 
 
-def _endpoints_by_key(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[EndpointKey, list[Endpoint]]:
-    endpoints: dict[EndpointKey, list[Endpoint]] = defaultdict(list)
+def _writers_by_key(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[WriterKey, list[Endpoint]]:
+    writers: dict[WriterKey, list[Endpoint]] = defaultdict(list)
     for endpoint in architecture.endpoints:
-        endpoints[_endpoint_key(endpoint, matched_ids)].append(endpoint)
-    return endpoints
+        if endpoint.use == "publishes" and architecture.nodes[endpoint.node].written:
+            writers[_writer_key(endpoint, matched_ids)].append(endpoint)
+    return writers
 
 
-def _endpoint_key(endpoint: Endpoint, matched_ids: MatchedIds) -> EndpointKey:
-    kind = "output" if endpoint.use in {"publishes", "serves"} else "input"
-    return (
-        matched_ids.common_id("node", endpoint.node),
-        matched_ids.common_id(kind, endpoint.port) if endpoint.port else endpoint.name,
-        endpoint.use,
-    )
+def _writer_key(endpoint: Endpoint, matched_ids: MatchedIds) -> WriterKey:
+    port = matched_ids.common_id("output", endpoint.port) if endpoint.port else endpoint.name
+    return matched_ids.common_id("node", endpoint.node), port
 
 
 def _lost_publishers(
-    context: ChangeContext,
-    topic_name: str,
-    endpoint_pair: tuple[Endpoint, Endpoint],
-    old_endpoints: Mapping[EndpointKey, list[Endpoint]],
+    context: ChangeContext, writer: Endpoint, reader: Endpoint, clashes: tuple[QosConflict, ...]
 ) -> Iterator[PartnerLoss]:
-    writer, reader = endpoint_pair
-    old_writers, old_readers = (
-        old_endpoints.get(_endpoint_key(endpoint, MatchedIds()), []) for endpoint in endpoint_pair
-    )
-    compatible_writers = [
-        old_writer
-        for old_writer in old_writers
-        for old_reader in old_readers
-        if old_writer.name == old_reader.name and not _find_clashes(old_writer, old_reader)
-    ]
-    if not compatible_writers or (reader.port and not context.needs_source(reader.port)):
+    owner = context.before.nodes[reader.node].owner
+    if not owner:
         return
-    # The new offer against the old request: what clashes here is the publisher's doing.
-    new_clashes = next(
-        (clash_list for old_reader in old_readers if (clash_list := _find_clashes(writer, old_reader))), ()
-    )
-    if not new_clashes:
-        return
-    partner = context.after.nodes[reader.node].owner
+    partner = context.matched_ids.common_id("partner", owner)
     indices = context.port_change_indices(writer.node, writer.port or "", "qos") or context.change_indices(
         "node", writer.node
     )
-    offered = " and ".join(clash.offered for clash in new_clashes)
-    requested = " and ".join(clash.requested for clash in new_clashes)
-    if partner:
-        request_note = f"where `{reader.node}` of {partner} asks for {requested}: it receives nothing any more"
-        yield from context.losses_of_partner(
-            indices, partner, f"offers {offered} on {tick_name(topic_name)}, {request_note}"
-        )
+    offered = " and ".join(clash.offered for clash in clashes)
+    requested = " and ".join(clash.requested for clash in clashes)
+    reader_node = context.matched_ids.common_id("node", reader.node)
+    request_note = f"where `{reader_node}` of {partner} asks for {requested}: it receives nothing any more"
+    yield from context.losses_of_partner(
+        indices, partner, f"offers {offered} on {tick_name(writer.name)}, {request_note}"
+    )
 
 
 def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:

@@ -35,6 +35,7 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
         "breaking": {
             "severity": str(comparison.breaking_severity),
             "fails": comparison.is_refused,
+            "judged": comparison.is_judged,
             "idle": [
                 {"element": acceptance.element, "key": acceptance.key, "reason": acceptance.reason}
                 for acceptance in comparison.idle_acceptances
@@ -61,10 +62,13 @@ def change_record(architecture_change: Change) -> dict[str, Any]:
         # The keys are the format, not the names of attributes: they stay when those change.
         "breaks": list(architecture_change.broken_partners),
         "because": [
-            {"partner": partner_break.partner, "why": partner_break.reason}
+            {"partner": partner_break.partner, "why": partner_break.reason, "agreed": partner_break.agreement}
             for partner_break in architecture_change.breaks
         ],
         "accepted": architecture_change.acceptance_reason,
+        "said": [
+            {"file": entry.at.file, "key": entry.key, "reason": entry.reason} for entry in architecture_change.claims
+        ],
         "text": architecture_change.text,
         "parts": [change_record(part) for part in architecture_change.parts],
     }

@@ -105,7 +105,7 @@ def _breaking_item(item: BreakingChange) -> str:
     lines = [_change_item(item.change)]
     for reason, partners in item.partners_by_reason.items():
         lines.append(f"  - breaks {_join_partners(partners)}: {write_sentence(reason)}")
-    return "\n".join((*lines, *([f"  - {write_sentence(item.acceptance)}"] if item.acceptance else [])))
+    return "\n".join((*lines, *(f"  - {write_sentence(line)}" for line in item.agreements)))
 
 
 def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:

@@ -34,7 +34,7 @@ def write_comparison_lines(
         yield from map(make_visible, document.verdict[1:])
         return
     if document.is_empty:
-        yield f"no changes{document.caveat}"
+        yield make_visible(document.obstacle) or f"no changes{document.caveat}"
         return
     for change_group in document.change_groups:
         yield _paint_text(make_visible(change_group.heading), "1", colour=colour)
@@ -44,7 +44,7 @@ def write_comparison_lines(
     yield from _chain_lines(document.chain_rows, colour=colour)
     for finding_group in document.finding_groups:
         yield from _finding_lines(finding_group, colour=colour)
-    yield make_visible(document.summary)
+    yield make_visible(document.summary + (f"; {document.obstacle}" if document.obstacle else ""))
 
 
 def _unsound_lines(version: NamedVersion, sources: SourceTexts, *, colour: bool) -> Iterator[str]:
@@ -69,8 +69,7 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
         if not told_reasons.isdisjoint(reasons):
             yield "      as above" if told_reasons.issuperset(reasons) else "      and as above"
         told_reasons |= reasons
-        if item.acceptance:
-            yield make_visible(f"      {item.acceptance}")
+        yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
         yield make_visible(f"  {comparison_document.REFUSAL_LEAD}{document.refusal_help}")
     yield ""

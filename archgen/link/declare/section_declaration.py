@@ -10,7 +10,7 @@ from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.review_settings import AcceptedChange, ReviewSettings
-from archgen.syntax.yaml_tree import MappingNode
+from archgen.syntax.yaml_tree import MappingNode, SequenceNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")
 
@@ -186,16 +186,13 @@ def declare_review(root: MappingNode) -> ReviewSettings:
     return ReviewSettings(
         main=mapping_values.get_text(body, "main"),
         breaking=None if breaking is None else Severity(breaking),
-        accepted={
-            name: AcceptedChange(
-                name,
-                mapping_values.get_text(accepted_body, "reason") or "",
-                mapping_values.get_text(accepted_body, "key"),
-                accepted_entry.key_span,
-            )
-            for name, accepted_entry, accepted_body in mapping_values.iterate_elements(body, "accepted")
-            if mapping_values.get_text(accepted_body, "reason")
-        },
+        accepted=tuple(
+            AcceptedChange(entry.key, reason, mapping_values.get_text(item, "key"), item.span)
+            for entry in mapping_values.get_mapping(body, "accepted")
+            if isinstance(entry.value, SequenceNode)
+            for item in entry.value.items
+            if isinstance(item, MappingNode) and (reason := mapping_values.get_text(item, "reason"))
+        ),
         backends=mapping_values.get_texts(body, "backends"),
     )
 

@@ -48,11 +48,11 @@ class NamedVersion:
 
 @dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """A change that breaks partners: for each reason whom, and why it is accepted (empty: it is not)."""
+    """A change that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
 
     change: Change
     partners_by_reason: Mapping[str, tuple[str, ...]]
-    acceptance: str
+    agreements: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +82,8 @@ class ComparisonDocument:
     """New findings by severity, then how many were cured and silenced."""
     caveat: str
     """What restricts every statement where a version is not sound: ` in what could be read`."""
+    obstacle: str
+    """Why nobody can judge the comparison, empty where that can be done."""
     is_empty: bool
     """Whether nothing differs besides errors of reading."""
     only_breaking: bool
@@ -150,6 +152,7 @@ def describe_comparison(
         kind_counts=count_by_kind(comparison.changes),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
+        obstacle=breaking_verdict.describe_obstacle(comparison),
         is_empty=not (comparison.changes or comparison.chains or finding_groups),
         only_breaking=comparison.only_breaking,
         broken_partners=_sorted_partners(comparison.changes),
@@ -157,12 +160,14 @@ def describe_comparison(
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
-                change, _partners_by_reason(change), breaking_verdict.describe_acceptance(change, comparison)
+                change, _partners_by_reason(change), tuple(breaking_verdict.describe_agreements(change, comparison))
             )
             for change in comparison.changes
             if change.breaks
         ),
-        refusal_help=breaking_verdict.describe_refusal(comparison.changes, is_refused=comparison.is_refused),
+        refusal_help=breaking_verdict.describe_refusal(
+            comparison.changes, comparison.matched_ids, is_refused=comparison.is_refused
+        ),
         verdict=verdict,
         changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
         change_groups=tuple(group_changes(other_changes, comparison)),
@@ -200,6 +205,10 @@ def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> It
 def _write_headline(
     comparison: Comparison, verdict: Sequence[str], finding_groups: Sequence[FindingGroup], caveat: str
 ) -> str:
+    obstacle = breaking_verdict.describe_obstacle(comparison)
+    if obstacle:
+        count = f"; certain: {count_noun(len(comparison.changes), 'change')} of the architecture"
+        return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
     if comparison.changes:
         return f"{count_noun(len(comparison.changes), 'change')} of the architecture{caveat}"
     if verdict:

@@ -78,8 +78,9 @@ def _breaking_item(item: BreakingChange) -> Inlines:
     lines: list[Text] = []
     for reason, partners in item.partners_by_reason.items():
         lines += [Text(f"breaks {', '.join(partners)}", strong=True, line_break=True), Text(": "), *text_runs(reason)]
-    acceptance = [Text(item.acceptance, line_break=True)] if item.acceptance else []
-    return (*_change_runs(item.change), *lines, *acceptance)
+    for line in item.agreements:
+        lines += [Text("", line_break=True), *text_runs(line)]
+    return (*_change_runs(item.change), *lines)
 
 
 def _picture_section(document: ComparisonDocument) -> Section | None:

@@ -22,6 +22,11 @@ groups:
 BASE = PARTNERS + GROUPS
 TYPED = BASE + "types: {Colour image: sensor_msgs/msg/Image, Tracks: x_msgs/msg/Tracks}\n"
 TAKEN = "takes `sensing.camera.image` from sssa, who reads it as `tracking.tracker.image`"
+TAKEN_WITH_READER = "takes `sensing.camera.image` from sssa, who read it as `tracking.tracker.image`; the same change takes the reader away"
+RETYPED = (
+    "gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
+    "(the message stays `sensor_msgs/msg/Image`)"
+)
 OUTPUT = ("image: Colour image, ", "")
 DANGLING = ("image: camera.image", "image: ")
 
@@ -44,7 +49,39 @@ FUNCTIONS = {
         [OUTPUT, ("from: camera.image, ", "")],
         [],
     ),
-    "an output whose reader no longer asks for it": (BASE, [OUTPUT, ("inputs: {image: camera.image}, ", "")], []),
+    "an output whose reader is taken away with it": (
+        BASE,
+        [OUTPUT, ("inputs: {image: camera.image}, ", "")],
+        [f"sensing.camera.image sssa: {TAKEN_WITH_READER}"],
+    ),
+    "an output whose reader is taken away with all its component has": (
+        BASE,
+        [OUTPUT, ("tracker: {inputs: {image: camera.image}, outputs: {tracks: Tracks}}", "lamp: Lamp")],
+        [f"sensing.camera.image sssa: {TAKEN_WITH_READER}"],
+    ),
+    "an output whose reader becomes optional with it": (
+        BASE,
+        [OUTPUT, ("image: camera.image", "image: {optional: true, external: Nothing}")],
+        [f"sensing.camera.image sssa: {TAKEN}"],
+    ),
+    "an output that is retyped while its reader becomes optional": (
+        BASE,
+        [
+            ("image: Colour image", "image: Grey image"),
+            ("image: camera.image", "image: {from: camera.image, optional: true}"),
+        ],
+        [f"sensing.camera.image/type sssa: {RETYPED}"],
+    ),
+    "an output that is retyped while its reader gets another one": (
+        BASE,
+        [("image: Colour image", "image: Grey image"), ("image: camera.image", "image: camera.depth")],
+        [f"sensing.camera.image/type sssa: {RETYPED}"],
+    ),
+    "an output that is retyped while its reader is taken away": (
+        BASE,
+        [("image: Colour image", "image: Grey image"), ("inputs: {image: camera.image}, ", "")],
+        [f"sensing.camera.image/type sssa: {RETYPED}"],
+    ),
     "an output whose reader gets another one": (
         BASE,
         [OUTPUT, ("camera.image", "camera.depth")],

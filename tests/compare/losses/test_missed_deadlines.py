@@ -52,6 +52,9 @@ CROWDED = (
 )
 LATE = "makes the chain `react` miss its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
+ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
+EVERYBODY = ("certh", "sssa", "tum")
+SHORT_CUT = BASE.replace("inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}")
 
 
 def both(element: str, why: str, *partners: str) -> list[str]:
@@ -98,7 +101,73 @@ TABLE = {
             "tum",
         ),
     ),
-    "a longer deadline": (BASE, [("deadline: 250 ms", "deadline: 300 ms")], []),
+    "a longer deadline": (
+        BASE,
+        [("deadline: 250 ms", "deadline: 300 ms")],
+        both("react/deadline", f"relaxes the deadline of the chain `react` from 250 ms to 300 ms; {ALL}", *EVERYBODY),
+    ),
+    "a longer deadline of a chain of one's own": (
+        BASE.replace("owner: sssa", "owner: certh").replace("owner: tum", "owner: certh"),
+        [("deadline: 250 ms", "deadline: 300 ms")],
+        [],
+    ),
+    "a longer deadline of a chain that nobody else owns a part of, but not all of it": (
+        BASE.replace("owner: sssa", "owner: certh").replace("owner: tum", "title: Moving"),
+        [("deadline: 250 ms", "deadline: 300 ms")],
+        both(
+            "react/deadline",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of certh are on it",
+            "certh",
+        ),
+    ),
+    "a longer deadline that a lower rate needs": (
+        BASE,
+        [RATE, ("deadline: 250 ms", "deadline: 400 ms")],
+        [
+            *both(
+                "sensing.camera/timing.rate",
+                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "`mind` of sssa and `feet` of tum are on it",
+                "sssa",
+                "tum",
+            ),
+            *both(
+                "react/deadline", f"relaxes the deadline of the chain `react` from 250 ms to 400 ms; {ALL}", *EVERYBODY
+            ),
+        ],
+    ),
+    "a longer deadline of a chain that names what is not there": (
+        BASE.replace("tracker, planner]", "tracker, planner, nobody]"),
+        [("deadline: 250 ms", "deadline: 300 ms")],
+        both(
+            "react/deadline",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of certh, "
+            "`tracking.tracker` of sssa and `moving.planner` of tum are on it",
+            *EVERYBODY,
+        ),
+    ),
+    "a chain that leads past a part that is still there": (
+        SHORT_CUT,
+        [("[camera, tracker, planner]", "[camera, planner]"), ("inputs: {tracks: tracker.tracks, ", "inputs: {")],
+        both("react/through", f"leads the chain `react` with its deadline past `mind`; {ALL}", *EVERYBODY),
+    ),
+    "a chain that ends sooner": (
+        BASE,
+        [("[camera, tracker, planner]", "[camera, tracker]")],
+        both("react/through", f"leads the chain `react` with its deadline past `feet`; {ALL}", *EVERYBODY),
+    ),
+    "a chain that leads past a part that its own partner takes away": (
+        SHORT_CUT,
+        [
+            ("[camera, tracker, planner]", "[camera, planner]"),
+            ("inputs: {tracks: tracker.tracks, ", "inputs: {"),
+            ("      tracker: {inputs: {image: camera.image}, outputs: {tracks: Tracks}}\n", "      lamp: Lamp\n"),
+            ("  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}\n", ""),
+        ],
+        [
+            "tracking.tracker tum: takes `tracking.tracker.tracks` from tum, who read it as `moving.planner.tracks`; the same change takes the reader away"
+        ],
+    ),
     "a chain that was late already": (
         BASE.replace("250 ms", "100 ms"),
         [("wcet: 5 ms", "wcet: 6 ms")],
@@ -145,9 +214,31 @@ TABLE = {
             "tum",
         ),
     ),
-    "a chain that is removed": (BASE, [RATE, (CHAINS, "")], []),
+    "a chain that is removed": (
+        BASE,
+        [RATE, (CHAINS, "")],
+        both("react", f"takes away the chain `react` with its deadline of 250 ms; {ALL}", *EVERYBODY),
+    ),
+    "a chain without a deadline that is removed": (
+        BASE.replace(", deadline: 250 ms", ""),
+        [("chains: {react: {through: [camera, tracker, planner]}}\n", "")],
+        [],
+    ),
     "a chain that is new": (BASE.replace(CHAINS, ""), [RATE, ("links:", CHAINS + "links:")], []),
-    "a deadline that is dropped": (BASE, [RATE, (", deadline: 250 ms", "")], []),
+    "a deadline that is dropped": (
+        BASE,
+        [RATE, (", deadline: 250 ms", "")],
+        [
+            *both(
+                "sensing.camera/timing.rate",
+                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "`mind` of sssa and `feet` of tum are on it",
+                "sssa",
+                "tum",
+            ),
+            *both("react/deadline", f"takes the deadline of 250 ms from the chain `react`; {ALL}", *EVERYBODY),
+        ],
+    ),
     "a deadline that is new": (
         BASE.replace(", deadline: 250 ms", ""),
         [RATE, ("planner]", "planner], deadline: 250 ms")],

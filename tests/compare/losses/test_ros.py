@@ -128,12 +128,12 @@ NAMES = {
     "a topic whose reader becomes optional": (
         NODES,
         [("/eye/image", "/eye/rgb"), ("{image: camera.image}", "{image: {from: camera.image, optional: true}}")],
-        [],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")],
     ),
     "a topic whose reader is removed with it": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), (INTERNAL[INTERNAL.index("  mind:") :], "")],
-        [],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
     ),
     "a topic whose reader is called otherwise": (
         INTERNAL,
@@ -161,7 +161,26 @@ NAMES = {
         ],
     ),
     "quality that is not enough": (NODES, [FEWER], [f"eye.publishes.image/qos sssa: {UNHEARD}"]),
-    "quality that both lower": (NODES, [("reliability: reliable", "reliability: best_effort")], []),
+    "quality that both lower": (
+        NODES,
+        [("reliability: reliable", "reliability: best_effort")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
+    "quality that only the reader lowers": (
+        NODES,
+        [("{qos: {reliability: reliable}}", "{qos: {reliability: best_effort}}")],
+        [],
+    ),
+    "quality for a reader that is taken away with it": (
+        NODES,
+        [FEWER, ("  mind: {implements: tracker, subscribes: {image: {qos: {reliability: reliable}}}}\n", "")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
+    "quality for a reader that becomes optional": (
+        NODES,
+        [FEWER, ("{image: camera.image}", "{image: {from: camera.image, optional: true}}")],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+    ),
     "quality that is still enough": (NODES, [("deadline: 50 ms", "deadline: 80 ms")], []),
     "a deadline that is not": (
         NODES.replace("subscribes: {image: {qos: {", "subscribes: {image: {qos: {deadline: 60 ms, "),

@@ -108,7 +108,10 @@ CASES = {
     "an output that is renamed while its reader turns away": (
         SCREEN,
         [*RENAMED, ("inputs: {image: camera.image}, ", "")],
-        [f"tracking.tracker.image tum: cuts the {MET} 151 ms; `feet` of tum is on it"],
+        [
+            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/sensing/camera/images` now",
+            f"tracking.tracker.image tum: cuts the {MET} 151 ms; `feet` of tum is on it",
+        ],
     ),
     "a node of a partner for a component of nobody": (
         ROBOT.replace(*NODE_OWNED[0]).replace(*NODE_OWNED[1]),

@@ -12,8 +12,10 @@ from archgen import pipeline
 from archgen.compare import Comparison
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.model.review_settings import AcceptedChange
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -137,11 +139,12 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     kind, rate = found.changes
     assert (kind.element_kind, rate.element_kind) == ("type", "component")
     breaks = (
-        PartnerBreak("sssa", "`display.finder` takes `Image`"),
-        PartnerBreak("sssa", "two"),
+        PartnerBreak("sssa", "`display.finder` takes `Image`", "agreed in May"),
+        PartnerBreak("sssa", "two", "agreed in May"),
         PartnerBreak("certh", "two"),
     )
-    kind = replace(kind, breaks=breaks, acceptance_reason="agreed in May")
+    claims = (AcceptedChange("Image", "agreed in *June*", "message", Span("archgen.yaml", 1, 1, 1, 1)),)
+    kind = replace(kind, breaks=breaks, claims=claims)
     text = written(replace(found, changes=(rate, kind)), broken)
     assert text.startswith("""\
 ### 2 changes of the architecture: breaks `certh` and `sssa`
@@ -153,7 +156,8 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
   - breaks `sssa`: `display.finder` takes `Image`
   - breaks `certh` and `sssa`: two
-  - accepted: agreed in May
+  - accepted by sssa: agreed in May
+  - said in `archgen.yaml`, not by certh and sssa: agreed in \\*June\\*
 
 #### Other changes
 
@@ -161,8 +165,11 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 
 - \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
 """)
-    refused = replace(found, changes=(replace(kind, acceptance_reason=None),), breaking_severity=Severity.ERROR)
-    assert "\n`review.breaking: error` refuses this: mend it, or agree on it" in written(refused, broken)
+    refused = replace(found, changes=(kind,), breaking_severity=Severity.ERROR)
+    assert (
+        "\n`review.breaking: error` refuses this: mend it, or certh says why it is right, in `review/certh.yaml`: "
+        "`review: {accepted: {Image: {key: message, reason: THE REASON}}}`\n"
+    ) in written(refused, broken)
 
 
 def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
@@ -183,7 +190,7 @@ def test_a_version_with_errors_says_so_first_and_does_not_call_anything_cured(to
 
 
 def test_a_version_that_does_not_parse(told: Told) -> None:
-    assert told(("types: {", "types: [{")).startswith("### No change of the architecture in what could be read\n")
+    assert told(("types: {", "types: [{")).startswith("### Cannot be judged: `robot.yaml` cannot be read\n")
 
 
 def test_texts_and_cured_findings_are_folded(told: Told) -> None:

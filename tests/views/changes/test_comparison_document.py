@@ -33,7 +33,10 @@ groups:
 chains: {see: {through: [camera, screen], deadline: 100 ms}}
 """
 RETYPED = OLD.replace("msg/Image", "msg/CompressedImage")
-REFUSED = "mend it, or agree on it and say why: `review: {accepted: {sensing.camera.image: THE REASON}}`"
+REFUSED = (
+    "mend it, or sssa says why it is right, in `review/sssa.yaml`: "
+    "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`"
+)
 FORMS = ("terminal", "markdown", "page")
 Sides = tuple[ProjectVersion, ProjectVersion]
 ReadSides = Callable[[str, str], Sides]
@@ -146,15 +149,18 @@ def test_a_refused_change_says_what_to_write_in_every_format(read_sides: ReadSid
     [
         (OLD, False, "No change of the architecture"),
         (OLD, True, "No change breaks another partner"),
-        (f"{OLD}types: [", False, "No change of the architecture in what could be read"),
+        (f"{OLD}types: [", False, "Cannot be judged: `new.yaml` cannot be read"),
         (OLD.replace("Lamp", "Torch"), False, "1 change of the architecture"),
     ],
 )
 def test_the_headline(read_sides: ReadSides, new: str, only_breaking: bool, headline: str) -> None:  # noqa: FBT001
     document, texts = describe(read_sides(OLD, new), only_breaking=only_breaking)
     assert document.headline == headline
-    assert texts["markdown"].startswith(f"### {headline}")
-    assert (f"{headline}." in texts["page"]) == document.is_empty
+    words = headline.replace("`", "")
+    assert texts["markdown"].startswith(f"### {words}")
+    assert (f"{words}." in texts["page"]) == document.is_empty
     if document.is_empty:
-        sentence = "no change breaks another partner" if only_breaking else f"no changes{document.caveat}"
+        sentence = (
+            "no change breaks another partner" if only_breaking else document.obstacle.replace("`", "") or "no changes"
+        )
         assert texts["terminal"].endswith(f"{sentence}\n")
