@@ -148,7 +148,7 @@ def test_it_explains_rules_and_starts_projects(installed: Path, tmp_path: Path) 
     assert run(installed / "archgen", "explain", "unread-output", cwd=tmp_path).startswith("unread-output (warning)")
     run(installed / "archgen", "init", "robot", cwd=tmp_path)
     run(installed / "archgen", "check", "--strict", "robot", cwd=tmp_path)
-    assert (tmp_path / "robot" / ".archgen" / "archgen.schema.json").stat().st_size > 10_000
+    assert (tmp_path / "robot" / ".vscode" / "archgen.schema.json").stat().st_size > 10_000
 
 
 def test_it_runs_as_a_module_and_has_types(installed: Path, tmp_path: Path) -> None:
