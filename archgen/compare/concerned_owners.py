@@ -87,11 +87,20 @@ def _opposite_keys(
             yield from _nodes_at_place(element, elements)
         case "type" | "requirement":
             yield from _users_and_readers(element, elements, connections)
+        case "project" if change.key == "distro":
+            # Everybody builds against it.
+            yield from elements
         case "message":
-            types = (candidate for candidate in elements.values() if candidate.kind == "type")
-            for type_element in types:
-                if type_element.values.get("message") == element.id:
-                    yield from _users_and_readers(type_element, elements, connections)
+            yield from _carriers_of_message(element, elements, connections)
+
+
+def _carriers_of_message(
+    message: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
+) -> Iterator[ElementKey]:
+    """Yield the ports whose types are carried by a message, and who reads these."""
+    for candidate in elements.values():
+        if candidate.kind == "type" and candidate.values.get("message") == message.id:
+            yield from _users_and_readers(candidate, elements, connections)
 
 
 def _chain_points(chain: ComparedElement) -> Iterator[ElementKey]:

@@ -33,6 +33,7 @@ WORLD = by_key(
     element("port n.publishes.x", owner="N", refs="a.c.x"),
     element("group g", owner="G"),
     element("policy p"),
+    element("project robot"),
 )
 READS = "b.d.i <- a.c.x"
 
@@ -42,6 +43,8 @@ READS = "b.d.i <- a.c.x"
     [
         ("group g", "G"),
         ("policy p", ""),
+        ("project robot distro", "A B C D G M N O"),
+        ("project robot title", ""),
         ("connection b.d.i", "A B"),
         ("output a.c.x", "A B"),
         ("output a.c.x type", "A B"),
