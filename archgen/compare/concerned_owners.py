@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.version_pair import VersionPair
+
+_MEANING_KEYS = frozenset({"", "type", "description"})
+_OUTPUT_TIMING = "timing.outputs."
+_PACE_KEYS = frozenset(
+    f"timing.{key}" for key in ("behaviour", "rate", "jitter", "every", "throttle", "trigger", "trigger.inputs")
+)
+"""Keys of components and nodes that say how often their outputs come."""
 
 
 def find_concerned_owners(changes: Sequence[Change], versions: VersionPair) -> tuple[str, ...]:
@@ -73,13 +80,11 @@ def _opposite_keys(
     match change.element_kind:
         case "connection":
             yield from (("output", name) for name in connections.sources_by_input.get(element.id, ()))
-        case "output" if change.key in {None, "type", "description"}:
-            yield from (("input", name) for name in connections.readers_by_output.get(element.id, ()))
-        case "port":
+        case "output" | "port" | "component" | "node":
             yield from (
                 ("input", name)
-                for port in element.component_refs
-                for name in connections.readers_by_output.get(port, ())
+                for output in _find_changed_outputs(change, element, connections)
+                for name in connections.readers_by_output.get(output, ())
             )
         case "chain":
             yield from _chain_points(element)
@@ -92,6 +97,21 @@ def _opposite_keys(
             yield from elements
         case "message":
             yield from _carriers_of_message(element, elements, connections)
+
+
+def _find_changed_outputs(change: Change, element: ComparedElement, connections: ConnectionMap) -> Iterable[str]:
+    """Return the outputs that a change makes into something else for their readers: in meaning, in form or in pace."""
+    key = change.key or ""
+    if change.element_kind == "output":
+        return (element.id,) if key in _MEANING_KEYS else ()
+    if change.element_kind == "port":
+        return element.component_refs
+    if key.startswith(_OUTPUT_TIMING):
+        output_name = key.removeprefix(_OUTPUT_TIMING).partition(".")[0]
+        return [f"{component}.{output_name}" for component in element.component_refs]
+    if key in _PACE_KEYS:
+        return [name for name in connections.readers_by_output if name.rpartition(".")[0] in element.component_refs]
+    return ()
 
 
 def _carriers_of_message(

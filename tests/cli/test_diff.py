@@ -61,7 +61,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "Latency of chains\n"
         "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
-        "1 change (1 changed); concerns certh\n"
+        "1 change (1 changed); concerns certh, sssa\n"
     )
     assert run("diff", "main", "-C", robot).out == ran.out
     assert run("diff", "main..slow").out == ran.out
@@ -198,7 +198,7 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
     [
         ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
         ("json", '{\n  "version": 1,'),
-        ("markdown", "### 1 change of the architecture: concerns `certh`\n\n`where this branch left main ("),
+        ("markdown", "### 1 change of the architecture: concerns `certh` and `sssa`\n\n`where this branch left main ("),
         ("html", "<!DOCTYPE html>\n"),
         ("svg", '<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"'),
     ],

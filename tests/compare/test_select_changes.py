@@ -95,7 +95,7 @@ def test_chains_owners_and_findings_are_narrowed_too(compared: Compared) -> None
     assert [chain.id for chain in found.chains] == ["k"]
     assert {finding.element for finding in found.new_findings} >= {"g.a"}
     for name, chains, findings, owners in (
-        ("g.a", ["k"], True, ("certh",)),
+        ("g.a", ["k"], True, ("certh", "sssa")),
         ("g.b", ["k"], False, ("certh",)),
         ("h.c", [], False, ()),
     ):

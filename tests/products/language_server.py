@@ -28,7 +28,8 @@ class LanguageServer:
         self._problems: dict[str, list[str]] = {}
         self._number = 0
         self.settings: dict[str, Any] = {}
-        threading.Thread(target=self._read_messages, daemon=True).start()
+        self._reader = threading.Thread(target=self._read_messages, daemon=True)
+        self._reader.start()
 
     def start(self, schemas: dict[str, Any]) -> None:
         """Tell it which schema is for which files, as an editor's settings do."""
@@ -145,6 +146,10 @@ class LanguageServer:
         self._process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
         self._process.stdin.flush()
 
+    def wait_for_end(self) -> None:
+        """Wait until nothing is read any more: the stream is closed next, under the reader's hands otherwise."""
+        self._reader.join()
+
     def _read_messages(self) -> None:
         stream = self._process.stdout
         assert stream
@@ -165,9 +170,10 @@ def run_language_server(folder: Path, schemas: dict[str, Any]) -> Iterator[Langu
         )
     command = ["node", str(_PROGRAM), "--stdio"]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - a judge
+        server = LanguageServer(process, folder)
         try:
-            server = LanguageServer(process, folder)
             server.start(schemas)
             yield server
         finally:
             process.kill()
+            server.wait_for_end()
