@@ -8,7 +8,6 @@ project -> syntax -> schema -> link -> model -> transform -> analyses -> finding
 from __future__ import annotations
 
 import gc
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import field
@@ -186,6 +185,9 @@ def _pause_garbage_collection() -> Iterator[None]:
 
 def check_text(text: str) -> tuple[Diagnostic, ...]:
     """Check a project of one file, given as text; findings call the file `project.yaml`."""
+    # Imported here: a check of files needs none of it.
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
         file = Path(folder) / "project.yaml"
         file.write_text(text, encoding="utf-8")

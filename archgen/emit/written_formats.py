@@ -88,6 +88,7 @@ def name_written_format(stream: BinaryIO) -> str | None:
 def _has_program_name(stream: BinaryIO) -> bool:
     """Whether a Word document says that archgen wrote it, and no other program saved it since."""
     import zipfile
+    import zlib
 
     try:
         stream.seek(-_ZIP_END.size, io.SEEK_END)
@@ -106,7 +107,7 @@ def _has_program_name(stream: BinaryIO) -> bool:
         EOFError,
         struct.error,
         zipfile.BadZipFile,
-        zipfile.error,
+        zlib.error,
     ):
         return False
 

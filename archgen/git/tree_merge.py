@@ -45,7 +45,6 @@ class MergeFolder:
     """A bare repository in a temporary folder, in which commits of another one are merged."""
 
     def __init__(self, folder: Path, source: GitRepository) -> None:
-        self.source = source
         self.objects = GitObjects(GitRepository(folder, source.prefix, is_bare=True))
         self._folder = folder
 

@@ -28,7 +28,7 @@ _CONFLICT = re.compile(
     re.DOTALL,
 )
 _MAX_PROPOSALS = 64
-"""Proposals for the text as a whole: each place in conflict has up to four, and they multiply."""
+"""Proposals for the text as a whole: each place in conflict has up to six, and they multiply."""
 _MAX_COMPARED = 5_000
 """Characters of a conflict that is compared word by word: that takes time that grows with the square at worst."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
@@ -25,8 +25,6 @@ from archgen.views.tables.architecture_tables import describe_severities
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
 AgreementFormat = Literal["docx", "markdown", "html"]
-AGREEMENT_FORMATS: tuple[AgreementFormat, ...] = get_args(AgreementFormat)
-"""The formats, as the command line names them."""
 FORMAT_BY_ENDING: Mapping[str, AgreementFormat] = {
     ".docx": "docx",
     ".md": "markdown",

@@ -87,16 +87,6 @@ def read_version(
     return ProjectVersion(version_text, pipeline.check_project(Path(version_text), version_cache))
 
 
-def read_fork_point(
-    path: Path | None = None, main_line: str | None = None, version_cache: VersionCache | None = None
-) -> ProjectVersion:
-    """Read the project where the branch left its main line.
-
-    `main_line` is the main line that the project names; None asks git.
-    """
-    return read_at_base(_find_base(path, main_line), path, version_cache)
-
-
 def _find_base(path: Path | None, main_line: str | None) -> git.BaseCommit:
     return git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.suggestions import find_closest
 from archgen.schema.language_schema import load_schema, resolve_part
+from archgen.schema.schema_wording import add_article
 from archgen.syntax.yaml_tree import MappingNode
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
             return f"it looks like a component: begin it in the column of `{path[3]}`"
     section_kind = _ELEMENT_SECTIONS.get(str(path[0])) if len(path) == 2 else None  # noqa: PLR2004 - section, id
     if section_kind and _looks_like(entry.value, section_kind):
-        return f"it looks like {_phrase_kind(kind)} of its own: begin it in the column of `{path[1]}`"
+        return f"it looks like {add_article(kind)} of its own: begin it in the column of `{path[1]}`"
     return None
 
 
@@ -179,8 +180,3 @@ def looks_like_part(node: YamlNode, schema_part: dict[str, Any]) -> bool:
         and all(key in known_keys for key in node.entries)
         and not _TELLING_NOTHING.issuperset(node.entries)
     )
-
-
-def _phrase_kind(title: str) -> str:
-    word = title if title[:3].isupper() else title[0].lower() + title[1:]
-    return f"{'an' if word[0] in 'aeioAEIO' else 'a'} {word}"

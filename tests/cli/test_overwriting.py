@@ -63,9 +63,22 @@ def _write_strange_document(text: str) -> bytes:
     return data.getvalue()
 
 
+def _damage_document(data: bytes) -> bytes:
+    """Return a zip whose list of files is sound and whose compressed parts are not."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as archive, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as copy:
+        for name in archive.namelist():
+            copy.writestr(name, archive.read(name) * 50)
+    damaged = bytearray(packed.getvalue())
+    start = damaged.index(b"docProps/app.xml") + len(b"docProps/app.xml")
+    damaged[start : start + 8] = b"\xff" * 8
+    return bytes(damaged)
+
+
 STRANGE_FILES: dict[str, bytes] = {
     "notes.txt": b"Remember the milk.\n",
     "thesis.docx": _write_strange_document("Microsoft Office Word"),
+    "damaged.docx": _damage_document(_write_strange_document("archgen")),
     "plain.zip": b"PK\x03\x04 no zip at all",
     "other/archgen.yaml": b"archgen: 1\nproject: {id: other}\n",
     "page.html": b'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>My page</title></head></html>\n',
