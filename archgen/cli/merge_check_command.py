@@ -25,8 +25,8 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     """Say what would be wrong if open branches were merged: each OTHER into MAIN, then all of them.
 
     Git's objects are read and nothing is checked out. Findings are shown that neither MAIN nor the branch has, and
-    conflicts: of the models, and of git alone. The exit status is 1 for new errors (with --strict also new warnings)
-    for conflicts of the models, and where the project is gone.
+    conflicts: of the models, and of git alone. The exit status is 1 for new errors (with --strict also new
+    warnings), for conflicts of the models, and where the project is gone.
     """
     from archgen.git import GitError
     from archgen.merge.branch_merge import preview_merges

@@ -40,11 +40,9 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     timed_kinds = {kind for word in words for kind, _ in element_card.find_elements(lookup, word)}
     if checked_project.analysis is not None and not timed_kinds.isdisjoint({"requirement", "chain"}):
         # Only these say whether deadlines are met; the bounds of chains take longer than all else here.
-        from archgen.timing.chains.chain_bounds import bound_all_chains
-        from archgen.views.timing.timing_lookup import make_timing_lookup
+        from archgen.views.timing.timing_lookup import bound_chains
 
-        chain_results = bound_all_chains(checked_project.analysis, checked_project.architecture).values()
-        lookup = replace(lookup, timing=make_timing_lookup(checked_project.analysis, chain_results))
+        lookup = replace(lookup, timing=bound_chains(checked_project.analysis, checked_project.architecture))
     unknown_words = []
     for word in words:
         matches = element_card.find_elements(lookup, word)

@@ -34,8 +34,13 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
 def analyse_with_chains(architecture: Architecture) -> TimingLookup:
     """Analyse the timing of an architecture, with its chains."""
     # Imported here because the engine takes time to load, and most commands show no timing.
-    from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.run_analysis import analyse_architecture
 
-    analysis = analyse_architecture(architecture)
+    return bound_chains(analyse_architecture(architecture), architecture)
+
+
+def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
+    """Build the look-ups of a timing analysis, with the bounds of all chains."""
+    from archgen.timing.chains.chain_bounds import bound_all_chains
+
     return make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
