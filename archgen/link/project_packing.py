@@ -13,6 +13,7 @@ from dataclasses import field
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
+from archgen.link.slice_merging import list_supported_elements
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
@@ -100,6 +101,7 @@ def pack_project(
     project_data = _pack_mapping(root, (), placer, is_raw=False)
     packed_project = PackedProject(comments=placer.place_comments())
     project_identity = {"id": architecture.project.id, "title": architecture.project.title}
+    _declare_elements(project_data, root, architecture)
     project_data["archgen"] = 1
     project_data["project"] = {**project_identity, **_copy_dict(project_data.get("project"))}
     # A packed file is the whole project: nothing may send its readers to other files.
@@ -130,6 +132,31 @@ def pack_project(
 
 def _copy_dict(value: object) -> dict[str, object]:
     return dict(value) if isinstance(value, dict) else {}
+
+
+def _declare_elements(project_data: Mapping[str, object], root: MappingNode, architecture: Architecture) -> None:
+    """Write the titles of elements that nothing in the packed file would declare.
+
+    A file declares an element by its bare id, another adds its tags: merged, only the tags are left to see.
+    """
+    groups = root.get("groups")
+    for group_id, *component_ids in list_supported_elements(groups) if isinstance(groups, MappingNode) else ():
+        element_data = _get_dict(_get_dict(project_data, "groups"), group_id)
+        for component_id in component_ids:
+            element_data = _get_dict(_get_dict(element_data, "components"), component_id)
+        elements = architecture.components if component_ids else architecture.groups
+        if (element := elements.get(".".join((group_id, *component_ids)))) is not None:
+            titled_data = {"title": element.title, **element_data}
+            element_data.clear()
+            element_data |= titled_data
+
+
+def _get_dict(data: Mapping[str, object], key: str) -> dict[str, object]:
+    value = data[key]
+    if not isinstance(value, dict):
+        message = f"`{key}` holds no mapping"
+        raise TypeError(message)
+    return value
 
 
 def _pack_type(shipped_type: ConceptualType) -> dict[str, object]:

@@ -104,7 +104,7 @@ def _drop_undeclared(
     # Normal form turns a bare id into `{}`, which merging makes invisible: it must be looked for in the documents.
     undeclared_paths = [
         path
-        for path in _find_candidates(groups)
+        for path in list_supported_elements(groups)
         if ".".join(path) not in damaged_elements and not _is_empty_somewhere(path, documents)
     ]
     if not undeclared_paths:
@@ -127,8 +127,8 @@ def _list_element_paths(groups: MappingNode) -> Iterator[KeyPath]:
         yield from ((group.key, component.key) for component in _components_of(group.value))
 
 
-def _find_candidates(groups: MappingNode) -> Iterator[KeyPath]:
-    """Yield the paths of groups with neither title nor components, and of components with supporting keys only."""
+def list_supported_elements(groups: MappingNode) -> Iterator[KeyPath]:
+    """Yield the paths of elements that do not declare themselves: of groups with neither title nor components, and of components with supporting keys only."""
     for group in groups:
         if (
             isinstance(group.value, MappingNode)

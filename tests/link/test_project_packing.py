@@ -212,6 +212,31 @@ def test_a_broken_project_packs_what_is_sound(tmp_path: Path) -> None:
     assert text_of(check_project(tmp_path / "packed.yaml")) == text
 
 
+def test_what_one_file_declares_by_its_id_and_another_tags_stays_declared(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml="archgen: 1\nsources: [a.yaml, b.yaml]\n",
+        a_yaml="groups: {g: {components: {c: {}}}, h: {}}\n",
+        b_yaml="groups: {g: {components: {c: {tags: [x]}}}, h: {owner: p}}\npartners: {p: P}\n",
+    )
+    packed_again(checked, tmp_path)
+    assert yaml.safe_load(text_of(checked))["groups"] == {
+        "g": {"components": {"c": {"title": "C", "tags": ["x"]}}},
+        "h": {"title": "H", "owner": "p"},
+    }
+
+
+def test_an_element_whose_declaration_is_damaged_stays_declared(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "robot",
+        archgen_yaml='archgen: 1\ngroups: {g: {components: {c: {tags: ["", "0"]}}}}\n',
+    )
+    text = text_of(checked)
+    assert yaml.safe_load(text)["groups"] == {"g": {"components": {"c": {"title": "C", "tags": ["0"]}}}}
+    (tmp_path / "packed.yaml").write_text(text, encoding="utf-8")
+    assert text_of(check_project(tmp_path / "packed.yaml")) == text
+
+
 IDS = st.sampled_from(["a", "b2", "on_off", "y", "null_one", "e5"])
 WORDS = st.text(
     st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"])
