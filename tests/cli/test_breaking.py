@@ -29,7 +29,7 @@ groups:
 RETYPED = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace("Lamp", "Torch")
 SHOWN = """\
 Breaking changes
-  ~ breaks sssa: `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
+  ~ breaks sssa (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
 it is read by `display.screen.image`
       gives sssa, who reads `sensing.camera.image` as `display.screen.image`, `sensor_msgs/msg/CompressedImage` instead of \
 `sensor_msgs/msg/Image`
@@ -65,7 +65,7 @@ def diff(run: Run, *words: str) -> tuple[int, str]:
 
 def test_only_what_breaks_somebody_and_why(run: Run, both: Path) -> None:
     write(both, ROBOT, RETYPED)
-    assert diff(run, "--breaking") == (0, f"{SHOWN}\nwarning: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}\nwarning: 1 breaking change for sssa (wire)\n")
     status, whole = diff(run)
     assert (status, whole.startswith(SHOWN)) == (0, True)
     assert "title" in whole
@@ -83,7 +83,7 @@ def test_the_stricter_policy_counts(run: Run, both: Path, before: str, after: st
     status, out = diff(run, "--breaking")
     assert status == 1
     assert out.endswith(
-        "\nerror: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted\n"
+        "\nerror: 1 breaking change for sssa (wire); `review.breaking: error` refuses what is not accepted\n"
         "  = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: "
         "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`\n"
     )
@@ -95,7 +95,7 @@ def test_the_stricter_policy_counts(run: Run, both: Path, before: str, after: st
 )
 def test_milder_policies_only_say_so(run: Run, both: Path, before: str, after: str, said: str) -> None:
     write(both, ROBOT + f"review: {{breaking: {before}}}\n", RETYPED + f"review: {{breaking: {after}}}\n")
-    assert diff(run, "--breaking") == (0, f"{SHOWN}\n{said}: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}\n{said}: 1 breaking change for sssa (wire)\n")
 
 
 def test_a_project_that_does_not_ask(run: Run, both: Path) -> None:
@@ -115,7 +115,7 @@ def accepting(entries: str) -> str:
 
 AGREED = "{key: type, reason: agreed in March}"
 REFUSED = """
-error: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted
+error: 1 breaking change for sssa (wire); `review.breaking: error` refuses what is not accepted
   = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: \
 `review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`
 """
@@ -125,7 +125,7 @@ def test_what_the_partner_accepts_in_its_own_file_is_shown_with_its_reason(run: 
     write(both, ROBOT + STRICT, RETYPED + STRICT, f"review/sssa.yaml: {ENTRY}: {AGREED}")
     assert diff(run, "--breaking") == (
         0,
-        f"{SHOWN}      accepted by sssa: agreed in March\n\n1 breaking change for sssa, accepted\n",
+        f"{SHOWN}      accepted by sssa: agreed in March\n\n1 breaking change for sssa (wire), accepted\n",
     )
 
 
@@ -150,7 +150,7 @@ def test_what_the_partner_does_not_say_of_this_change_accepts_nothing(
     assert diff(run, "--breaking") == (1, f"{SHOWN}      {said}\n{REFUSED}")
     mild = STRICT.replace("error", "warning")
     write(both, ROBOT + mild, RETYPED + mild, agreement)
-    assert diff(run, "--breaking") == (0, f"{SHOWN}      {said}\n\nwarning: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}      {said}\n\nwarning: 1 breaking change for sssa (wire)\n")
 
 
 def test_an_acceptance_from_before_was_of_another_change(run: Run, both: Path) -> None:
@@ -245,12 +245,13 @@ def test_json(run: Run, both: Path) -> None:
     assert [error.message for error in jsonschema_rs.validator_for(schema).iter_errors(data)] == []
     (change,) = data["changes"]
     assert (status, change["breaks"], change["accepted"]) == (1, ["sssa"], None)
-    assert [(one["partner"], one["why"][:10], one["agreed"]) for one in change["because"]] == [
-        ("sssa", "gives sssa", None)
+    assert [(one["partner"], one["category"], one["why"][:10], one["agreed"]) for one in change["because"]] == [
+        ("sssa", "wire", "gives sssa", None)
     ]
     assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
+        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note"},
         "fails": True,
         "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],
@@ -297,4 +298,4 @@ def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
         )
         assert ran.out.endswith(f"\nwarning: cannot be judged: `{broken}` cannot be read\n")
         (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")
-    assert "breaks sssa: `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
+    assert "breaks sssa (wire): `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out

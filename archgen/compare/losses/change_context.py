@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
+from archgen.compare.losses.output_heirs import find_heirs
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
+from archgen.model.review_settings import BreakCategory
 
 _MAX_NAMES = 4
 """Maximal number of elements named in one sentence; the rest is counted."""
@@ -23,11 +25,12 @@ _MAX_NAMES = 4
 
 @dataclass(frozen=True, slots=True)
 class PartnerLoss:
-    """What a partner loses by the change at an index of `ChangeContext.changes`. `reason` is that of `PartnerBreak`."""
+    """What a partner loses by the change at an index of `ChangeContext.changes`; the rest is that of `PartnerBreak`."""
 
     change_index: int
     partner: str
     reason: str
+    category: BreakCategory = "wire"
 
 
 @dataclass
@@ -106,9 +109,17 @@ class ChangeContext:
         return frozenset(owner for owner in owner_ids if owner and len(owner_ids) == 1)
 
     def shared_losses(
-        self, indices: Iterable[int], parts_by_partner: Mapping[str, Sequence[str]], reason_template: str, verb: str
+        self,
+        indices: Iterable[int],
+        parts_by_partner: Mapping[str, Sequence[str]],
+        reason_template: str,
+        verb: str,
+        category: BreakCategory = "promise",
     ) -> Iterator[PartnerLoss]:
-        """Yield one loss for each partner who does not own a change; `{}` in `why` becomes their parts and `verb`."""
+        """Yield one loss for each partner who does not own a change; `{}` in `why` becomes their parts and `verb`.
+
+        Most of what partners share are promises: deadlines, hosts, links.
+        """
         for change_index in indices:
             other_parts = {
                 partner: parts_by_partner[partner]
@@ -122,12 +133,14 @@ class ChangeContext:
             reason_text = reason_template.replace(
                 "{}", f"{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}"
             )
-            yield from (PartnerLoss(change_index, partner, reason_text) for partner in other_parts)
+            yield from (PartnerLoss(change_index, partner, reason_text, category) for partner in other_parts)
 
-    def losses_of_partner(self, indices: Iterable[int], partner: str, reason_text: str) -> Iterator[PartnerLoss]:
+    def losses_of_partner(
+        self, indices: Iterable[int], partner: str, reason_text: str, category: BreakCategory = "wire"
+    ) -> Iterator[PartnerLoss]:
         """Yield a loss of a partner for each change that is not its own."""
         yield from (
-            PartnerLoss(change_index, partner, reason_text)
+            PartnerLoss(change_index, partner, reason_text, category)
             for change_index in indices
             if partner not in self.owners_of_change(change_index)
         )
@@ -159,17 +172,57 @@ class ChangeContext:
         """Return what written nodes publish and serve, before and after, by common node and port ("" for internal
         ones).
         """
-        return self._collect_offered(self.before, self.matched_ids), self._collect_offered(self.after, MatchedIds())
+        # A node that is only planned now was a program before: what it offered is gone. One that was planned all along
+        # offered nothing else.
+        real_nodes = {
+            self.matched_ids.common_id("node", node.id)
+            for node in self.before.nodes.values()
+            if node.status != "planned"
+        }
+        shelved_nodes = {
+            node.id for node in self.after.nodes.values() if node.status == "planned" and node.id in real_nodes
+        }
+        return (
+            self._collect_offered(self.before, self.matched_ids, frozenset()),
+            self._collect_offered(self.after, MatchedIds(), shelved_nodes),
+        )
 
     def _collect_offered(
-        self, architecture: Architecture, matched_ids: MatchedIds
+        self, architecture: Architecture, matched_ids: MatchedIds, shelved_nodes: Collection[str]
     ) -> Mapping[tuple[str, str], list[Endpoint]]:
         endpoints: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
         for endpoint in architecture.endpoints:
-            if endpoint.use in {"publishes", "serves"} and architecture.nodes[endpoint.node].written:
+            is_real = architecture.nodes[endpoint.node].written and endpoint.node not in shelved_nodes
+            if endpoint.use in {"publishes", "serves"} and is_real:
                 port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
+
+    @cached_property
+    def output_heirs(self) -> Mapping[str, str]:
+        """Return the removed outputs that live on as new ones on the same wire, with the ids of these."""
+        return find_heirs(self.versions, lambda: self.offered_endpoints)
+
+    def lasting_outputs(self) -> Iterator[tuple[str, str, Mapping[str, list[str]]]]:
+        """Yield the outputs that are still there, by their ids before and after, with the inputs of the partners who own
+        neither of both, and needed them.
+        """
+        for output, readers in sorted(self.versions.connections_before.readers_by_output.items()):
+            new_output = self.output_heirs.get(output, output)
+            if ("output", new_output) in self.versions.elements_after:
+                inputs = self.foreign_readers(output, readers)
+                if inputs:
+                    yield output, new_output, inputs
+
+    def foreign_readers(self, output_id: str, readers: Iterable[str]) -> Mapping[str, list[str]]:
+        """Return those of the inputs that needed an output, by partner, without the partner who owns the output."""
+        lasting_owners = self.lasting_owners("output", output_id)
+        inputs_by_partner: dict[str, list[str]] = defaultdict(list)
+        for reader in sorted(filter(self.needs_source, readers)):
+            partner = self.owner_before("input", reader)
+            if partner and partner not in lasting_owners:
+                inputs_by_partner[partner].append(reader)
+        return dict(sorted(inputs_by_partner.items()))
 
     def port_change_indices(self, node_id: str, port_id: str, *keys: str) -> list[int]:
         """Return the indices of changes of what a node says of a component's port, or of its internal ones if `port` is
