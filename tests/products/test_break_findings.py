@@ -72,7 +72,7 @@ def project(folder: Path, **replaced: tuple[str, str]) -> ProjectVersion:
             ["a.yaml:9:64 eye.publishes.stop breaks b (wire)"],
         ),
         # What is gone stood in its component, in its group, or in its file.
-        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, ["a.yaml:5:7 sense.eye.stop breaks b (wire)"]),
+        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, ["a.yaml:5:7 sense.eye.stop breaks b (wire, promise)"]),
         # A message is a file.
         ({"Stop": ("uint8 what", "uint16 what")}, ["msg/m_msgs/msg/Stop.msg:1:1 m_msgs/msg/Stop breaks b (wire)"]),
         ({"b": ("rate: 50 Hz", "rate: 40 Hz")}, []),

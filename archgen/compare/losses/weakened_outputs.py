@@ -25,6 +25,7 @@ class OutputPromise(NamedTuple):
     """What the owner of an output says of when it is sent, all its nodes together; rate in Hz, durations in ns."""
 
     rate: Fraction | None
+    is_steady: bool
     gap: Fraction | None
     every: int
     throttle: Fraction
@@ -84,16 +85,15 @@ class _PromisedOutputs:
     def read_promise(self, output_id: str) -> OutputPromise:
         """Return what is written of an output, whether its component says it or its nodes."""
         component_id = output_id.rpartition(".")[0]
-        node_timings = [
-            self._architecture.nodes[node_id].timing.get(component_id)
-            for node_id in dict.fromkeys(self._nodes_by_output.get(output_id, ()))
-        ]
-        timings = [timing or Timing() for timing in node_timings]
-        timings = timings or [self._architecture.components[component_id].timing or Timing()]
+        own_timing = self._architecture.components[component_id].timing or Timing()
+        node_ids = dict.fromkeys(self._nodes_by_output.get(output_id, ()))
+        nodes = [self._architecture.nodes[node_id] for node_id in node_ids]
+        timings = [node.timing.get(component_id) or own_timing for node in nodes] or [own_timing]
         outputs = [timing.outputs.get(output_id, OutputTiming()) for timing in timings]
         rates = [_effective_rate(timing) for timing in timings]
         return OutputPromise(
             rate=sum((rate for rate in rates if rate), Fraction(0)) if all(rates) else None,
+            is_steady=all(timing.behaviour in {None, "periodic"} for timing in timings),
             gap=_largest(output.max_gap for output in outputs),
             every=max(timing.every or 1 for timing in timings),
             throttle=_largest(timing.throttle for timing in timings) or Fraction(0),
@@ -122,12 +122,14 @@ def _compare_promises(old: OutputPromise, new: OutputPromise) -> Iterator[Weaken
             else f"no rate any more (it was {format_rate(old.rate)})"
         )
         yield Weakening(words, (".rate", ".behaviour"))
+    if old.rate and old.is_steady and new.rate and not new.is_steady:
+        yield Weakening("no steady rate any more, but messages when something makes it run", (".behaviour",))
     if new.is_conditional and not old.is_conditional:
         yield Weakening("messages only on condition, no longer at each run", (".conditional",))
-    # Where no gap is written, what is sent at each run has that of its rate.
-    old_gap = old.gap or (
-        Fraction(_NS_PER_SECOND) / old.rate if old.rate and new.gap and not old.is_conditional else None
-    )
+    old_gap = old.gap
+    if old.rate and new.gap and not (old_gap or old.is_conditional):
+        # Where no gap was written, each run sends something. A run may come late; a longer gap leaves one out.
+        old_gap = 2 * Fraction(_NS_PER_SECOND) / old.rate
     if old_gap and (new.gap or old_gap) > old_gap:
         yield Weakening(
             f"gaps of {format_duration(new.gap or old_gap)} instead of {format_duration(old_gap)}", (".max_gap",)
