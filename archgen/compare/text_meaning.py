@@ -69,10 +69,16 @@ def _fold_word(word: str) -> str:
 
 
 def _list_measures(text: str) -> list[str]:
-    return [token for token in _list_tokens(text) if _is_measure(token)]
+    """Return the words of measure in a text, each with the number or sign in front of it: `22 objects` is no measure."""
+    tokens = _list_tokens(text)
+    pairs = zip(["", *tokens], tokens, strict=False)
+    return [word for previous, token in pairs if _is_measure(token) for word in (_keep_number(previous), token) if word]
+
+
+def _keep_number(token: str) -> str:
+    return "" if token[:1].isalpha() or token[:1] == "_" else token
 
 
 def _is_measure(token: str) -> bool:
     folded_token = token.casefold()
-    is_word = folded_token[:1].isalpha() or folded_token[:1] == "_"
-    return not is_word or folded_token in _MEASURES or folded_token.removesuffix("s") in _MEASURES
+    return folded_token in _MEASURES or folded_token.removesuffix("s") in _MEASURES

@@ -50,7 +50,9 @@ def test_units_signs_and_numbers_change_what_a_text_means(before: str, after: st
         ("Finds persons, in metres", "Looks for people, in metres", False),
         ("Finds persons, in metres", "Finds persons, in feet", True),
         ("Finds persons", "Finds persons in millimetres", True),
-        ("Finds 20 persons", "Finds 5 persons", True),
+        ("Finds 20 persons", "Finds 5 persons", False),
+        ("Finds persons up to 20 m", "Finds persons up to 5 m", True),
+        ("Turns along +x", "Turns along -x", True),
         ("Finds a person", "Finds the person", False),
     ],
 )

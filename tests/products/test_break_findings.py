@@ -85,3 +85,21 @@ def test_a_break_stands_where_the_change_is(
     breaks = find_breaks(compare_named_versions(before, after), after.checked_project)
     assert [f"{finding.span} {finding.element} {finding.message.split(':')[0]}" for finding in breaks] == places
     assert all(finding.help for finding in breaks)
+
+
+@pytest.mark.parametrize(
+    ("change", "severity", "category"),
+    [
+        ({"a": ("topic: /stop", "topic: /halt")}, "warning", "wire"),
+        ({"a": ("period: 100 ms", "period: 400 ms")}, "error", "promise"),
+        ({"Stop": ("uint8 what", "uint8 what  # 0 is left")}, None, ""),
+    ],
+)
+def test_a_break_has_the_severity_of_its_category(
+    tmp_path: Path, change: dict[str, tuple[str, str]], severity: str | None, category: str
+) -> None:
+    policy = ("project: {id: mini}\n", "project: {id: mini}\nreview: {breaking: {promise: error}}\n")
+    before, after = project(tmp_path / "before"), project(tmp_path / "after", archgen=policy, **change)
+    breaks = find_breaks(compare_named_versions(before, after), after.checked_project)
+    assert [str(finding.severity) for finding in breaks] == ([severity] if severity else [])
+    assert all(finding.message.startswith(f"breaks b ({category}): ") for finding in breaks)
