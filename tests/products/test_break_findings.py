@@ -92,6 +92,8 @@ def test_a_break_stands_where_the_change_is(
     [
         ({"a": ("topic: /stop", "topic: /halt")}, "warning", "wire"),
         ({"a": ("period: 100 ms", "period: 400 ms")}, "error", "promise"),
+        # Of one change that breaks in two categories the graver counts.
+        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, "error", "wire, promise"),
         ({"Stop": ("uint8 what", "uint8 what  # 0 is left")}, None, ""),
     ],
 )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
@@ -31,6 +32,14 @@ class PartnerLoss:
     partner: str
     reason: str
     category: BreakCategory = "wire"
+
+
+class LastingOutput(NamedTuple):
+    """An output that is there in both versions, by its common id before and after: these differ if it has an heir."""
+
+    id: str
+    new_id: str
+    inputs_by_partner: Mapping[str, list[str]]
 
 
 @dataclass
@@ -116,7 +125,8 @@ class ChangeContext:
         verb: str,
         category: BreakCategory = "promise",
     ) -> Iterator[PartnerLoss]:
-        """Yield one loss for each partner who does not own a change; `{}` in `why` becomes their parts and `verb`.
+        """Yield one loss for each partner who does not own a change; the last `{}` of the template becomes
+        their parts and `verb`.
 
         Most of what partners share are promises: deadlines, hosts, links.
         """
@@ -130,9 +140,9 @@ class ChangeContext:
                 f"{tick_sorted_names(part_names)} of {partner}" for partner, part_names in other_parts.items()
             ]
             has_many = sum(map(len, other_parts.values())) != 1
-            reason_text = reason_template.replace(
-                "{}", f"{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}"
-            )
+            # The last one: what is quoted in front of it may have braces of its own.
+            lead, _, rest = reason_template.rpartition("{}")
+            reason_text = f"{lead}{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}{rest}"
             yield from (PartnerLoss(change_index, partner, reason_text, category) for partner in other_parts)
 
     def losses_of_partner(
@@ -172,28 +182,26 @@ class ChangeContext:
         """Return what written nodes publish and serve, before and after, by common node and port ("" for internal
         ones).
         """
-        # A node that is only planned now was a program before: what it offered is gone. One that was planned all along
-        # offered nothing else.
-        real_nodes = {
-            self.matched_ids.common_id("node", node.id)
-            for node in self.before.nodes.values()
-            if node.status != "planned"
+        old_endpoints = self._collect_offered(self.before, self.matched_ids)
+        # Where a program was, a plan offers nothing. What was only planned all along is held against its plan.
+        real_keys = {
+            key
+            for (node_id, port), ends in old_endpoints.items()
+            for key in (node_id, port)
+            if any(self.before.nodes[end.node].status != "planned" for end in ends)
         }
-        shelved_nodes = {
-            node.id for node in self.after.nodes.values() if node.status == "planned" and node.id in real_nodes
+        return old_endpoints, {
+            (node_id, port): ends
+            for (node_id, port), ends in self._collect_offered(self.after, MatchedIds()).items()
+            if self.after.nodes[node_id].status != "planned" or real_keys.isdisjoint({node_id, port} - {""})
         }
-        return (
-            self._collect_offered(self.before, self.matched_ids, frozenset()),
-            self._collect_offered(self.after, MatchedIds(), shelved_nodes),
-        )
 
     def _collect_offered(
-        self, architecture: Architecture, matched_ids: MatchedIds, shelved_nodes: Collection[str]
+        self, architecture: Architecture, matched_ids: MatchedIds
     ) -> Mapping[tuple[str, str], list[Endpoint]]:
         endpoints: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
         for endpoint in architecture.endpoints:
-            is_real = architecture.nodes[endpoint.node].written and endpoint.node not in shelved_nodes
-            if endpoint.use in {"publishes", "serves"} and is_real:
+            if endpoint.use in {"publishes", "serves"} and architecture.nodes[endpoint.node].written:
                 port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
@@ -201,18 +209,20 @@ class ChangeContext:
     @cached_property
     def output_heirs(self) -> Mapping[str, str]:
         """Return the removed outputs that live on as new ones on the same wire, with the ids of these."""
-        return find_heirs(self.versions, lambda: self.offered_endpoints)
+        return find_heirs(self.versions, (self.before, self.after), self.matched_ids)
 
-    def lasting_outputs(self) -> Iterator[tuple[str, str, Mapping[str, list[str]]]]:
-        """Yield the outputs that are still there, by their ids before and after, with the inputs of the partners who own
-        neither of both, and needed them.
-        """
-        for output, readers in sorted(self.versions.connections_before.readers_by_output.items()):
-            new_output = self.output_heirs.get(output, output)
-            if ("output", new_output) in self.versions.elements_after:
-                inputs = self.foreign_readers(output, readers)
-                if inputs:
-                    yield output, new_output, inputs
+    @cached_property
+    def lasting_outputs(self) -> Sequence[LastingOutput]:
+        """Return the outputs that partners other than their owner needed, and that are still there or have an heir."""
+        outputs = (
+            LastingOutput(output, self.output_heirs.get(output, output), self.foreign_readers(output, readers))
+            for output, readers in sorted(self.versions.connections_before.readers_by_output.items())
+        )
+        return [
+            output
+            for output in outputs
+            if output.inputs_by_partner and ("output", output.new_id) in self.versions.elements_after
+        ]
 
     def foreign_readers(self, output_id: str, readers: Iterable[str]) -> Mapping[str, list[str]]:
         """Return those of the inputs that needed an output, by partner, without the partner who owns the output."""

@@ -25,7 +25,7 @@ def find_changed_meanings(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def _find_rewritten_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
-    for output, new_output, inputs_by_partner in context.lasting_outputs():
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
         words = _compare_texts(*_read_texts(context, ("output", output), ("output", new_output), "description"))
         if words:
             indices = context.change_indices("output", new_output, "description") or find_output_causes(context, output)
@@ -36,7 +36,7 @@ def _find_rewritten_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
 def _find_rewritten_components(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find components whose text gives other units, frames or numbers: only these say what is in their outputs."""
     inputs_by_component: dict[str, dict[str, list[str]]] = {}
-    for output, new_output, inputs_by_partner in context.lasting_outputs():
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
         if output == new_output:
             readers = inputs_by_component.setdefault(output.rpartition(".")[0], {})
             for partner, inputs in inputs_by_partner.items():

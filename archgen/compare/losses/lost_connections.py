@@ -40,7 +40,7 @@ def find_renamed_sources(context: ChangeContext) -> Iterator[PartnerLoss]:
     What else became of the wire is told by the other losses.
     """
     sources: dict[tuple[int, str], list[_RenamedSource]] = defaultdict(list)
-    for output, new_output, inputs_by_partner in context.lasting_outputs():
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
         old_id = context.old_id("output", output)
         for index in find_output_causes(context, output) if old_id != new_output else ():
             for partner, inputs in inputs_by_partner.items():

@@ -6,18 +6,20 @@ heir, however the diff presents it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 
 from archgen.compare.compared_elements import ComparedElement
+from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
+from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 
-EndpointTable = Mapping[tuple[str, str], Sequence[Endpoint]]
-"""What written nodes offer, by node and port."""
+Wire = frozenset[tuple[object, ...]]
+"""What the nodes of an output offer: names, messages, QoS, and whether a program does so or only a plan."""
 
 
 def find_heirs(
-    versions: VersionPair, read_endpoints: Callable[[], tuple[EndpointTable, EndpointTable]]
+    versions: VersionPair, architectures: tuple[Architecture, Architecture], matched_ids: MatchedIds
 ) -> Mapping[str, str]:
     """Return for each removed output that somebody read the new output on the same wire, if there is exactly one."""
     old_elements, new_elements = versions.elements_before, versions.elements_after
@@ -28,10 +30,13 @@ def find_heirs(
     ]
     if not (new_outputs and lost_outputs):
         return {}
-    wires_before, wires_after = (_collect_wires(endpoints) for endpoints in read_endpoints())
+    wires_before, wires_after = (
+        _collect_wires(architectures[0], matched_ids),
+        _collect_wires(architectures[1], MatchedIds()),
+    )
     heirs = {}
     for name in lost_outputs:
-        wire = wires_before.get(name, frozenset())
+        wire: Wire = wires_before.get(name, frozenset())
         candidates = [
             each.id
             for each in new_outputs
@@ -43,20 +48,22 @@ def find_heirs(
     return heirs
 
 
-def _collect_wires(endpoints: EndpointTable) -> Mapping[str, frozenset[object]]:
-    """Return for each port what its nodes offer: names, messages and QoS."""
-    wires: dict[str, set[object]] = {}
-    for (_, port), port_endpoints in endpoints.items():
-        wires.setdefault(port, set()).update(_describe_endpoints(port_endpoints))
+def _collect_wires(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[str, Wire]:
+    """Return the wire of each output of a written node, by common id."""
+    wires: dict[str, set[tuple[object, ...]]] = {}
+    for endpoint in architecture.endpoints:
+        node = architecture.nodes[endpoint.node]
+        if endpoint.use in {"publishes", "serves"} and endpoint.port and node.written:
+            wire = wires.setdefault(matched_ids.common_id("output", endpoint.port), set())
+            wire.add((*_describe_endpoint(endpoint), node.status == "planned"))
     return {port: frozenset(wire) for port, wire in wires.items()}
 
 
-def _describe_endpoints(endpoints: Iterable[Endpoint]) -> Iterable[object]:
-    for endpoint in endpoints:
-        qos = endpoint.qos
-        kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
-        durations = tuple(each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration))
-        yield endpoint.name, endpoint.flow, endpoint.message, kept_qos, durations
+def _describe_endpoint(endpoint: Endpoint) -> tuple[object, ...]:
+    qos = endpoint.qos
+    durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
+    kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
+    return endpoint.name, endpoint.flow, endpoint.message, *kept_qos, *durations
 
 
 def _is_same_output(old_output: ComparedElement, new_output: ComparedElement) -> bool:
@@ -64,8 +71,10 @@ def _is_same_output(old_output: ComparedElement, new_output: ComparedElement) ->
     return all(old_output.values.get(key) == new_output.values.get(key) for key in ("type", "medium"))
 
 
-def _continues_wire(old_id: str, old_wire: frozenset[object], new_id: str, new_wire: frozenset[object]) -> bool:
+def _continues_wire(old_id: str, old_wire: Wire, new_id: str, new_wire: Wire) -> bool:
     if old_wire:
-        return old_wire <= new_wire
+        # A program may take the place of a plan, but no plan that of a program.
+        planned_wire = {(*offer[:-1], True) for offer in new_wire}
+        return old_wire <= new_wire | planned_wire
     # Without a node there is no wire yet, and no program: then the name says what it is.
     return old_id.rpartition(".")[2] == new_id.rpartition(".")[2]

@@ -49,7 +49,7 @@ def find_weakened_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find outputs of which partners were promised more than now."""
     old_version, new_version = _PromisedOutputs(context.before), _PromisedOutputs(context.after)
     outputs: dict[_SharedWeakening, dict[str, Mapping[str, list[str]]]] = defaultdict(dict)
-    for output, new_output, inputs_by_partner in context.lasting_outputs():
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
         old_id = context.old_id("output", output)
         old_promise, new_promise = old_version.read_promise(old_id), new_version.read_promise(new_output)
         # Of what could not be read nobody knows what it promises.

@@ -99,6 +99,10 @@ SPLITS = {
         [*SPLIT, FOLLOWED, ("row_eye, publishes: {rows: {topic: /rows", "row_eye, publishes: {rows: {topic: /lines")],
         [TAKEN],
     ),
+    "a split with a part that is only planned": (
+        [*SPLIT, FOLLOWED, ("{implements: row_eye", "{status: planned, implements: row_eye")],
+        [TAKEN],
+    ),
     "a split with another type": ([*SPLIT, FOLLOWED, ("{rows: {type: Rows", "{rows: {type: Lines")], [TAKEN]),
     "an output that moves to a topic which another one had": (
         [*SPLIT[::2], ("implements: row_eye, publishes: {rows: {topic: /rows}}", "implements: guard"), ("rows: eye.rows", "rows: eye.persons")],
@@ -215,6 +219,13 @@ WIRES = {
             "wire orsa: takes the topic `/rows` from orsa, whose `plan` subscribes to it; nobody offers it under that name any more",
         ],
     ),
+    "a planned publisher in the place of one that is there": (
+        [("  eye: {impl", "  fresh: {status: planned, package: other, executable: one, impl")],
+        [
+            "wire kite: takes the topic `/persons` from kite, whose `guard` subscribes to it; nobody offers it under that name any more",
+            "wire orsa: takes the topic `/rows` from orsa, whose `plan` subscribes to it; nobody offers it under that name any more",
+        ],
+    ),
     "topics that change places": (
         [("{persons: {topic: /persons}, rows: {topic: /rows}}", "{persons: {topic: /rows}, rows: {topic: /persons}}")],
         [
@@ -280,6 +291,7 @@ def test_what_was_weak_before_is_no_weaker(compared: Compared) -> None:
     assert losses(compared, weak, [(", max_gap: 1 s", "")]) == [gone]
     planned = ROBOT.replace("eye: {impl", "eye: {status: planned, impl")
     assert losses(compared, planned, [("status: planned, ", "")]) == []
+    assert losses(compared, planned, [*SPLIT, FOLLOWED]) == [HEIR]
     undocumented = ROBOT.replace(', description: "Rows, offsets in metres"', "")
     assert losses(compared, undocumented, [("{type: Rows}", "{type: Rows, description: in mm}")]) == []
     plain = ROBOT.replace("  distro: jazzy\n", "")
@@ -290,3 +302,12 @@ def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:
     own = ROBOT.replace("owner: kite", "owner: vega").replace("owner: orsa", "owner: vega")
     edits = [("jazzy", "humble"), ("10 Hz", "1 Hz"), ("in metres", "in feet"), ("10 kB", "1 MB"), ("# m,", "# mm,")]
     assert losses(compared, own, edits) == []
+
+
+def test_hostile_words_stay_inside_their_ticks(compared: Compared) -> None:
+    evil = r"'` {} <b>[y](z) # ` {0}'"
+    (line,) = losses(compared, ROBOT, [('"Rows, offsets in metres"', evil)])
+    assert line == (
+        "meaning orsa: says of `sense.eye.rows` `' {} <b>[y](z) # ' {0}` instead of `Rows, offsets in metres`; "
+        f"{ROWS_READ}"
+    )
