@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
+from archgen.compare.key_phrases import format_value
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures, quote_difference
 from archgen.diagnostics.common_wording import join_words
 
+_MEASURE_PARAMETER = re.compile(r"^parameters\.(?:.*[._])?(?:frame|frame_id|units?)$")
 _COMPONENT_TEXTS = ("functionality", "description")
 
 
@@ -21,6 +25,7 @@ def find_changed_meanings(context: ChangeContext) -> Iterator[PartnerLoss]:
     """
     yield from _find_rewritten_outputs(context)
     yield from _find_rewritten_components(context)
+    yield from _find_changed_frames(context)
     yield from _find_rewritten_definitions(context)
 
 
@@ -35,13 +40,7 @@ def _find_rewritten_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 def _find_rewritten_components(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find components whose text gives other units, frames or numbers: only these say what is in their outputs."""
-    inputs_by_component: dict[str, dict[str, list[str]]] = {}
-    for output, new_output, inputs_by_partner in context.lasting_outputs:
-        if output == new_output:
-            readers = inputs_by_component.setdefault(output.rpartition(".")[0], {})
-            for partner, inputs in inputs_by_partner.items():
-                readers.setdefault(partner, []).extend(inputs)
-    for component, readers in inputs_by_component.items():
+    for component, readers in _inputs_by_component(context).items():
         key = "component", component
         for text_key in _COMPONENT_TEXTS:
             before, after = _read_texts(context, key, key, text_key)
@@ -50,6 +49,37 @@ def _find_rewritten_components(context: ChangeContext) -> Iterator[PartnerLoss]:
                 indices = context.change_indices(*key, text_key)
                 reason_text = f"says of {tick_name(component)} {words}; {{}} it"
                 yield from context.shared_losses(indices, readers, reason_text, "reads", "meaning")
+
+
+def _find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find parameters of nodes that name a frame or a unit, and have another value."""
+    changes = [
+        (index, change)
+        for index, change in enumerate(context.changes)
+        if change.element_kind == "node" and change.before is not None and _MEASURE_PARAMETER.search(change.key or "")
+    ]
+    inputs_by_component = _inputs_by_component(context) if changes else {}
+    for index, change in changes:
+        element = context.versions.elements_before.get(("node", change.element_id))
+        readers: dict[str, list[str]] = defaultdict(list)
+        for component in element.component_refs if element else ():
+            for partner, inputs in inputs_by_component.get(component, {}).items():
+                readers[partner] += inputs
+        name = tick_name((change.key or "").removeprefix("parameters."))
+        values = f"{format_value(change.after) if change.after is not None else 'nothing'} instead of {format_value(change.before)}"
+        reason_text = f"sets {name} of {tick_name(change.element_id)} to {values}; {{}} what it sends"
+        yield from context.shared_losses([index], readers, reason_text, "reads", "meaning")
+
+
+def _inputs_by_component(context: ChangeContext) -> Mapping[str, Mapping[str, list[str]]]:
+    """Return for each component the inputs of other partners that read its outputs, by partner."""
+    inputs_by_component: dict[str, dict[str, list[str]]] = {}
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
+        if output == new_output:
+            readers = inputs_by_component.setdefault(output.rpartition(".")[0], {})
+            for partner, inputs in inputs_by_partner.items():
+                readers.setdefault(partner, []).extend(inputs)
+    return inputs_by_component
 
 
 def _find_rewritten_definitions(context: ChangeContext) -> Iterator[PartnerLoss]:

@@ -304,6 +304,18 @@ def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:
     assert losses(compared, own, edits) == []
 
 
+def test_a_frame_that_a_node_is_told_counts_as_meaning(compared: Compared) -> None:
+    told = ROBOT.replace("eye: {impl", "eye: {parameters: {camera_frame: base_link, gain: 3}, impl")
+    read = "`drive.guard.persons` of kite and `nav.plan.rows` of orsa read what it sends"
+    assert losses(compared, told, [("base_link, gain", "map, gain")]) == everybody(
+        f"sets `camera_frame` of `eye` to `map` instead of `base_link`; {read}", "meaning"
+    )
+    assert losses(compared, told, [("camera_frame: base_link, ", "")]) == everybody(
+        f"sets `camera_frame` of `eye` to nothing instead of `base_link`; {read}", "meaning"
+    )
+    assert losses(compared, told, [("gain: 3", "gain: 4, other_frame: map")]) == []
+
+
 def test_hostile_words_stay_inside_their_ticks(compared: Compared) -> None:
     evil = r"'` {} <b>[y](z) # ` {0}'"
     (line,) = losses(compared, ROBOT, [('"Rows, offsets in metres"', evil)])
