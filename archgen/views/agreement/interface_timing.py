@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.timing.analysis import ChainResult, EventPace
 from archgen.timing.figures.timing_values import TimingValue
@@ -13,13 +15,14 @@ from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
 from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, measure_limit
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Inlines
 from archgen.views.timing import rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 TermFact = tuple[str, Inlines]
-_TIER_NAMES = {"declared": "declared", "dedicated": "derived, a core of its own assumed"}
+_NO_TIMING = Timing()
 _SIZE_PARTS = {
     "topic": (("Size", ""),),
     "service": (("Size of a request", "_Request"), ("Size of an answer", "_Response")),
@@ -27,72 +30,141 @@ _SIZE_PARTS = {
 }
 
 
-def timing_facts(
+def promise_timing(
     lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
-) -> Iterator[TermFact]:
+) -> Iterator[PromiseRow]:
     """Yield rate, largest gap, size and traffic; for a service or action, how soon it answers."""
     if interface.flow == "physical":
         return
     timed = lookup.timing
+    givers = list_givers(lookup, interface)
+    if timed is not None:
+        for endpoint in givers:
+            suffix = f" of {endpoint.node}" if len(givers) > 1 else ""
+            yield from _GivenPace(lookup, timed, activity_names, endpoint, suffix).list_rows()
+    for name, part in _SIZE_PARTS[interface.flow]:
+        size = _message_size(lookup, interface, part)
+        if size.bytes is not None or interface.flow == "topic":
+            yield _size_row(name, size)
+    if timed is not None and interface.flow == "topic":
+        yield PromiseRow("Traffic", expected=_traffic_runs(timed, interface))
+
+
+def list_givers(lookup: Lookup, interface: PartnerInterface) -> tuple[Endpoint, ...]:
+    """Return the giving endpoints of nodes that somebody wrote, else those of the planned ones."""
     written_givers = [
         endpoint for endpoint in interface.giver_endpoints if lookup.architecture.nodes[endpoint.node].written
     ]
-    if timed is not None:
-        for endpoint in written_givers or interface.giver_endpoints:
-            suffix = f" of {endpoint.node}" if len(written_givers) > 1 else ""
-            yield from _rate_facts(
-                timed,
-                activity_builder.activity_of_endpoint(activity_names, endpoint),
-                endpoint,
-                suffix,
-            )
-    for name, part in _SIZE_PARTS[interface.flow]:
-        size = _message_size(lookup, interface, part)
-        if size.bytes is not None:
-            yield name, inline_text.to_inlines(_size_text(size))
-        elif interface.flow == "topic":
-            yield name, inline_text.message_to_inlines(f"not known: {size.why}", muted=True)
-    if timed is not None and interface.flow == "topic":
-        yield "Traffic", _traffic_text(timed, interface)
+    return tuple(written_givers) or interface.giver_endpoints
 
 
-def _rate_facts(timed: TimingLookup, activity: str, endpoint: Endpoint, suffix: str) -> Iterator[TermFact]:
-    if endpoint.flow == "topic":
-        pace = timed.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
-        yield f"Rate{suffix}", _rate_text(timed, activity, pace)
+def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
+    """Return what is written of the timing behind an endpoint."""
+    return lookup.architecture.nodes[endpoint.node].timing.get(endpoint.component or "", _NO_TIMING)
+
+
+def find_broken_gap(lookup: Lookup, activity_names: activity_builder.ActivityNames, endpoint: Endpoint) -> str:
+    """Return a sentence where a promised largest gap cannot be kept, else nothing."""
+    output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "")
+    if lookup.timing is None or output_timing is None or output_timing.max_gap is None:
+        return ""
+    activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
+    pace = lookup.timing.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
+    if not output_timing.conditional or pace.gap.value is None or pace.gap.value <= output_timing.max_gap.value:
+        return ""
+    figure = value_format.display_duration(pace.gap)
+    return f"The promised largest gap of {output_timing.max_gap} cannot be kept: {figure} are expected."
+
+
+@dataclass(frozen=True, slots=True)
+class _GivenPace:
+    """What one endpoint gives, and how often. `suffix` names its node where several give."""
+
+    lookup: Lookup
+    timed: TimingLookup
+    activity_names: activity_builder.ActivityNames
+    endpoint: Endpoint
+    suffix: str
+
+    @property
+    def activity(self) -> str:
+        return activity_builder.activity_of_endpoint(self.activity_names, self.endpoint)
+
+    @property
+    def timing(self) -> Timing:
+        return find_giver_timing(self.lookup, self.endpoint)
+
+    def list_rows(self) -> Iterator[PromiseRow]:
+        if self.endpoint.flow != "topic":
+            yield self._answer_row()
+            return
+        pace = self.timed.analysis.outputs.get(
+            (self.activity, activity_builder.endpoint_key(self.endpoint)), EventPace(None)
+        )
+        output_timing = self.timing.outputs.get(self.endpoint.port or "", OutputTiming())
+        yield self._rate_row(pace, output_timing)
+        if output_timing.conditional:
+            yield PromiseRow(f"Sent{self.suffix}", inline_text.to_inlines("only when there is something to send"))
+        if self.timing.jitter:
+            jitter = self.timing.jitter
+            words = inline_text.to_inlines(f"up to {jitter}")
+            yield PromiseRow(f"Jitter{self.suffix}", words, strength={"jitter": measure_limit(jitter)})
         if pace.behaviour not in {"once", "on_demand"}:
-            yield f"Largest gap{suffix}", _gap_text(pace)
-        return
-    response = timed.analysis.responses.get(activity)
-    if response is None or response.worst.value is None:
-        yield f"Answers within{suffix}", inline_text.UNKNOWN_INLINES
-    else:
-        kind = _TIER_NAMES.get(response.tier, "derived")
-        yield (
-            f"Answers within{suffix}",
-            inline_text.to_inlines(value_format.display_duration(response.worst), Text(f" ({kind})", muted=True)),
+            yield self._gap_row(pace, output_timing)
+
+    def _rate_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
+        name, words = f"Rate{self.suffix}", rate_phrases.format_rate_words(pace)
+        if pace.rate.value is not None and not pace.inferred:
+            # "At each activation" is a promise of its own: an output that becomes conditional promises less.
+            strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
+            return PromiseRow(name, inline_text.to_inlines(words), self._rate_by_inputs(pace), strength)
+        if pace.behaviour in {"once", "on_demand"}:
+            is_written = self.timing.behaviour is not None
+            runs = inline_text.to_inlines(words)
+            return PromiseRow(name, runs) if is_written else PromiseRow(name, expected=runs)
+        return PromiseRow(name, expected=self._expected_rate(pace, words))
+
+    def _expected_rate(self, pace: EventPace, words: str) -> Inlines:
+        if pace.rate.value is None:
+            return ()
+        origins = value_format.describe_origins(self.timed.rate_origins.get(self.activity, ()))
+        source = f", follows from the rate of {origins.removeprefix('from ')}" if origins else ", computed"
+        return inline_text.to_inlines(f"{words}{source}")
+
+    def _rate_by_inputs(self, pace: EventPace) -> Inlines:
+        """Return what the inputs give, where that is another rate than the written one."""
+        by_inputs = self.timed.analysis.derived.get(self.activity)
+        if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
+            return ()
+        return inline_text.to_inlines(f"{value_format.display_rate(by_inputs.rate)}, follows from its inputs")
+
+    def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
+        # What is not conditional is sent at each activation: `max_gap` has no effect there.
+        limit = output_timing.max_gap if output_timing.conditional else None
+        words = value_format.display_duration(pace.gap)
+        is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
+        source = f", follows from when {self.activity} is activated and how long it takes" if pace.gap.value else ""
+        return PromiseRow(
+            f"Largest gap{self.suffix}",
+            inline_text.to_inlines(str(limit)) if limit else (),
+            inline_text.to_inlines(f"{words}{source}") if is_known else (),
+            {"gap": measure_limit(limit)} if limit else {},
         )
 
-
-def _rate_text(timed: TimingLookup, activity: str, pace: EventPace) -> Inlines:
-    rate_words = rate_phrases.format_rate_words(pace)
-    if rate_words == "?":
-        return inline_text.UNKNOWN_INLINES
-    if pace.rate.value is None:
-        return inline_text.to_inlines(rate_words)
-    if not pace.inferred:
-        return inline_text.to_inlines(rate_words, Text(" (written)", muted=True))
-    origins = value_format.describe_origins(timed.rate_origins.get(activity, ()))
-    return inline_text.to_inlines(rate_words, Text(f" (derived{f' {origins}' if origins else ''})", muted=True))
-
-
-def _gap_text(pace: EventPace) -> Inlines:
-    gap_words = value_format.display_duration(pace.gap)
-    return (
-        inline_text.UNKNOWN_INLINES
-        if pace.gap.value is None and gap_words == value_format.UNKNOWN_FIGURE
-        else inline_text.to_inlines(gap_words, Text(" (derived)", muted=True))
-    )
+    def _answer_row(self) -> PromiseRow:
+        name, limit = f"Answers within{self.suffix}", self.timing.response
+        if limit:
+            return PromiseRow(name, inline_text.to_inlines(str(limit)), strength={"response": measure_limit(limit)})
+        response = self.timed.analysis.responses.get(self.activity)
+        if response is None or response.worst.value is None:
+            return PromiseRow(name)
+        source = (
+            "its execution time, a core of its own assumed" if response.tier == "dedicated" else "the load of its host"
+        )
+        return PromiseRow(
+            name,
+            expected=inline_text.to_inlines(f"{value_format.display_duration(response.worst)}, follows from {source}"),
+        )
 
 
 def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> MessageSize:
@@ -100,19 +172,26 @@ def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> Mes
     return lookup.message_size(message, None if part else interface.type)
 
 
-def _size_text(size: MessageSize) -> str:
-    amount = value_format.display_bytes(TimingValue(Fraction(size.bytes or 0)))
-    return f"{'' if size.exact else 'at most '}{amount} ({'written' if size.written else 'computed'})"
+def _size_row(name: str, size: MessageSize) -> PromiseRow:
+    if size.bytes is None:
+        return PromiseRow(name)
+    amount = value_format.display_bytes(TimingValue(Fraction(size.bytes)))
+    words = amount if size.exact else f"at most {amount}"
+    if size.written:
+        return PromiseRow(name, inline_text.to_inlines(words), strength={"size": -size.bytes})
+    return PromiseRow(name, expected=inline_text.to_inlines(f"{words}, follows from the definition of the message"))
 
 
-def _traffic_text(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
+def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
     loads = ((name, timed.analysis.topics.get(name)) for name in interface.topic_names)
     traffic_phrases = [
         f"{value_format.display_traffic(load.published)}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
         for name, load in loads
         if load and load.published.value is not None
     ]
-    return inline_text.to_inlines(", ".join(traffic_phrases)) if traffic_phrases else inline_text.UNKNOWN_INLINES
+    return (
+        inline_text.to_inlines(f"{', '.join(traffic_phrases)}, follows from rate and size") if traffic_phrases else ()
+    )
 
 
 def find_chains_through(

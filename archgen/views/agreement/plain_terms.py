@@ -7,11 +7,12 @@ disagree about a rename. Most terms are derived (rates, gaps, chains) and no ele
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from archgen.compare.matched_ids import MatchedIds
 from archgen.timing.analysis import ChainResult
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import value_format
@@ -24,13 +25,16 @@ _NODE_FACTS = ("Rate", "Largest gap", "Answers within")
 class PlainTerm:
     """A term for comparing: `kind` sums it up in a word or two, `name` and `text` are shown.
 
-    `identity` is the text with the ids of the later revision: terms with one identity mean the same.
+    `identity` is the text with the ids of the later revision: terms with one identity mean the same. `is_expected` is
+    what nobody promises; `strength` is how much is promised.
     """
 
     kind: str
     name: str
     text: str
     identity: str
+    is_expected: bool = False
+    strength: PromiseStrength = field(default_factory=dict)
 
 
 def list_plain_terms(
@@ -38,14 +42,15 @@ def list_plain_terms(
 ) -> Mapping[str, PlainTerm]:
     """Return the terms by a key that survives new titles and ids. For the later revision no ids are matched."""
     terms = {"": _unchanged_term("title", "Title", interface_terms.title)}
-    terms |= _fact_terms(lookup, interface_terms, matched_ids)
+    terms |= _fact_terms(interface_terms, matched_ids)
+    for promise_row in interface_terms.promise_rows:
+        terms |= _promise_terms(lookup, promise_row, matched_ids)
     terms |= dict(_end_term(lookup, end, matched_ids) for end in interface_terms.ends)
     for row in interface_terms.field_rows or ():
         terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.terms)
     for chain in interface_terms.chains:
         title = lookup.architecture.chains[chain.id].title
-        key = f"chain {matched_ids.common_id('chain', chain.id)}"
-        terms[key] = _unchanged_term("chains", f"Chain {title}", _chain_figures(chain))
+        terms |= _chain_terms(chain, title, matched_ids.common_id("chain", chain.id))
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
@@ -59,9 +64,7 @@ def _unchanged_term(kind: str, name: str, text: str) -> PlainTerm:
     return PlainTerm(kind, name, text, text)
 
 
-def _fact_terms(
-    lookup: Lookup, interface_terms: InterfaceTerms, matched_ids: MatchedIds
-) -> Iterator[tuple[str, PlainTerm]]:
+def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
     interface = interface_terms.interface
     for name, value in interface_terms.facts:
         text = _plain_text(value)
@@ -70,12 +73,22 @@ def _fact_terms(
             identity = matched_ids.common_id("type", interface.type)
         elif name == "Message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
-        elif name.startswith(_NODE_FACTS):
-            # "derived from NODE". A topic that is called after a renamed component is not treated so: whoever
-            # subscribes to it has to follow.
-            identity = matched_ids.rename_in_text(text)
-        kind = name if name.startswith("QoS") else name.lower()
-        yield _fact_key(lookup, name, matched_ids), PlainTerm(kind, name, text, identity)
+        # Who else reads it binds neither of the two.
+        yield name, PlainTerm(name.lower(), name, text, identity, is_expected=name == "Also read by")
+
+
+def _promise_terms(lookup: Lookup, row: PromiseRow, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
+    key = _fact_key(lookup, row.name, matched_ids)
+    kind = row.name if row.name.startswith("QoS") else row.name.lower()
+    if row.promised:
+        text = _plain_text(row.promised)
+        yield f"promised {key}", PlainTerm(kind, f"{row.name} (promised)", text, text, strength=row.strength)
+    if row.expected:
+        # "follows from the rate of NODE". A topic that is called after a renamed component is not treated so: whoever
+        # subscribes to it has to follow.
+        text = _plain_text(row.expected)
+        identity = matched_ids.rename_in_text(text)
+        yield f"expected {key}", PlainTerm(kind, f"{row.name} (expected)", text, identity, is_expected=True)
 
 
 def _fact_key(lookup: Lookup, name: str, matched_ids: MatchedIds) -> str:
@@ -102,10 +115,14 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
     return key, _unchanged_term("who gives and takes", name, text)
 
 
-def _chain_figures(chain: ChainResult) -> str:
-    """Return a chain's bound, deadline and verdict in one line."""
-    deadline = f"; deadline {value_format.display_duration(chain.deadline)}" if chain.deadline else ""
-    return f"{value_format.display_duration(chain.bound)}{deadline}; {chain.verdict}"
+def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tuple[str, PlainTerm]]:
+    """Yield the deadline of a chain, which is promised, and its bound, which is expected."""
+    if chain.deadline and chain.deadline.value is not None:
+        text = value_format.display_duration(chain.deadline) + (", missed" if chain.verdict == "missed" else "")
+        strength: PromiseStrength = {"deadline": -chain.deadline.value, "in time": int(chain.verdict != "missed")}
+        yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, text, strength=strength)
+    text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
+    yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)
 
 
 def _plain_text(value: Inlines) -> str:
