@@ -8,6 +8,7 @@ from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
 from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 
@@ -45,7 +46,9 @@ def _summary_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
         _carried_runs(interface_terms.interface),
         _rate_runs(interface_terms),
         _version_runs(content, record),
-        _open_term_runs(interface_terms.open_terms, len(interface_terms.contradictions)),
+        _open_term_runs(
+            interface_terms.open_terms, len(interface_terms.contradictions), len(interface_terms.late_chains)
+        ),
     )
 
 
@@ -54,7 +57,7 @@ def _rate_runs(interface_terms: InterfaceTerms) -> Inlines:
     for row in interface_terms.promise_rows:
         if row.name.startswith(("Rate", "Answers within")) and (row.promised or row.expected):
             words = "answered within " if row.name.startswith("Answers") else ""
-            figure = (row.promised or row.expected)[0].text.partition(", follows from")[0].removesuffix(", computed")
+            figure = (row.promised or row.expected)[0].text.partition(SOURCE_PHRASE)[0].removesuffix(", computed")
             return inline_text.join_lines(
                 [
                     inline_text.to_inlines(f"{words}{figure}"),
@@ -82,10 +85,11 @@ def _carried_runs(interface: PartnerInterface) -> Inlines:
     return inline_text.join_lines(carried_parts) or inline_text.to_inlines(interface.flow)
 
 
-def _open_term_runs(open_terms: Sequence[str], contradiction_count: int) -> Inlines:
-    """Return what is still to be settled: the open terms, and the number of contradictions."""
+def _open_term_runs(open_terms: Sequence[str], contradiction_count: int, late_chain_count: int) -> Inlines:
+    """Return what is still to be settled: the open terms, and how many contradictions and late chains there are."""
     phrases = [", ".join(open_terms)] if open_terms else []
     phrases += [inline_text.count_noun(contradiction_count, "contradiction")] if contradiction_count else []
+    phrases += [inline_text.count_noun(late_chain_count, "late chain")] if late_chain_count else []
     return inline_text.to_inlines("; ".join(phrases)) if phrases else ()
 
 

@@ -16,7 +16,7 @@ from archgen.timing.system import activity_builder
 from archgen.views import inline_text
 from archgen.views.agreement import interface_timing, interface_versions, message_fields
 from archgen.views.agreement.missing_data import list_missing_data_duties
-from archgen.views.agreement.open_points import describe_open_term, find_contradictions
+from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, measure_qos
 from archgen.views.lookup import Lookup
@@ -63,6 +63,8 @@ class InterfaceTerms:
     """Sentences on what holds where data is late or missing."""
     contradictions: tuple[str, ...]
     """Sentences on what does not fit together between the two."""
+    late_chains: tuple[str, ...]
+    """Sentences on chains through the interface that miss their deadline."""
     shared_notes: tuple[str, ...]
     """Sentences on what both partners, or a partner and a third one, are responsible for together."""
 
@@ -75,7 +77,7 @@ class InterfaceTerms:
     @property
     def open_points(self) -> tuple[str, ...]:
         """Return a sentence for each term that is still to be settled, and for each contradiction."""
-        return (*map(describe_open_term, self._list_open_names()), *self.contradictions)
+        return (*map(describe_open_term, self._list_open_names()), *self.contradictions, *self.late_chains)
 
     def _list_open_names(self) -> Iterator[str]:
         for name, value in self.facts:
@@ -108,7 +110,8 @@ def gather_terms(
         chains,
         tuple(_requirement_runs(lookup, interface)),
         tuple(list_missing_data_duties(lookup, interface, giver, taker)),
-        tuple(find_contradictions(lookup, activity_names, interface, chains)),
+        tuple(find_contradictions(lookup, activity_names, interface)),
+        tuple(find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
     )
 

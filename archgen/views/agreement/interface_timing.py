@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
+from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system import activity_builder
@@ -15,7 +16,7 @@ from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
 from archgen.views.agreement.partner_interfaces import PartnerInterface
-from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, measure_limit
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, measure_limit
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import rate_phrases, value_format
@@ -63,17 +64,27 @@ def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
     return lookup.architecture.nodes[endpoint.node].timing.get(endpoint.component or "", _NO_TIMING)
 
 
-def find_broken_gap(lookup: Lookup, activity_names: activity_builder.ActivityNames, endpoint: Endpoint) -> str:
-    """Return a sentence where a promised largest gap cannot be kept, else nothing."""
-    output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "")
-    if lookup.timing is None or output_timing is None or output_timing.max_gap is None:
-        return ""
+def find_broken_limits(
+    lookup: Lookup, activity_names: activity_builder.ActivityNames, endpoint: Endpoint
+) -> Iterator[str]:
+    """Yield a sentence for each promised limit between two messages that the expected gap exceeds."""
+    output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "", OutputTiming())
+    if lookup.timing is None or endpoint.flow != "topic":
+        return
     activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
-    pace = lookup.timing.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
-    if not output_timing.conditional or pace.gap.value is None or pace.gap.value <= output_timing.max_gap.value:
-        return ""
-    figure = value_format.display_duration(pace.gap)
-    return f"The promised largest gap of {output_timing.max_gap} cannot be kept: {figure} are expected."
+    gap = lookup.timing.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None)).gap
+    figure = value_format.display_duration(gap)
+    if figure == value_format.UNKNOWN_FIGURE:
+        return
+    limits = {
+        "largest gap": output_timing.max_gap if output_timing.conditional else None,
+        "QoS deadline": None if is_ros_1(lookup.architecture.distro) else endpoint.qos.deadline,
+    }
+    for name, limit in limits.items():
+        # A gap without a value is one without a bound.
+        if limit and (gap.value is None or gap.value > limit.value):
+            expected = "there is no bound" if gap.value is None else f"up to {figure} is expected"
+            yield f"The {name} of {limit} that `{endpoint.node}` promises may not be kept: {expected}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +139,7 @@ class _GivenPace:
         if pace.rate.value is None:
             return ()
         origins = value_format.describe_origins(self.timed.rate_origins.get(self.activity, ()))
-        source = f", follows from the rate of {origins.removeprefix('from ')}" if origins else ", computed"
+        source = f"{SOURCE_PHRASE}the rate of {origins.removeprefix('from ')}" if origins else ", computed"
         return inline_text.to_inlines(f"{words}{source}")
 
     def _rate_by_inputs(self, pace: EventPace) -> Inlines:
@@ -136,14 +147,14 @@ class _GivenPace:
         by_inputs = self.timed.analysis.derived.get(self.activity)
         if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
             return ()
-        return inline_text.to_inlines(f"{value_format.display_rate(by_inputs.rate)}, follows from its inputs")
+        return inline_text.to_inlines(f"{value_format.display_rate(by_inputs.rate)}{SOURCE_PHRASE}its inputs")
 
     def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
         # What is not conditional is sent at each activation: `max_gap` has no effect there.
         limit = output_timing.max_gap if output_timing.conditional else None
         words = value_format.display_duration(pace.gap)
         is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
-        source = f", follows from when {self.activity} is activated and how long it takes" if pace.gap.value else ""
+        source = f"{SOURCE_PHRASE}when {self.activity} is activated and how long it takes" if pace.gap.value else ""
         return PromiseRow(
             f"Largest gap{self.suffix}",
             inline_text.to_inlines(str(limit)) if limit else (),
@@ -163,7 +174,7 @@ class _GivenPace:
         )
         return PromiseRow(
             name,
-            expected=inline_text.to_inlines(f"{value_format.display_duration(response.worst)}, follows from {source}"),
+            expected=inline_text.to_inlines(f"{value_format.display_duration(response.worst)}{SOURCE_PHRASE}{source}"),
         )
 
 
@@ -179,7 +190,7 @@ def _size_row(name: str, size: MessageSize) -> PromiseRow:
     words = amount if size.exact else f"at most {amount}"
     if size.written:
         return PromiseRow(name, inline_text.to_inlines(words), strength={"size": -size.bytes})
-    return PromiseRow(name, expected=inline_text.to_inlines(f"{words}, follows from the definition of the message"))
+    return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}the definition of the message"))
 
 
 def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
@@ -190,7 +201,7 @@ def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
         if load and load.published.value is not None
     ]
     return (
-        inline_text.to_inlines(f"{', '.join(traffic_phrases)}, follows from rate and size") if traffic_phrases else ()
+        inline_text.to_inlines(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size") if traffic_phrases else ()
     )
 
 

@@ -13,7 +13,7 @@ from archgen.model.node import Endpoint
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system.activity_builder import ActivityNames
-from archgen.views.agreement.interface_timing import find_broken_gap, list_givers
+from archgen.views.agreement.interface_timing import find_broken_limits, list_givers
 from archgen.views.agreement.partner_interfaces import PartnerInterface
 from archgen.views.lookup import Lookup
 from archgen.views.timing import value_format
@@ -41,9 +41,7 @@ def describe_open_term(name: str) -> str:
     return sentence.format(of_node=f" by `{node_id}`" if is_of_node else "")
 
 
-def find_contradictions(
-    lookup: Lookup, activity_names: ActivityNames, interface: PartnerInterface, chains: Iterable[ChainResult]
-) -> Iterator[str]:
+def find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface: PartnerInterface) -> Iterator[str]:
     """Yield a sentence for all in which both sides, or a promise and what is expected, do not fit together."""
     architecture = lookup.architecture
     output = interface.output
@@ -54,11 +52,15 @@ def find_contradictions(
     if interface.flow == "topic" and not is_ros_1(architecture.distro):
         yield from _find_qos_clashes(lookup, interface)
     for endpoint in list_givers(lookup, interface):
-        yield from filter(None, [find_broken_gap(lookup, activity_names, endpoint)])
+        yield from find_broken_limits(lookup, activity_names, endpoint)
+
+
+def find_late_chains(lookup: Lookup, chains: Iterable[ChainResult]) -> Iterator[str]:
+    """Yield a sentence for each chain that misses its deadline."""
     for chain in chains:
         if chain.verdict == "missed" and chain.deadline:
             bound, deadline = value_format.display_duration(chain.bound), value_format.display_duration(chain.deadline)
-            title = architecture.chains[chain.id].title
+            title = lookup.architecture.chains[chain.id].title
             yield f"{title} has to be done within {deadline}; expected at the latest: {bound}."
 
 

@@ -6,6 +6,7 @@ disagree about a rename. Most terms are derived (rates, gaps, chains) and no ele
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -19,6 +20,8 @@ from archgen.views.timing import value_format
 
 _NODE_FACTS = ("Rate", "Largest gap", "Answers within")
 """Facts that name their node where several nodes give (`Rate of camera_driver`)."""
+CONTRADICTION_KIND = "contradictions"
+_FIGURE = re.compile(r"[0-9]+(?:\.[0-9]+)? [A-Za-z]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +54,10 @@ def list_plain_terms(
     for chain in interface_terms.chains:
         title = lookup.architecture.chains[chain.id].title
         terms |= _chain_terms(chain, title, matched_ids.common_id("chain", chain.id))
+    for sentence in interface_terms.contradictions:
+        # Another figure in it makes no other contradiction.
+        key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence))}"
+        terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence, "")
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
@@ -73,6 +80,9 @@ def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Ite
             identity = matched_ids.common_id("type", interface.type)
         elif name == "Message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
+        elif name == "Also read by":
+            other_ids = {matched_ids.common_id("component", port.component) for port in interface.other_inputs}
+            identity = ", ".join(sorted(other_ids))
         # Who else reads it binds neither of the two.
         yield name, PlainTerm(name.lower(), name, text, identity, is_expected=name == "Also read by")
 
@@ -110,17 +120,22 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
         name = f"{name} (node {end.node})" if name else f"Node {end.node}"
     # What is offered is a term of its own ("QoS offered").
     qos = end.qos if end.is_taker else ""
-    text = "; ".join(part for part in (end.role, partner_titles(lookup, end.owners), qos) if part)
+    owner_ids = ", ".join(matched_ids.common_id("partner", owner) for owner in end.owners)
+    text, identity = (
+        "; ".join(part for part in (end.role, owners, qos) if part)
+        for owners in (partner_titles(lookup, end.owners), owner_ids)
+    )
     key = f"end {component_id} {port_id} {end.is_taker} {node_id}"
-    return key, _unchanged_term("who gives and takes", name, text)
+    return key, PlainTerm("who gives and takes", name, text, identity)
 
 
 def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tuple[str, PlainTerm]]:
     """Yield the deadline of a chain, which is promised, and its bound, which is expected."""
     if chain.deadline and chain.deadline.value is not None:
-        text = value_format.display_duration(chain.deadline) + (", missed" if chain.verdict == "missed" else "")
+        limit = value_format.display_duration(chain.deadline)
+        text = f"{limit}, missed" if chain.verdict == "missed" else limit
         strength: PromiseStrength = {"deadline": -chain.deadline.value, "in time": int(chain.verdict != "missed")}
-        yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, text, strength=strength)
+        yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, limit, strength=strength)
     text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
     yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)
 

@@ -16,6 +16,8 @@ from archgen.views.shapes import Column, Inlines, Table, Text
 
 PromiseStrength = Mapping[str, Fraction | int]
 """How much is promised, by aspects (`rate`, `reliability`): less of one, or one that is gone, is a weaker promise."""
+SOURCE_PHRASE = ", follows from "
+"""What stands between an expected figure and what it follows from."""
 _UNLIMITED = 10**30
 
 

@@ -42,7 +42,7 @@ class SignatureRecord:
             return f"{version}, new since what was signed at {self.revision}"
         if signed_version == version:
             return f"{version}, as signed at {self.revision}"
-        return f"{version}, changed since {self.revision} ({signed_version} was signed)"
+        return f"{version}, changed since {self.revision}, where it was {signed_version}"
 
 
 def write_signature_table(tags: tuple[SignedTag, ...]) -> Table:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, TermChange
 
 
@@ -20,7 +21,7 @@ def list_departures(changes: AgreementChanges) -> Iterator[str]:
     for key in sorted(changed_keys, key=lambda key: not any(term.is_weaker for term in terms_by_key[key])):
         yield f"`{key[0]}` ({_describe_versions(changes, key)})"
         for term in sorted(terms_by_key[key], key=lambda term: not term.is_weaker):
-            yield f"  {'less is promised: ' if term.is_weaker else ''}{_describe_term(term)}"
+            yield f"  {'weaker: ' if term.is_weaker else ''}{_describe_term(term)}"
     for key in sorted(changes.added_keys):
         yield f"`{key[0]}` was not signed"
 
@@ -37,7 +38,11 @@ def _list_binding_terms(changes: AgreementChanges, key: InterfaceKey) -> list[Te
     return [
         term
         for term in changes.terms_of(key)
-        if term.kind not in {"renamed", "moved"} and term.term_kind != "title" and not term.is_expected
+        if term.kind not in {"renamed", "moved"}
+        and term.term_kind != "title"
+        and not term.is_expected
+        # One that is gone is nobody's loss.
+        and not (term.term_kind == CONTRADICTION_KIND and term.kind == "removed")
     ]
 
 

@@ -14,7 +14,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.partner_interfaces import PartnerPair
 from archgen.views.agreement.plain_terms import PlainTerm
-from archgen.views.agreement.promise_rows import is_weaker
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
 from archgen.views.shapes import Text
 
@@ -168,7 +168,7 @@ def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, P
         old_term = old_terms.get(key)
         if old_term is None:
             term_changes.append(_describe_change("added", new_term, None, new_term))
-        elif old_term.identity != new_term.identity:
+        elif old_term.identity != new_term.identity or is_weaker(old_term.strength, new_term.strength):
             term_changes.append(_describe_change("changed", new_term, old_term, new_term))
         elif old_term.text != new_term.text and new_term.name in {"Type", "Message"}:
             term_changes.append(_describe_change("renamed", new_term, old_term, new_term))
@@ -179,12 +179,23 @@ def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, P
 def _describe_change(
     kind: ChangeKind, shown_term: PlainTerm, old_term: PlainTerm | None, new_term: PlainTerm | None
 ) -> TermChange:
+    old_text, new_text = (term.text if term else None for term in (old_term, new_term))
+    if old_text and new_text:
+        old_text, new_text = _drop_common_source(old_text, new_text)
     return TermChange(
         kind,
         shown_term.kind,
         shown_term.name,
-        old_term.text if old_term else None,
-        new_term.text if new_term else None,
+        old_text,
+        new_text,
         shown_term.is_expected,
         old_term is not None and is_weaker(old_term.strength, new_term.strength if new_term else {}),
     )
+
+
+def _drop_common_source(old_text: str, new_text: str) -> tuple[str, str]:
+    """Return two texts without what both figures follow from, where that is the same."""
+    (old_figure, _, old_source), (new_figure, _, new_source) = (
+        text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
+    )
+    return (old_figure, new_figure) if old_source == new_source else (old_text, new_text)
