@@ -126,7 +126,7 @@ def _partners_section(content: AgreementContent) -> Section:
         rows.append(
             (
                 inline_text.to_inlines(Text(partner.title, strong=True)),
-                inline_text.to_inlines(" ".join((partner.description or "").split())),
+                inline_text.to_inlines(" ".join(partner.description.split())) if partner.description else (),
                 inline_text.to_inlines(partner.contact) if partner.contact else (),
                 inline_text.to_inlines(inline_text.count_noun(given_count, "interface")),
             )

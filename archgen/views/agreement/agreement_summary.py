@@ -20,8 +20,8 @@ def write_summary_section(content: AgreementContent) -> Section:
         Column("Interface", 1.6),
         Column("From", 0.8),
         Column("What flows", 1.7),
-        Column("Rate", 0.95),
-        Column("Version", 0.7),
+        Column("Rate", 1.05),
+        Column("Version", 0.8),
         Column("Still open", 1),
     )
     table = drop_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows), numbered=False))

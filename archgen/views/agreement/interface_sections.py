@@ -68,10 +68,16 @@ class SectionWriter:
             return
         change_kind = self.changes.change_kind(record.key)
         since_run = Text(f" since {self.changes.earlier_revision}")
-        yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
         rows = tuple(_change_row(change) for change in self.changes.terms_of(record.key))
-        if rows:
-            columns = (Column("Term", 0.9), Column("Change", 0.6), Column("Was", 1.3), Column("Is now", 1.3))
+        if not rows:
+            yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
+        else:
+            columns = (
+                Column("Term", 0.9),
+                Column("Change", 0.6),
+                Column(f"At {self.changes.earlier_revision}", 1.3),
+                Column("Now", 1.3),
+            )
             interface = record.terms.interface
             yield Table(
                 f"table:changes/{interface.key}/{interface.pair[0]}",

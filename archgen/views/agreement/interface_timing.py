@@ -73,7 +73,7 @@ def find_broken_limits(
         return
     activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
     gap = lookup.timing.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None)).gap
-    figure = value_format.display_duration(gap)
+    figure = _spell_duration(gap)
     if figure == value_format.UNKNOWN_FIGURE:
         return
     limits = {
@@ -83,7 +83,8 @@ def find_broken_limits(
     for name, limit in limits.items():
         # A gap without a value is one without a bound.
         if limit and (gap.value is None or gap.value > limit.value):
-            expected = "there is no bound" if gap.value is None else f"up to {figure} is expected"
+            most = figure if figure.startswith("at least") else f"up to {figure}"
+            expected = "there is no bound" if gap.value is None else f"{most} is expected"
             yield f"The {name} of {limit} that `{endpoint.node}` promises may not be kept: {expected}."
 
 
@@ -124,7 +125,7 @@ class _GivenPace:
             yield self._gap_row(pace, output_timing)
 
     def _rate_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
-        name, words = f"Rate{self.suffix}", rate_phrases.format_rate_words(pace)
+        name, words = f"Rate{self.suffix}", _spell_rate(pace)
         if pace.rate.value is not None and not pace.inferred:
             # "At each activation" is a promise of its own: an output that becomes conditional promises less.
             strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
@@ -147,12 +148,14 @@ class _GivenPace:
         by_inputs = self.timed.analysis.derived.get(self.activity)
         if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
             return ()
-        return inline_text.to_inlines(f"{value_format.display_rate(by_inputs.rate)}{SOURCE_PHRASE}its inputs")
+        return inline_text.to_inlines(
+            f"{_spell_signs(value_format.display_rate(by_inputs.rate))}{SOURCE_PHRASE}its inputs"
+        )
 
     def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
         # What is not conditional is sent at each activation: `max_gap` has no effect there.
         limit = output_timing.max_gap if output_timing.conditional else None
-        words = value_format.display_duration(pace.gap)
+        words = _spell_duration(pace.gap)
         is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
         source = f"{SOURCE_PHRASE}when {self.activity} is activated and how long it takes" if pace.gap.value else ""
         return PromiseRow(
@@ -172,10 +175,24 @@ class _GivenPace:
         source = (
             "its execution time, a core of its own assumed" if response.tier == "dedicated" else "the load of its host"
         )
-        return PromiseRow(
-            name,
-            expected=inline_text.to_inlines(f"{value_format.display_duration(response.worst)}{SOURCE_PHRASE}{source}"),
-        )
+        # "Answers within at least 20 ms" would read as a limit.
+        figure = value_format.display_duration(response.worst)
+        words = f"{figure.removeprefix('>= ')} or more" if figure.startswith(">= ") else figure
+        return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}{source}"))
+
+
+def _spell_rate(pace: EventPace) -> str:
+    words = _spell_signs(rate_phrases.format_rate_words(pace))
+    return f"{words}-driven" if words.endswith(", event") else words
+
+
+def _spell_duration(value: TimingValue) -> str:
+    return _spell_signs(value_format.display_duration(value))
+
+
+def _spell_signs(figures: str) -> str:
+    """Return figures with words for their signs: not everybody who signs reads `<=`."""
+    return figures.replace("<= ", "at most ").replace(">= ", "at least ")
 
 
 def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> MessageSize:
@@ -196,7 +213,7 @@ def _size_row(name: str, size: MessageSize) -> PromiseRow:
 def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
     loads = ((name, timed.analysis.topics.get(name)) for name in interface.topic_names)
     traffic_phrases = [
-        f"{value_format.display_traffic(load.published)}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
+        f"{_spell_signs(value_format.display_traffic(load.published))}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
         for name, load in loads
         if load and load.published.value is not None
     ]

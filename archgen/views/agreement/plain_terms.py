@@ -57,7 +57,7 @@ def list_plain_terms(
     for sentence in interface_terms.contradictions:
         # Another figure in it makes no other contradiction.
         key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence))}"
-        terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence, "")
+        terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence.replace("`", ""), "")
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
