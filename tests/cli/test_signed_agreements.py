@@ -14,18 +14,21 @@ ROBOT = """\
 archgen: 1
 project: {id: mini, title: Mini Robot}
 ros: {distro: jazzy}
+requirements: {R-1: {title: Stops in time}}
 partners: {a: Alpha, b: Beta, c: Gamma}
 groups:
   sense:
     owner: a
     components:
-      lidar: {outputs: {scan: Scan}}
+      lidar: {requirements: [R-1], outputs: {scan: Scan}}
       eye: {inputs: {scan: lidar.scan}, outputs: {stop: Stop}}
-  drive: {owner: b, components: {base: {inputs: {stop: eye.stop, scan: lidar.scan}}}}
+      bell: {outputs: {alarm: Stop}}
+  drive: {owner: b, components: {base: {inputs: {stop: eye.stop, alarm: bell.alarm, scan: lidar.scan}}}}
 types: {Scan: {message: sensor_msgs/msg/LaserScan, size: 1 kB}, Stop: {message: std_msgs/msg/Header, size: 40 B}}
 nodes:
   lidar_driver: {implements: lidar, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}, publishes: {scan: {topic: /scan, qos: sensor_data}}}
   eye_node: {implements: eye, host: pc, timing: {wcet: 20 ms}, publishes: {stop: {topic: /stop, qos: {deadline: 200 ms}}}}
+  bell_node: {implements: bell, host: pc, timing: {rate: 1 Hz, wcet: 1 ms, outputs: {alarm: {conditional: true, max_gap: 9 s}}}}
   base_node: {implements: base, host: pc, timing: {wcet: 1 ms}, subscribes: {scan: {qos: sensor_data}}}
 hosts: {pc: {cores: 4}}
 chains: {halt: {title: Halt, through: [lidar, eye, base], deadline: 300 ms}}
@@ -87,7 +90,7 @@ def test_without_a_signature_an_interface_has_just_its_version(run: Run, robot: 
     git(robot, "tag", "signed/a-c/1")
     git(robot, "tag", "signed/a-b")
     markdown = agree(run, robot)
-    assert versions(markdown) == ["V", "V"]
+    assert versions(markdown) == ["V", "V", "V"]
     assert "Signed before" not in markdown
 
 
@@ -99,6 +102,7 @@ def test_a_signed_tag_says_which_interfaces_are_as_they_were_signed(run: Run, ro
     markdown = agree(run, robot)
     assert versions(markdown) == [
         f"V, changed since {name} (V), where it was V",
+        f"V, as signed at {name} (V)",
         f"V, as signed at {name} (V)",
     ]
     assert "| V<br>changed |" in re.sub(r"\b[0-9a-f]{6}\b", "V", markdown)
@@ -130,7 +134,7 @@ def test_what_was_signed_is_found_where_the_project_lay_then(run: Run, robot: Pa
     git(robot.parent, "mv", "robot", "arch")
     git(robot.parent, "commit", "-qm", "moved")
     moved = robot.parent / "arch"
-    assert versions(agree(run, moved)) == 2 * ["V, as signed at signed/a-b/1 (V)"]
+    assert versions(agree(run, moved)) == 3 * ["V, as signed at signed/a-b/1 (V)"]
     ran = run("interfaces", moved, "--between", "a", "b", "--signed", "signed/a-b/1")
     assert (ran.status, ran.err.split(" (")[0]) == (0, "as signed at signed/a-b/1")
 
@@ -142,7 +146,7 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
     change(robot, "x: [\n", "")
     markdown = agree(run, robot)
     assert "What was signed at signed/a-b/1 cannot be read, so nothing is said of its versions." in markdown
-    assert versions(markdown) == ["V", "V"]
+    assert versions(markdown) == ["V", "V", "V"]
 
 
 @pytest.mark.parametrize(
@@ -150,6 +154,14 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
     [
         ("Alpha", "Alpha Ltd", 0, ["as signed at v1"]),
         ("lidar_driver", "driver", 0, ["as signed at v1"]),
+        ("rate: 10 Hz", "period: 0.1 s", 0, ["as signed at v1"]),
+        ("deadline: 200 ms", "deadline: 0.2 s", 0, ["as signed at v1"]),
+        ("max_gap: 9 s", "max_gap: 9000 ms", 0, ["as signed at v1"]),
+        ("{scan: {qos: sensor_data}}", "{scan: {qos: {reliability: best_effort, depth: 5}}}", 0, ["as signed at v1"]),
+        ("/scan, qos: sensor_data", "/scan, qos: {reliability: best_effort, depth: 5}", 0, ["as signed at v1"]),
+        ("size: 1 kB", "size: 1000 B", 0, ["as signed at v1"]),
+        ("lidar: {", "lidar: {title: Laser, ", 0, ["as signed at v1"]),
+        ("{R-1: {title: Stops in time}}", "{R-1: {title: Stops in time, description: always}}", 0, ["as signed at v1"]),
         (
             "wcet: 20 ms",
             "wcet: 25 ms",
@@ -158,7 +170,7 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
                 "as signed at v1",
                 "expected otherwise now, promised by nobody:",
                 "  `sense.eye.stop`: Largest gap (expected) was signed as 125 ms, and is 130 ms",
-                "  `sense.eye.stop`: Chain Halt (expected) was signed as 127 ms; met, and is 132 ms; met",
+                "  `sense.eye.stop`: Chain Halt (expected) was signed as 128 ms; met, and is 133 ms; met",
             ],
         ),
         (
@@ -180,6 +192,8 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
                 "  `sense.eye.stop` (version V, as signed)",
                 "    weaker: Deadline of Halt was signed as 300 ms, and is 300 ms, missed",
                 "    Contradiction was not signed: The QoS deadline of 200 ms that eye_node promises may not be kept: there is no bound.",
+                "  `sense.bell.alarm` (version V, as signed)",
+                "    Contradiction was not signed: The largest gap of 9 s that bell_node promises may not be kept: there is no bound.",
             ],
         ),
         (
@@ -202,7 +216,7 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
                 "    weaker: Deadline of Halt was signed as 300 ms, and is 400 ms",
             ],
         ),
-        ("{stop: eye.stop, scan", "{scan", 1, ["not as signed at v1:", "  `sense.eye.stop` was signed, and is gone"]),
+        ("{stop: eye.stop, alarm", "{alarm", 1, ["not as signed at v1:", "  `sense.eye.stop` was signed, and is gone"]),
     ],
 )
 def test_promises_bind_and_expectations_are_told(  # noqa: PLR0913, PLR0917 - the cases

@@ -5,7 +5,7 @@ No term names a line of a file: text that moves changes nothing between the part
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.model.component import Component
@@ -18,7 +18,7 @@ from archgen.views.agreement import interface_timing, interface_versions, messag
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
-from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, measure_qos
+from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
@@ -41,6 +41,8 @@ class InterfaceEnd:
     node: str | None
     qos: str
     is_taker: bool
+    qos_identity: str = ""
+    """The values of the quality of service, whatever words they are in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +161,7 @@ def _list_promises(
         yield _promise_qos(interface.giver_endpoints)
 
 
-def _promise_qos(endpoints: Iterable[Endpoint]) -> PromiseRow:
+def _promise_qos(endpoints: Sequence[Endpoint]) -> PromiseRow:
     written = [endpoint.qos for endpoint in endpoints if endpoint.qos.written]
     if not written:
         return PromiseRow(
@@ -173,7 +175,9 @@ def _promise_qos(endpoints: Iterable[Endpoint]) -> PromiseRow:
         for aspect in measures[0]
         if all(aspect in measure for measure in measures)
     }
-    return PromiseRow("QoS offered", inline_text.join_lines(map(inline_text.to_inlines, lines)), strength=strength)
+    runs = inline_text.join_lines(map(inline_text.to_inlines, lines))
+    identities = sorted({identify_qos(endpoint.qos) for endpoint in endpoints})
+    return PromiseRow("QoS offered", runs, (), strength, "; ".join(identities))
 
 
 def describe_qos(endpoint: Endpoint) -> str:
@@ -233,16 +237,18 @@ def _end_rows(  # noqa: PLR0913 - the columns of a row
     architecture = lookup.architecture
     component_owners = component.owners if component else ()
     with_qos = not is_ros_1(architecture.distro)
-    rows: dict[tuple[str, str], None] = {}
+    rows: dict[tuple[str, str, str], None] = {}
     for endpoint in (endpoint for endpoint in endpoints if architecture.nodes[endpoint.node].written):
         # A dict as an ordered set: several endpoints of a node with one QoS are one row.
-        rows[endpoint.node, describe_qos(endpoint) if endpoint.flow == "topic" and with_qos else ""] = None
-    for node, qos in rows:
+        has_qos = endpoint.flow == "topic" and with_qos
+        qos_texts = (describe_qos(endpoint), identify_qos(endpoint.qos)) if has_qos else ("", "")
+        rows[endpoint.node, *qos_texts] = None
+    for node, qos, qos_identity in rows:
         owners = (
             dict.fromkeys((*component_owners, *foreign_owners(architecture, architecture.nodes[node])))
             or architecture.nodes[node].owners
         )
-        yield InterfaceEnd(role, tuple(owners), component, port, node, qos, is_taker)
+        yield InterfaceEnd(role, tuple(owners), component, port, node, qos, is_taker, qos_identity)
     if not rows:
         yield InterfaceEnd(role, component_owners, component, port, None, "", is_taker)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from archgen.model.declared_timing import OutputTiming, Timing
@@ -16,7 +16,7 @@ from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
 from archgen.views.agreement.partner_interfaces import PartnerInterface
-from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, measure_limit
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, promise_limit
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import rate_phrases, value_format
@@ -118,9 +118,7 @@ class _GivenPace:
         if output_timing.conditional:
             yield PromiseRow(f"Sent{self.suffix}", inline_text.to_inlines("only when there is something to send"))
         if self.timing.jitter:
-            jitter = self.timing.jitter
-            words = inline_text.to_inlines(f"up to {jitter}")
-            yield PromiseRow(f"Jitter{self.suffix}", words, strength={"jitter": measure_limit(jitter)})
+            yield promise_limit(f"Jitter{self.suffix}", self.timing.jitter, "jitter", "up to {}")
         if pace.behaviour not in {"once", "on_demand"}:
             yield self._gap_row(pace, output_timing)
 
@@ -158,17 +156,14 @@ class _GivenPace:
         words = _spell_duration(pace.gap)
         is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
         source = f"{SOURCE_PHRASE}when {self.activity} is activated and how long it takes" if pace.gap.value else ""
-        return PromiseRow(
-            f"Largest gap{self.suffix}",
-            inline_text.to_inlines(str(limit)) if limit else (),
-            inline_text.to_inlines(f"{words}{source}") if is_known else (),
-            {"gap": measure_limit(limit)} if limit else {},
-        )
+        name = f"Largest gap{self.suffix}"
+        row = promise_limit(name, limit, "gap") if limit else PromiseRow(name)
+        return replace(row, expected=inline_text.to_inlines(f"{words}{source}") if is_known else ())
 
     def _answer_row(self) -> PromiseRow:
         name, limit = f"Answers within{self.suffix}", self.timing.response
         if limit:
-            return PromiseRow(name, inline_text.to_inlines(str(limit)), strength={"response": measure_limit(limit)})
+            return promise_limit(name, limit, "response")
         response = self.timed.analysis.responses.get(self.activity)
         if response is None or response.worst.value is None:
             return PromiseRow(name)

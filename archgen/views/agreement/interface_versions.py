@@ -11,12 +11,13 @@ from collections.abc import Iterable, Iterator
 
 from archgen.model.declared_timing import OutputTiming
 from archgen.model.known_interfaces import Interface, Interfaces
-from archgen.model.node import Endpoint, Qos
+from archgen.model.node import Endpoint
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.figures.tick_unit import written_period
 from archgen.views.agreement.interface_timing import find_giver_timing, list_givers
 from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.promise_rows import identify_qos
 from archgen.views.lookup import Lookup
 
 _DIGITS = 6
@@ -35,6 +36,8 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
         "carried": interface.message or f"type {interface.type}",
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
         "meaning": _squeeze((interface.output.description if interface.output else None) or ""),
+        # To write down what counted before promises it.
+        "promises qos": any(endpoint.qos.written for endpoint in interface.giver_endpoints) and with_qos,
         "offered": _list_qos(lookup, interface.giver_endpoints) if with_qos else [],
         "asked": _list_qos(lookup, interface.taker_endpoints) if with_qos else [],
         "promised": sorted(_list_promises(lookup, endpoint) for endpoint in givers),
@@ -64,17 +67,10 @@ def _write_definition(definition: Interface) -> Iterator[object]:
         yield sorted([item.name, item.type, item.value, _squeeze(item.comment)] for item in constants)
 
 
-def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[list[str]]:
+def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:
     """Return the distinct qualities of service of written nodes, sorted."""
     nodes = lookup.architecture.nodes
-    texts = {tuple(_write_qos(endpoint.qos)) for endpoint in endpoints if nodes[endpoint.node].written}
-    return [list(text) for text in sorted(texts)]
-
-
-def _write_qos(qos: Qos) -> Iterator[str]:
-    """Yield the values of a quality of service. The profile's name is no part of it: its values count."""
-    yield from (qos.reliability, qos.durability, qos.history, str(qos.depth), qos.liveliness, str(qos.written))
-    yield from map(_write_quantity, (qos.deadline, qos.lifespan, qos.lease_duration))
+    return sorted({identify_qos(endpoint.qos) for endpoint in endpoints if nodes[endpoint.node].written})
 
 
 def _list_promises(lookup: Lookup, endpoint: Endpoint) -> list[str]:

@@ -62,7 +62,9 @@ def list_plain_terms(
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
         text = _plain_text(requirement_runs[1:]).strip()
-        terms[key] = _unchanged_term("requirements", f"Requirement {requirement}", text)
+        # Without the titles of the components, which are muted.
+        identity = _plain_text(tuple(run for run in requirement_runs[1:] if not run.muted))
+        terms[key] = PlainTerm("requirements", f"Requirement {requirement}", text, identity)
     return terms
 
 
@@ -80,6 +82,8 @@ def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Ite
             identity = matched_ids.common_id("type", interface.type)
         elif name == "Message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
+        elif name == "Meaning":
+            identity = " ".join(text.split())
         elif name == "Also read by":
             other_ids = {matched_ids.common_id("component", port.component) for port in interface.other_inputs}
             identity = ", ".join(sorted(other_ids))
@@ -92,7 +96,8 @@ def _promise_terms(lookup: Lookup, row: PromiseRow, matched_ids: MatchedIds) -> 
     kind = row.name if row.name.startswith("QoS") else row.name.lower()
     if row.promised:
         text = _plain_text(row.promised)
-        yield f"promised {key}", PlainTerm(kind, f"{row.name} (promised)", text, text, strength=row.strength)
+        identity = row.promise_identity or text
+        yield f"promised {key}", PlainTerm(kind, f"{row.name} (promised)", text, identity, strength=row.strength)
     if row.expected:
         # "follows from the rate of NODE". A topic that is called after a renamed component is not treated so: whoever
         # subscribes to it has to follow.
@@ -119,11 +124,14 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
     if end.node:
         name = f"{name} (node {end.node})" if name else f"Node {end.node}"
     # What is offered is a term of its own ("QoS offered").
-    qos = end.qos if end.is_taker else ""
+    qos, qos_identity = (end.qos, end.qos_identity) if end.is_taker else ("", "")
     owner_ids = ", ".join(matched_ids.common_id("partner", owner) for owner in end.owners)
     text, identity = (
-        "; ".join(part for part in (end.role, owners, qos) if part)
-        for owners in (partner_titles(lookup, end.owners), owner_ids)
+        "; ".join(filter(None, parts))
+        for parts in (
+            (end.role, partner_titles(lookup, end.owners), qos),
+            (end.role, owner_ids, qos_identity),
+        )
     )
     key = f"end {component_id} {port_id} {end.is_taker} {node_id}"
     return key, PlainTerm("who gives and takes", name, text, identity)

@@ -23,12 +23,22 @@ _UNLIMITED = 10**30
 
 @dataclass(frozen=True, slots=True)
 class PromiseRow:
-    """A term with what is promised and what is expected of it, each empty where there is nothing."""
+    """A term with what is promised and what is expected of it, each empty where there is nothing.
+
+    `promise_identity` is the same for whatever promises the same, in other units or words; left out, it is the text.
+    """
 
     name: str
     promised: Inlines = ()
     expected: Inlines = ()
     strength: PromiseStrength = field(default_factory=dict)
+    promise_identity: str = ""
+
+
+def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
+    """Return the promise to stay below a limit; `words` has a place for it."""
+    strength = {aspect: -limit.value}
+    return PromiseRow(name, inline_text.to_inlines(words.format(limit)), (), strength, str(limit.value))
 
 
 def is_weaker(old_strength: PromiseStrength, new_strength: PromiseStrength) -> bool:
@@ -45,13 +55,13 @@ def measure_qos(qos: Qos) -> PromiseStrength:
         "depth": _UNLIMITED if qos.history == "keep_all" else qos.depth or 0,
         "lifespan": qos.lifespan.value if qos.lifespan else _UNLIMITED,
         "liveliness": int(qos.liveliness == "manual_by_topic"),
-        **{aspect: measure_limit(limit) for aspect, limit in limits.items() if limit},
+        **{aspect: -limit.value for aspect, limit in limits.items() if limit},
     }
 
 
-def measure_limit(limit: Quantity) -> Fraction:
-    """Return how much a limit promises: the lower it is, the more."""
-    return -limit.value
+def identify_qos(qos: Qos) -> str:
+    """Return a text that two qualities of service share if their values are the same, whatever their profiles are called."""
+    return ", ".join(f"{aspect} {figure}" for aspect, figure in measure_qos(qos).items())
 
 
 def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple[PromiseRow, ...]) -> Table:
