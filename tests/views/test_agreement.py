@@ -77,7 +77,8 @@ def test_topics_without_a_connection_are_interfaces_too(tmp_path: Path) -> None:
     source = DUO.replace("hosts: {pc", f"{nodes}hosts: {{pc")
     assert ("/tf", "north", "south") in keys(tmp_path, "north", "south", source)
     said = lines(section(made(tmp_path, source=source).outline, "/tf").blocks)
-    assert said[1] == "Topic: /tf"
+    assert said[1:3] == ["Topic: /tf", "Message: tf2_msgs/msg/TFMessage"]
+    assert not any("type of what flows" in line for line in said), "the message says it"
     assert "publishes | North Robotics | north_frames | default (not written)" in said
 
 

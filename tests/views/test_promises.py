@@ -215,3 +215,23 @@ def test_what_does_not_fit_together_is_an_open_point(
     points = facts(tmp_path, source).get("Open points", [])
     open_terms = ("The size", "No quality of service", "No rate")
     assert [point for point in points if not point.startswith(open_terms)] == sentences
+
+
+@pytest.mark.parametrize(
+    ("through", "titles"),
+    [("lidar, eye, base", ["Eye · stop", "Eye · more"]), ("lidar, eye.stop, base", ["Eye · stop"])],
+)
+def test_a_chain_that_names_an_output_passes_through_no_other(tmp_path: Path, through: str, titles: list[str]) -> None:
+    source = edit(("{stop: std_msgs/msg/Header}", "{stop: std_msgs/msg/Header, more: std_msgs/msg/Header}"))
+    source = source.replace("stop: eye.stop", "stop: eye.stop, more: eye.more")
+    outline = make_agreement(
+        view(checked(tmp_path, f"{source}chains: {{halt: {{through: [{through}], deadline: 1 s}}}}\n")), "a", "b"
+    ).outline
+    assert [
+        title
+        for title in ("Eye · stop", "Eye · more")
+        if any(
+            isinstance(block, Table) and block.columns[0].title.startswith("Chain")
+            for block in section(outline, title).blocks
+        )
+    ] == titles

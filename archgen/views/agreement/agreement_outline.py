@@ -193,4 +193,5 @@ def _signatures_section(content: AgreementContent) -> Section:
             Paragraph(inline_text.to_inlines("Signed before:")),
             drop_empty_columns(write_signature_table(content.signatures.tags)),
         ]
-    return Section("page:signatures", "Signatures", tuple(blocks))
+    # Names never stand on another page than what they sign.
+    return Section("page:signatures", "Signatures", tuple(blocks), page_break=True)

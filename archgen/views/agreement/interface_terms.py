@@ -135,7 +135,9 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
             inline_text.join_inlines((Text(name, code=True),) for name in interface.topic_names)
             or inline_text.UNKNOWN_INLINES,
         )
-    yield "Type", inline_text.value_or_unknown(interface.type)
+    # Where no type has a name, the message alone says what flows.
+    if interface.type or not interface.message:
+        yield "Type", inline_text.value_or_unknown(interface.type)
     if interface.output and interface.output.description:
         yield "Meaning", inline_text.to_inlines(interface.output.description)
     if interface.flow != "physical":

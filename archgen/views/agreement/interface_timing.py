@@ -230,7 +230,14 @@ def find_chains_through(
     system = lookup.timing.analysis.system
     for result in lookup.timing.chains:
         steps = zip(result.through, result.through[1:], strict=False)
-        arcs = (arc for step, next_step in steps for arc in _arcs_between(system, step, next_step))
+        named_outputs = {point.id for point in lookup.architecture.chains[result.id].through if point.kind == "output"}
+        arcs = (
+            arc
+            for step, next_step in steps
+            for arc in _arcs_between(system, step, next_step)
+            # A chain that names an output of an element takes no other way from there.
+            if arc.output in named_outputs or named_outputs.isdisjoint(system.activities[arc.source].outputs)
+        )
         if any({arc.source, arc.target} & taking_activities and {arc.output, arc.input} & giver_keys for arc in arcs):
             yield result
 
