@@ -124,26 +124,29 @@ def _exit_by_terms(
     """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git.project_revision import find_revision
-    from archgen.views.agreement.signed_terms import list_departures, list_expected_changes
+    from archgen.views.agreement.signed_terms import has_departures, write_verdict
 
     if signed_version is None or agreement.changes is None:
         command_support.exit_by_findings(checked_project)
-    for version in (signed_version.checked_project, checked_project):
-        if version.structural_errors:
-            where = f"at {signed_version.title}" if version is signed_version.checked_project else "now"
-            click.echo(make_visible(f"cannot be judged: the architecture cannot be read whole {where}"), err=True)
-            sys.exit(1)
+    _refuse_unsound(signed_version.checked_project, f"at {signed_version.title}")
+    _refuse_unsound(checked_project, "now")
     if find_revision(checked_project.root, checked_project.input_files).endswith("+"):
         click.echo("note: this is about the working tree, which has changes that are not committed", err=True)
-    departures = list(list_departures(agreement.changes))
-    lines = [f"not as signed at {signed_version.title}:" if departures else f"as signed at {signed_version.title}"]
-    lines += [f"  {departure}" for departure in departures]
-    expected_changes = list(list_expected_changes(agreement.changes))
-    lines += ["expected otherwise now, promised by nobody:"] if expected_changes else []
-    lines += [f"  {change}" for change in expected_changes]
-    for line in lines:
+    for line in write_verdict(agreement.changes):
         click.echo(make_visible(line), err=True)
-    sys.exit(1 if departures else command_support.exit_status(checked_project.findings))
+    sys.exit(1 if has_departures(agreement.changes) else command_support.exit_status(checked_project.findings))
+
+
+def _refuse_unsound(checked_project: CheckedProject, when: str) -> None:
+    """End with 1 where a state cannot be read whole, and say what is wrong with it first."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    if checked_project.structural_errors:
+        error = checked_project.structural_errors[0]
+        reason = f"{error.span.file}:{error.span.line}: {error.message}"
+        message = f"cannot be judged: the architecture cannot be read whole {when} ({reason})"
+        click.echo(make_visible(message), err=True)
+        sys.exit(1)
 
 
 def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> AgreementFormat:

@@ -253,5 +253,6 @@ def test_a_signed_state_with_errors_cannot_be_judged(run: Run, tmp_path: Path) -
     ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed")
     assert ran.status == 1
     assert ran.err.startswith("cannot be judged: the architecture cannot be read whole at signed (")
+    assert " (more.yaml:1: " in ran.err
     ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed", "--since", "signed")
     assert (ran.status, "give one of them" in ran.err) == (2, True)

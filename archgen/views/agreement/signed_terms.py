@@ -12,6 +12,21 @@ from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, TermChange
 
 
+def write_verdict(changes: AgreementChanges) -> Iterator[str]:
+    """Yield lines: whether all is as it was signed, what is not, and what is only expected otherwise."""
+    departures, expected_changes = list(list_departures(changes)), list(list_expected_changes(changes))
+    yield f"not as signed at {changes.earlier_revision}:" if departures else f"as signed at {changes.earlier_revision}"
+    yield from (f"  {line}" for line in departures)
+    if expected_changes:
+        yield "expected otherwise now, promised by nobody:"
+        yield from (f"  {line}" for line in expected_changes)
+
+
+def has_departures(changes: AgreementChanges) -> bool:
+    """Whether an interface or a binding term is not as it was signed."""
+    return any(list_departures(changes))
+
+
 def list_departures(changes: AgreementChanges) -> Iterator[str]:
     """Yield lines on each interface that is not as it was signed: what is gone or promises less first."""
     for record in changes.removed_records:
