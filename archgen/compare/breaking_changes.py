@@ -11,10 +11,12 @@ from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerB
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
+from archgen.compare.losses.changed_owners import find_changed_owners
 from archgen.compare.losses.lost_connections import find_lost_connections
 from archgen.compare.losses.missed_deadlines import find_late_chains
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
@@ -28,8 +30,10 @@ _LOSS_FINDERS = (
     find_retyped_outputs,
     find_redefined_messages,
     find_renamed_topics,
+    find_retyped_topics,
     find_weakened_publishers,
     find_unserved_requirements,
+    find_changed_owners,
 )
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.model.review_settings import agreement_file
+from archgen.model.review_settings import agreement_file, is_agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys, parse_slice
@@ -57,6 +57,13 @@ def _parse_file(state: ReadingState, file: str) -> Slice:
     if not file.isprintable():
         message = f"a file's name cannot be read as text: {file!a}"
         diagnostic = Diagnostic("syntax-error", message, Span.of_file(PROJECT_FILE), help="rename the file")
+        return Slice(file, "", None, (diagnostic,))
+    if is_agreement_file(file) and state.files.is_behind_link(file):
+        # Whoever may write the file that the link leads to would agree for this partner.
+        message = (
+            "a partner's agreements stand behind a symbolic link: whoever may write there could agree for the partner"
+        )
+        diagnostic = Diagnostic("syntax-error", message, Span.of_file(file), help="write them into the file itself")
         return Slice(file, "", None, (diagnostic,))
     file_text = read_text_file(state.files, file)
     state.sources.add_text(file, file_text.text)

@@ -135,6 +135,16 @@ NAMES = {
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), (INTERNAL[INTERNAL.index("  mind:") :], "")],
         ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
     ),
+    "a topic of no component with another message": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s, message: std_msgs/msg/String", "publishes: {state: {topic: /s, message: std_msgs/msg/Bool")],
+        [
+            (
+                "eye.internal.publishes.state/message sssa: sends `std_msgs/msg/Bool` instead of `std_msgs/msg/String` on `/s`, to which "
+                "`mind` of sssa subscribes"
+            )
+        ],
+    ),
     "a topic whose reader is called otherwise": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind:", "brain:")],
