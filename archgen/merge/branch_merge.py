@@ -83,8 +83,13 @@ class BranchMerger:
             return None
         return pipeline.check_loaded_project(loaded_project, self._version_cache)
 
-    def merge_states(self, ours: _MergeState, theirs: _MergeState) -> tuple[BranchMerge, _MergeState | None]:
-        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one."""
+    def merge_states(
+        self, ours: _MergeState, theirs: _MergeState, *, finds_more: bool = True
+    ) -> tuple[BranchMerge, _MergeState | None]:
+        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one.
+
+        Without `finds_more` only conflicts are asked for: checking what was merged takes most of the time.
+        """
         branches = (*ours.branches, *theirs.branches)
         tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
         settled_contents, conflicts = {}, []
@@ -96,7 +101,7 @@ class BranchMerger:
         if any(conflict.problem for conflict in conflicts):
             return BranchMerge(branches, tuple(conflicts)), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches))
+        checked_project = self._check_commit(tree, " + ".join(branches)) if finds_more else ours.checked_project
         known_findings = ours.known_findings | theirs.known_findings
         new_findings = tuple(
             finding
@@ -203,7 +208,8 @@ def _find_partners(
     merger: BranchMerger, earlier_states: Sequence[_MergeState], state: _MergeState, branch_merge: BranchMerge
 ) -> Iterator[BranchMerge]:
     """Yield the pairs that do what a branch does with all earlier ones; where no pair does, all of them."""
-    pairs = [merger.merge_states(earlier, state)[0] for earlier in earlier_states]
+    finds_more = bool(branch_merge.new_findings)
+    pairs = [merger.merge_states(earlier, state, finds_more=finds_more)[0] for earlier in earlier_states]
     guilty_pairs = [pair for pair in pairs if pair.conflicts or pair.new_findings]
     shown_conflicts = {conflict for pair in guilty_pairs for conflict in pair.conflicts}
     shown_findings = {identify_finding(finding) for pair in guilty_pairs for finding in pair.new_findings}

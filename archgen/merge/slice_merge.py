@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from archgen.git import GitError
 from archgen.git.text_merge import merge_lines
@@ -28,6 +29,8 @@ _CONFLICT = re.compile(
     rf"(?P<theirs>.*?)>{{{_MARKER_SIZE}}} theirs\r?\n",
     re.DOTALL,
 )
+_REMEMBERED_TEXTS = 32
+"""Texts whose comments are remembered: open branches are merged in pairs, so that each text comes up again and again."""
 _MAX_PROPOSALS = 64
 """Proposals for the text as a whole: each place in conflict has up to six, and they multiply."""
 _MAX_COMPARED = 5_000
@@ -86,13 +89,18 @@ def _merge_texts(versions: SliceVersions, read: TreeReader) -> str | UnmergedSli
         expected_value = merge_values(read_value(base), read_value(ours), read_value(theirs))
     except MergeConflictError as conflict:
         return UnmergedSlice(conflict.path)
-    comments = _CommentBalance(*(Counter(yaml_parser.list_comments(text)) for text in texts))
+    comments = _CommentBalance(*map(_count_comments, texts))
     for proposal in _propose_texts(versions, read):
         if comments.accepts(proposal):
             tree = read(proposal)
             if tree is not None and read_value(tree) == expected_value:
                 return proposal
     return UnmergedSlice(is_settled=True)
+
+
+@lru_cache(maxsize=_REMEMBERED_TEXTS)
+def _count_comments(text: str) -> Counter[str]:
+    return Counter(yaml_parser.list_comments(text))
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +113,7 @@ class _CommentBalance:
 
     def accepts(self, text: str) -> bool:
         """Whether a text holds each comment as often as the changes of both sides leave it."""
-        counts = Counter(yaml_parser.list_comments(text))
+        counts = _count_comments(text)
         return all(
             self._least(comment) <= counts[comment] <= self._most(comment)
             for comment in self.base | self.ours | self.theirs | counts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 from archgen import schema
 from archgen.syntax import yaml_parser
@@ -12,6 +13,8 @@ TreeReader = Callable[[str], MappingNode | None]
 """Reads a text as a whole; None where that cannot be done."""
 
 
+# As many as are compared at a time in `merge-check`; nobody changes a tree that is read here.
+@lru_cache(maxsize=32)
 def read_tree(text: str) -> MappingNode | None:
     """Return what a text says as it is written, None where it cannot be read as a whole."""
     document, diagnostics = yaml_parser.parse_yaml("slice", text)
