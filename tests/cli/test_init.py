@@ -344,6 +344,16 @@ def test_a_title_is_kept_as_it_is_typed(run: Run, tmp_path: Path) -> None:
     assert found.groups["g"].owner == "robo_corp"
 
 
+def test_a_second_project_says_that_code_owners_lack_its_files(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    words = ("--partner", "eye=Eye @eye/x", "--yes")
+    first, second = (run("init", tmp_path / name, *words) for name in ("one", "two"))
+    hint = (
+        "That CODEOWNERS does not name this project's files yet: add what `archgen owners --format codeowners` prints."
+    )
+    assert (hint in first.out, hint in second.out) == (False, True)
+
+
 @pytest.mark.parametrize("lists_sources", [True, False])
 def test_each_partner_gets_a_file_for_its_agreements_that_codeowners_gives_to_it(
     run: Run, tmp_path: Path, *, lists_sources: bool
