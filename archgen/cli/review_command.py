@@ -176,9 +176,13 @@ def _compare_change(
     from archgen.forge.reviewed_request import find_reviewed_request
     from archgen.products.reviewed_change import compare_change
     from archgen.project import NotAtRevisionError
+    from archgen.project.project_tracking import UnclearMoveError
 
     try:
         return compare_change(checked_project, project, merge_target, find_reviewed_request(), version_cache)
+    except UnclearMoveError as error:
+        # The policy of the project that it was is not known, and the branch's own cannot be trusted.
+        raise click.UsageError(make_visible(str(error))) from None
     except NotAtRevisionError as error:
         reason = f"{error}: there is nothing to compare with"
     except git.GitError as error:

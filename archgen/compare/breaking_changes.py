@@ -17,6 +17,7 @@ from archgen.compare.losses.lost_connections import find_lost_connections, find_
 from archgen.compare.losses.missed_deadlines import find_late_chains
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs
@@ -33,6 +34,7 @@ _LOSS_FINDERS = (
     find_retyped_outputs,
     find_redefined_messages,
     find_renamed_topics,
+    find_retyped_topics,
     find_weakened_publishers,
     find_weakened_outputs,
     find_weakened_sizes,

@@ -12,6 +12,7 @@ from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.model.review_settings import agreement_file
 
 
 def describe_element_change(change: Change, element: ComparedElement, versions: VersionPair) -> str:
@@ -34,6 +35,8 @@ def _describe_new_element(element: ComparedElement) -> str:
     """Describe what matters most of a new element, such as a node's place or the way of a chain."""
     if element.kind == "policy":
         return f"; nothing may lead from `{shorten_text(str(element.values['forbid.from']))}` to `{shorten_text(str(element.values['forbid.to']))}`"
+    if element.kind == "partner":
+        return f"; what it agrees on stands in `{agreement_file(element.own_id)}`"
     clauses = [
         f"{key.new_verb} {tick_names(referred_names)}"
         for key in ELEMENT_KINDS[element.kind].keys

@@ -20,6 +20,12 @@ def agreement_file(partner_id: str) -> str:
     return f"{AGREEMENT_FOLDER}/{partner_id}{AGREEMENT_SUFFIX}"
 
 
+def is_agreement_file(file: str) -> bool:
+    """Whether a file is one in which a partner says what it agrees on."""
+    folder, _, name = file.rpartition("/")
+    return folder == AGREEMENT_FOLDER and name.endswith(AGREEMENT_SUFFIX)
+
+
 @dataclass(frozen=True, slots=True)
 class BreakPolicy:
     """How serious it is to break a partner, for each category; the defaults are those of a project that says nothing."""
@@ -73,12 +79,9 @@ class AcceptedChange:
     @property
     def partner(self) -> str | None:
         """Return the partner in whose own file the entry stands, None if it stands in any other file."""
-        folder, _, name = self.at.file.rpartition("/")
-        return (
-            name.removesuffix(AGREEMENT_SUFFIX)
-            if folder == AGREEMENT_FOLDER and name.endswith(AGREEMENT_SUFFIX)
-            else None
-        )
+        if not is_agreement_file(self.at.file):
+            return None
+        return self.at.file.removeprefix(f"{AGREEMENT_FOLDER}/").removesuffix(AGREEMENT_SUFFIX)
 
 
 @dataclass(frozen=True, slots=True)

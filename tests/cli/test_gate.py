@@ -116,6 +116,16 @@ BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
         1,
         "### Cannot be judged: `b.yaml` cannot be read",
     ),
+    "a reader is taken over in the author's own file": (
+        [("a.yaml", "groups:\n", "groups:\n  drive: {components: {base: {owner: a}}}\n")],
+        1,
+        "### 1 change of the architecture: breaks `a` and `b`",
+    ),
+    "the output is given to its reader": (
+        [("a.yaml", "owner: a", "owner: b")],
+        1,
+        "### 1 change of the architecture: breaks `a` and `b`",
+    ),
     "a comment is added": ([("a.yaml", "owner: a", "owner: a  # Ann")], 0, "### No change of the architecture"),
 }  # fmt: skip
 
@@ -153,3 +163,53 @@ def test_a_project_that_was_not_there_cannot_be_judged(run: Run, tmp_path: Path,
     comment = (top / "out/comment.md").read_text(encoding="utf-8")
     assert (ran.status, comment.splitlines()[0]) == (status, "### Cannot be judged")
     assert "`new/archgen.yaml` does not exist in" in comment
+
+
+def test_a_message_definition_in_another_package_breaks_who_uses_it(run: Run, tmp_path: Path) -> None:
+    top = repositories.repository(tmp_path, PROJECT)
+    (top / "msg/m_msgs/msg/Stop.msg").unlink()
+    moved = {"archgen.yaml": PROJECT["archgen.yaml"].replace("m_msgs", "n_msgs")}
+    repositories.commit(top, moved | {"msg/n_msgs/msg/Stop.msg": PROJECT["msg/m_msgs/msg/Stop.msg"]})
+    ran = run("diff", "HEAD~1", "--breaking", "-C", top)
+    assert ran.status == 1
+    assert "calls `m_msgs/msg/Stop`, which b uses, `n_msgs/msg/Stop`: what was built before cannot talk" in ran.out
+
+
+AGREED = "review: {accepted: {sense.eye.stop: {key: removed, reason: fine}}}\n"
+
+
+@pytest.mark.parametrize("link", ["review", "review/b.yaml"])
+@pytest.mark.parametrize("lists_sources", [True, False])
+def test_nobody_agrees_through_a_link(run: Run, tmp_path: Path, link: str, *, lists_sources: bool) -> None:
+    sources = "sources: [a.yaml, b.yaml]\n" if lists_sources else ""
+    base = PROJECT | {
+        "archgen.yaml": PROJECT["archgen.yaml"] + sources,
+        "b.yaml": PROJECT["b.yaml"].partition("chains")[0],
+    }
+    top = repositories.repository(tmp_path, base)
+    repositories.commit(top, {"a.yaml": base["a.yaml"].replace("{stop: Stop}", "{}"), "author/b.yaml": AGREED})
+    (top / link).parent.mkdir(exist_ok=True)
+    (top / link).symlink_to("author" if link == "review" else "../author/b.yaml")
+    repositories.commit(top, {})
+    in_tree, in_commit = (run("diff", *words, "--breaking", "-C", top) for words in (["HEAD~2"], ["HEAD~2", "HEAD"]))
+    for ran in (in_tree, in_commit):
+        assert ran.status == 1
+        assert "accepted by b" not in ran.out
+    (top / link).unlink()
+    repositories.commit(
+        top, {"review/b.yaml": AGREED, "b.yaml": base["b.yaml"].replace("{stop: sense.eye.stop}", "{}")}
+    )
+    agreed = run("diff", "HEAD~3", "--breaking", "-C", top)
+    assert (agreed.status, "accepted by b: fine" in agreed.out) == (0, True)
+
+
+def test_which_of_several_gone_projects_it_was_is_not_guessed_whatever_the_policy(run: Run, tmp_path: Path) -> None:
+    decoy = {"decoy/archgen.yaml": "archgen: 1\nproject: {id: mini}\n"}
+    top = repositories.repository(tmp_path, {f"robot/{name}": text for name, text in PROJECT.items()} | decoy)
+    repositories.git(top, "checkout", "-q", "-b", "branch")
+    repositories.git(top, "mv", "robot", "arch")
+    repositories.git(top, "rm", "-q", "-r", "decoy")
+    repositories.commit(top, {"arch/archgen.yaml": PROJECT["archgen.yaml"].replace("breaking: error", "main: main")})
+    ran = run("review", top / "arch", "--base", "main", "--no-build", "-o", top / "out")
+    assert (ran.status, "which of 2 others it was is not clear" in ran.err) == (2, True)
+    assert (top / "out/comment.md").read_text(encoding="utf-8").startswith("### Cannot be judged")

@@ -244,7 +244,7 @@ def test_breaking_changes_come_first_and_accepted_ones_after_the_rest_of_them(
         .replace("x: a.x", "x: ")
         .replace("[a.x, b]", "[b]")
     )
-    other = other.replace("h: {owner: sssa", "h: {owner: tum")
+    other = other.replace("h: {owner: sssa", "h: {tags: [new], owner: sssa")
     base = REVIEWED.replace("b: {inputs: {x: a.x}}", "b: {owner: tum, inputs: {x: a.x}}")
     other = other.replace("b: {inputs: {x: }}", "b: {owner: tum, inputs: {x: }}")
     plain = compared(base, other)

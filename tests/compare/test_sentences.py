@@ -97,6 +97,7 @@ PORTS = ("input g.i", "output g.x", "output g.y")
 @pytest.mark.parametrize(
     ("sign", "key", "values", "text"),
     [
+        ("+", "partner tum", {}, "partner `tum` is added; what it agrees on stands in `review/tum.yaml`"),
         ("+", "host pc", {}, "host `pc` is added"),
         ("-", "host pc", {}, "host `pc` is removed"),
         ("+", "use_case UC", {"title": ElementTitle("See", generated=False)}, "use case `UC` (See) is added"),

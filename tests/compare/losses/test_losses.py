@@ -148,14 +148,44 @@ FUNCTIONS = {
     "an output that is taken while all partners are given up": (
         BASE,
         [OUTPUT, DANGLING, (PARTNERS, ""), ("owner: certh", "title: S"), ("owner: sssa", "title: T")],
-        [f"sensing.camera.image sssa: {TAKEN}"],
+        [
+            "sensing/owner certh: takes `sensing` from certh; it belongs to nobody now",
+            "tracking/owner sssa: takes `tracking` from sssa; it belongs to nobody now",
+            f"sensing.camera.image sssa: {TAKEN}",
+        ],
     ),
-    "a hand-over with nothing lost": (BASE, [("owner: certh", "owner: tum")], []),
+    "a hand-over to a third partner": (
+        BASE,
+        [("owner: certh", "owner: tum")],
+        [
+            "sensing/owner certh: takes `sensing` from certh; it belongs to tum now",
+            "sensing/owner tum: makes tum answer for `sensing`, which belonged to certh",
+        ],
+    ),
+    "a hand-over in another slice": (
+        BASE,
+        [("tracker: {inputs", "tracker: {owner: certh, inputs")],
+        [
+            "tracking.tracker/owner sssa: takes `tracking.tracker` from sssa; it belongs to certh now",
+            "tracking.tracker/owner certh: makes certh answer for `tracking.tracker`, which belonged to sssa",
+        ],
+    ),
     "a hand-over to the reader that takes something from him": (
         BASE,
         [("owner: certh", "owner: sssa"), OUTPUT, DANGLING],
-        [f"sensing.camera.image sssa: {TAKEN}"],
+        [
+            "sensing/owner certh: takes `sensing` from certh; it belongs to sssa now",
+            "sensing/owner sssa: makes sssa answer for `sensing`, which belonged to certh",
+            f"sensing.camera.image sssa: {TAKEN}",
+        ],
     ),
+    "what was nobody's and has an owner now": (
+        BASE.replace("owner: certh", "title: S"),
+        [("title: S", "owner: certh")],
+        [],
+    ),
+    "a further owner": (BASE, [("owner: certh", "owner: [certh, tum]")], []),
+    "a partner with another id": (BASE, [("certh", "iti")], []),
 }
 SERVING = (
     PARTNERS

@@ -142,6 +142,26 @@ NAMES = {
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), (INTERNAL[INTERNAL.index("  mind:") :], "")],
         ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
     ),
+    "a topic that only a new, planned node still has": (
+        NODES,
+        [("topic: /eye/image", "topic: /eye/rgb"), ("  mind:", "  ghost: {implements: camera, status: planned, publishes: {image: /eye/image}}\n  mind:")],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")],
+    ),
+    "a topic that a new, planned node takes over": (
+        NODES,
+        [("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}", "status: existing, publishes: {depth: }}\n  lens: {implements: camera, status: planned, publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}")],
+        [],
+    ),
+    "a topic of no component with another message": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s, message: std_msgs/msg/String", "publishes: {state: {topic: /s, message: std_msgs/msg/Bool")],
+        [
+            (
+                "eye.internal.publishes.state/message sssa: sends `std_msgs/msg/Bool` instead of `std_msgs/msg/String` on `/s`, to which "
+                "`mind` of sssa subscribes"
+            )
+        ],
+    ),
     "a topic whose reader is called otherwise": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind:", "brain:")],

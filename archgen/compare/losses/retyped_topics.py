@@ -1,0 +1,31 @@
+"""Topics that belong to no port, such as /tf, and that carry another message for another partner's nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.renamed_topics import group_users, list_topic_readers
+
+
+def find_retyped_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find internal topics with another message; those of outputs are looked at with the outputs."""
+    old_endpoints, new_endpoints = context.offered_endpoints
+    readers = list_topic_readers(context)
+    for node, port in sorted(old_endpoints):
+        new_messages = {endpoint.name: endpoint.message for endpoint in new_endpoints.get((node, port), ())}
+        for endpoint in old_endpoints[node, port] if not port else ():
+            old_message, new_message = endpoint.message, new_messages.get(endpoint.name)
+            if not (old_message and new_message):
+                continue
+            if context.matched_ids.common_id("message", old_message) == new_message:
+                continue
+            users = [reader for reader in readers.get((endpoint.name, endpoint.flow), ()) if not reader.port]
+            for partner, nodes in group_users(context, users).items():
+                reason_text = (
+                    f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.name)}, "
+                    f"to which {tick_sorted_names(nodes)} of {partner} subscribes"
+                )
+                yield from context.losses_of_partner(
+                    context.port_change_indices(node, "", "message"), partner, reason_text
+                )
