@@ -105,7 +105,7 @@ def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find changed message definitions and inner types, and the partners that are built against them."""
     users = MessageUsers(context)
     for index, change in enumerate(context.changes):
-        if change.kind not in {"changed", "removed", "renamed"}:
+        if change.kind not in {"changed", "removed"}:
             continue
         if change.element_kind == "message":
             common_id = context.common_id(change)
@@ -123,11 +123,6 @@ def _redefinition_reason(context: ChangeContext, change: Change, message_name: s
     """Return what a partner loses by a changed key of a definition; empty if nothing: what comments mean is
     judged elsewhere, constants that are new break nobody.
     """
-    if change.kind == "renamed":
-        return (
-            f"calls {tick_name(change.old_id)}, which {partner} uses, {tick_name(message_name)}: what was built before "
-            "cannot talk to what is built after"
-        )
     section, _, name = (change.key or "fields").partition(".")
     if section == "fields":
         return _rebuild_reason(context, message_name, partner)

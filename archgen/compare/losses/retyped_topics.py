@@ -18,14 +18,18 @@ def find_retyped_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
             old_message, new_message = endpoint.message, new_messages.get(endpoint.name)
             if not (old_message and new_message):
                 continue
-            if context.matched_ids.common_id("message", old_message) == new_message:
+            if old_message == new_message:
                 continue
+            # A message of another name is another message to programs: then its rename is the change.
+            indices = context.port_change_indices(node, "", "message") or [
+                index
+                for index, change in enumerate(context.changes)
+                if change.element_kind == "message" and change.old_id == old_message
+            ]
             users = [reader for reader in readers.get((endpoint.name, endpoint.flow), ()) if not reader.port]
             for partner, nodes in group_users(context, users).items():
                 reason_text = (
                     f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.name)}, "
                     f"to which {tick_sorted_names(nodes)} of {partner} subscribes"
                 )
-                yield from context.losses_of_partner(
-                    context.port_change_indices(node, "", "message"), partner, reason_text
-                )
+                yield from context.losses_of_partner(indices, partner, reason_text)

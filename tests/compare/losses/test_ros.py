@@ -150,7 +150,7 @@ NAMES = {
     "a topic that a new, planned node takes over": (
         NODES,
         [("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}", "status: existing, publishes: {depth: }}\n  lens: {implements: camera, status: planned, publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}")],
-        [],
+        ["eye.publishes.image sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; nobody offers it under that name any more"],
     ),
     "a topic of no component with another message": (
         INTERNAL,
