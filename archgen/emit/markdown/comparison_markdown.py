@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
@@ -31,7 +31,7 @@ _MAX_ERRORS = 5
 _MAX_COMMAND = 250
 _PLAIN_COMMAND = "archgen diff"
 # Escaped: at the beginning of an item "+" would start a list, and "~" a strike-through.
-_MARKDOWN_SIGNS = {**CHANGE_SIGNS, "added": "\\+", "changed": "\\~"}
+_MARKDOWN_SIGNS = {kind: f"\\{sign}" if sign in "+~" else sign for kind, sign in CHANGE_SIGNS.items()}
 
 
 def write_comparison_markdown(
@@ -141,7 +141,7 @@ def _group_heading(change_group: ChangeGroup) -> str:
     return " · ".join(word for word in (title, group_code) if word)
 
 
-def _change_item(change: Change) -> str:
+def _change_item(change: Edit) -> str:
     return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
+from archgen.compare.edits import Edit, list_edits
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
@@ -48,9 +49,9 @@ class NamedVersion:
 
 @dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """A change that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
+    """An edit that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
 
-    change: Change
+    change: Edit
     partners_by_reason: Mapping[str, tuple[str, ...]]
     agreements: tuple[str, ...]
 
@@ -102,7 +103,7 @@ class ComparisonDocument:
     """Changes that break nobody."""
     weighty_groups: tuple[ChangeGroup, ...]
     """The same without `textual_changes`, for formats that fold these."""
-    textual_changes: tuple[Change, ...]
+    textual_changes: tuple[Edit, ...]
     chain_rows: tuple[ChainRow, ...]
     finding_groups: tuple[FindingGroup, ...]
     graphs: tuple[Graph, ...] = field(default=())
@@ -138,7 +139,8 @@ def describe_comparison(
     graphs: tuple[Graph, ...] = (),
 ) -> ComparisonDocument:
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
-    other_changes = [change for change in comparison.changes if not change.breaks]
+    edits = list_edits(comparison)
+    other_edits = [edit for edit in edits if not edit.breaks]
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
@@ -147,9 +149,9 @@ def describe_comparison(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
         after=NamedVersion(new_name, reading_errors.after),
-        headline=_write_headline(comparison, verdict, finding_groups, caveat),
-        counts=_count_differences(comparison, finding_groups),
-        kind_counts=count_by_kind(comparison.changes),
+        headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
+        counts=_count_differences(edits, finding_groups),
+        kind_counts=count_by_kind(edits),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
         obstacle=breaking_verdict.describe_obstacle(comparison),
@@ -160,19 +162,19 @@ def describe_comparison(
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
-                change, _partners_by_reason(change), tuple(breaking_verdict.describe_agreements(change, comparison))
+                edit, _partners_by_reason(edit), tuple(dict.fromkeys(_describe_agreements(edit, comparison)))
             )
-            for change in comparison.changes
-            if change.breaks
+            for edit in edits
+            if edit.breaks
         ),
         refusal_help=breaking_verdict.describe_refusal(
             comparison.changes, comparison.matched_ids, is_refused=comparison.is_refused
         ),
         verdict=verdict,
-        changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
-        change_groups=tuple(group_changes(other_changes, comparison)),
-        weighty_groups=tuple(group_changes([change for change in other_changes if not is_textual(change)], comparison)),
-        textual_changes=tuple(filter(is_textual, other_changes)),
+        changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
+        change_groups=tuple(group_changes(other_edits, comparison)),
+        weighty_groups=tuple(group_changes([edit for edit in other_edits if not _is_textual_edit(edit)], comparison)),
+        textual_changes=tuple(filter(_is_textual_edit, other_edits)),
         chain_rows=tuple(map(make_chain_row, comparison.chains)),
         finding_groups=finding_groups,
         graphs=graphs,
@@ -202,15 +204,29 @@ def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> It
             yield FindingGroup(kind, heading, caption, sort_by_severity(findings_by_kind[kind]))
 
 
+def _is_textual_edit(edit: Edit) -> bool:
+    return all(map(is_textual, edit.changes))
+
+
+def _describe_agreements(edit: Edit, comparison: Comparison) -> Iterator[str]:
+    for change in edit.changes:
+        if change.breaks:
+            yield from breaking_verdict.describe_agreements(change, comparison)
+
+
 def _write_headline(
-    comparison: Comparison, verdict: Sequence[str], finding_groups: Sequence[FindingGroup], caveat: str
+    comparison: Comparison,
+    edits: Sequence[Edit],
+    verdict: Sequence[str],
+    finding_groups: Sequence[FindingGroup],
+    caveat: str,
 ) -> str:
     obstacle = breaking_verdict.describe_obstacle(comparison)
     if obstacle:
-        count = f"; certain: {count_noun(len(comparison.changes), 'change')} of the architecture"
+        count = f"; certain: {count_noun(len(edits), 'change')} of the architecture"
         return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
     if comparison.changes:
-        return f"{count_noun(len(comparison.changes), 'change')} of the architecture{caveat}"
+        return f"{count_noun(len(edits), 'change')} of the architecture{caveat}"
     if verdict:
         return f"{verdict[0][:1].upper()}{verdict[0][1:]}{caveat}"
     counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
@@ -218,9 +234,9 @@ def _write_headline(
     return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
 
 
-def _count_differences(comparison: Comparison, finding_groups: Sequence[FindingGroup]) -> str:
-    kind_counts = count_by_kind(comparison.changes)
-    count_phrases = [count_noun(len(comparison.changes), "change") + (f" ({kind_counts})" if kind_counts else "")]
+def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGroup]) -> str:
+    kind_counts = count_by_kind(edits)
+    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
     count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     return ", ".join(count_phrases)
 
@@ -235,10 +251,10 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
             yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
 
 
-def _partners_by_reason(change: Change) -> Mapping[str, tuple[str, ...]]:
-    """Return each reason why a change breaks somebody, with the partners it breaks."""
+def _partners_by_reason(edit: Edit) -> Mapping[str, tuple[str, ...]]:
+    """Return each reason why an edit breaks somebody, with the partners it breaks."""
     partners: dict[str, set[str]] = {}
-    for partner_break in change.breaks:
+    for partner_break in edit.breaks:
         partners.setdefault(partner_break.reason, set()).add(partner_break.partner)
     return {reason: tuple(sorted(names)) for reason, names in partners.items()}
 

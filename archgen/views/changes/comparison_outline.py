@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import ChainRow
@@ -100,7 +100,7 @@ def _change_section(document: ComparisonDocument) -> Section | None:
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
 
 
-def _change_runs(change: Change) -> Inlines:
+def _change_runs(change: Edit) -> Inlines:
     sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
     return (sign, Text(" "), *text_runs(change.text))
 
