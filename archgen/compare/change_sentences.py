@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import describe_key_change, shorten_text
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.meaning_sentences import (
+    describe_field_changes,
+    describe_outer_messages,
+    describe_output_timing,
+    describe_readers,
+)
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
+from archgen.model.quantity import Quantity
 from archgen.transform import ros_names
 
 _SURE_CONFIDENCE = 0.85
@@ -57,6 +66,8 @@ def describe_port_change(change_kind: str, element: ComparedElement, versions: V
     topic_names = (
         ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
     )
+    if name.startswith("internal."):
+        return _describe_internal_port(change_kind, node_id, name, topic_names, element.values.get("message"))
     topic_note = f" on {topic_names}" if topic_names else ""
     verb = "now has" if change_kind == "added" else "no longer has"
     same_port_elements = (
@@ -75,9 +86,28 @@ def describe_port_change(change_kind: str, element: ComparedElement, versions: V
     return f"node `{node_id}` {verb} `{name}`{topic_note}{heir_note}"
 
 
+_USE_VERBS = {"publishes": "publish", "subscribes": "subscribe to", "serves": "serve", "calls": "call"}
+
+
+def _describe_internal_port(change_kind: str, node_id: str, name: str, topic_names: str, message: object) -> str:
+    """Describe a topic, service or action of a node that no component knows, such as one for finding faults."""
+    _, use, key = name.split(".", 2)
+    verb = _USE_VERBS.get(use, use)
+    subject, _, particle = verb.partition(" ")
+    subject += "es" if subject.endswith("sh") else "s"
+    phrase = (
+        f"now {' '.join(filter(None, (subject, particle)))}"
+        if change_kind == "added"
+        else f"no longer {' '.join(filter(None, (subject, particle)))}"
+    )
+    message_note = f", a `{shorten_text(str(message))}`" if message else ""
+    return f"node `{node_id}` {phrase} `{shorten_text(topic_names or key)}`{message_note}; no component knows of it"
+
+
 def describe_change(change: Change, versions: VersionPair) -> str:
     """Describe the old and new value of a key, and whom that concerns."""
-    return "; ".join(filter(None, (describe_key_change(change), _describe_concerned(change, versions))))
+    sentence = describe_output_timing(change, versions) or describe_key_change(change)
+    return "; ".join(filter(None, (sentence, _describe_concerned(change, versions))))
 
 
 def _describe_concerned(change: Change, versions: VersionPair) -> str:
@@ -87,12 +117,19 @@ def _describe_concerned(change: Change, versions: VersionPair) -> str:
         case "output", "type":
             readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
             return f"it is read by {tick_names(readers)}" if readers else ""
-        case "type", "message" | "size":
+        case "output", "description":
+            return describe_readers(element_id, versions)
+        case "type", "message" if field_changes := describe_field_changes(change.before, change.after, versions):
             outputs = versions.find_elements_with("output", "type", element_id)
-            return f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+            return "; ".join(filter(None, (_carrier_phrase(outputs), field_changes)))
+        case "type", "message" | "size" | "comment":
+            outputs = versions.find_elements_with("output", "type", element_id)
+            return _carrier_phrase(outputs)
         case "message", _:
             types = versions.find_elements_with("type", "message", element_id)
-            return f"it carries {tick_names(types)}" if types else ""
+            return f"it carries {tick_names(types)}" if types else describe_outer_messages(element_id, versions)
+        case "chain", "deadline":
+            return _describe_weaker_promise(change, versions)
         case "component", "requirements":
             before, after = versions.serving_components
             lost_requirements = [
@@ -107,3 +144,22 @@ def _describe_concerned(change: Change, versions: VersionPair) -> str:
             ]
             return f"no component serves {tick_names(unserved)} any more" if unserved else ""
     return ""
+
+
+def _carrier_phrase(outputs: Sequence[str]) -> str:
+    return f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+
+
+def _describe_weaker_promise(change: Change, versions: VersionPair) -> str:
+    """Describe what a chain no longer promises: its deadline is relaxed, or gone."""
+    old_chain, new_chain = (
+        elements.get(("chain", change.element_id)) for elements in (versions.elements_before, versions.elements_after)
+    )
+    old_deadline, new_deadline = (chain and chain.values.get("deadline") for chain in (old_chain, new_chain))
+    if old_chain is None or not isinstance(old_deadline, Quantity):
+        return ""
+    requirements = old_chain.values.get("requirements")
+    served_note = f" to {tick_names(sorted(requirements))}" if isinstance(requirements, frozenset) else ""
+    if not isinstance(new_deadline, Quantity):
+        return f"nothing is promised{served_note} any more"
+    return f"a weaker promise{served_note} than before" if new_deadline.value > old_deadline.value else ""

@@ -87,10 +87,12 @@ def _join_reshaping(reshaping: Reshaping, members: tuple[Change, ...]) -> Edit:
 
 def _exchanged_ids(changes: Iterable[Change]) -> Iterator[Edit]:
     """Yield the pairs of components that have each other's ids now."""
-    renames = {(change.old_id, change.element_id): change for change in changes if _is_rename(change, {"component"})}
+    renames = {
+        (change.old_id or "", change.element_id): change for change in changes if _is_rename(change, {"component"})
+    }
     for (old_id, new_id), change in renames.items():
         other_change = renames.get((new_id, old_id))
-        if other_change and old_id and old_id < new_id:
+        if other_change and old_id < new_id:
             effects = [each.text.partition("; ")[2] for each in (change, other_change)]
             text = "; ".join(
                 filter(None, (f"components {tick_names((old_id, new_id))} have exchanged their ids", *effects))

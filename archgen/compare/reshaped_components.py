@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change, Comparison
 from archgen.compare.element_likeness import MIN_LIKENESS, Feature, FeatureMap, find_likely_pairs, measure_likeness
 from archgen.compare.element_relations import ElementRelations
@@ -32,17 +33,9 @@ class OutputHeir:
 
     old_id: str
     new_id: str
+    old_component: str
+    new_component: str
     likeness: float
-
-    @property
-    def old_component(self) -> str:
-        """Return the component that had the output."""
-        return self.old_id.rpartition(".")[0]
-
-    @property
-    def new_component(self) -> str:
-        """Return the component that has it now."""
-        return self.new_id.rpartition(".")[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +61,8 @@ class Reshaping:
             case "component":
                 return common_id in self.component_ids and (is_whole or _follows_reshaping(change.key or ""))
             case "output" | "input":
-                return is_whole and common_id.rpartition(".")[0] in self.component_ids
+                key = change.element_kind, common_id
+                return is_whole and component_of(key, self.versions) in self.component_ids
             case "connection":
                 return self._only_follows_heirs(common_id)
             case "node":
@@ -85,7 +79,7 @@ class Reshaping:
 
     def _only_follows_heirs(self, input_id: str) -> bool:
         """Whether an input reads nothing else than before, but the heirs of what it read."""
-        if input_id.rpartition(".")[0] in self.component_ids:
+        if component_of(("input", input_id), self.versions) in self.component_ids:
             return True
         heirs = {heir.old_id: heir.new_id for heir in self.heirs}
         before, after = (
@@ -143,8 +137,9 @@ def _find_heirs(versions: VersionPair, relations: tuple[ElementRelations, Elemen
         if kind == "output" and versions.is_added(kind, name)
     }
     for old_id, new_id, likeness in find_likely_pairs(lost_outputs, new_outputs):
-        if old_id.rpartition(".")[0] != new_id.rpartition(".")[0]:
-            yield OutputHeir(old_id, new_id, likeness)
+        old_component, new_component = (component_of(("output", output_id), versions) for output_id in (old_id, new_id))
+        if old_component != new_component:
+            yield OutputHeir(old_id, new_id, old_component, new_component, likeness)
 
 
 def _describe_output(relations: ElementRelations, output_id: str) -> FeatureMap:
@@ -186,14 +181,16 @@ def _are_several(heirs_by_part: Mapping[str, object]) -> bool:
 
 def _judge_part(old_component: str, part: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
     """Return how sure it is that a new component is a part of an old one: its outputs are, and it reads what that did."""
-    outputs = _ports_of(part, "output", versions.elements_after)
+    outputs = _outputs_of(part, versions.elements_after)
     mean_likeness = sum(heir.likeness for heir in heirs) / len(heirs)
     sources = _sources_of(part, versions, side=1)
     own_components = {old_component, *(heir.new_component for heir in heirs)}
     old_sources = _sources_of(old_component, versions, side=0)
     # The second half of what was one pipeline reads the first.
     known_sources = {
-        source for source in sources if source in old_sources or source.rpartition(".")[0] in own_components
+        source
+        for source in sources
+        if source in old_sources or component_of(("output", source), versions) in own_components
     }
     source_share = len(known_sources) / len(sources) if sources else 1.0
     return _truncate(0.5 * mean_likeness + 0.25 * source_share + 0.25 * len(heirs) / max(len(outputs), 1))
@@ -206,12 +203,12 @@ def _describe_split(
     if ("component", old_component) not in versions.elements_after or element.own_id != old_component:
         phrases = {part: f"`{part}` ({_name_outputs(part_heirs)})" for part, part_heirs in heirs_by_part.items()}
         if ("component", old_component) in versions.elements_after:
-            left_outputs = [
-                name.rpartition(".")[2] for name in _ports_of(old_component, "output", versions.elements_after)
-            ]
+            left_outputs = [name.rpartition(".")[2] for name in _outputs_of(old_component, versions.elements_after)]
             phrases[old_component] = f"`{old_component}` ({_count_outputs(left_outputs)})"
         return f"component `{element.own_id}` is split into {join_words([phrases[part] for part in sorted(phrases)])}"
-    clauses = [f"`{part}` takes over {_name_outputs(part_heirs)}" for part, part_heirs in sorted(heirs_by_part.items())]
+    clauses = [
+        f"`{part}` takes over the {_name_outputs(part_heirs)}" for part, part_heirs in sorted(heirs_by_part.items())
+    ]
     return f"component `{old_component}` is split: {join_words(clauses)}"
 
 
@@ -252,12 +249,12 @@ def _find_mergers(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterato
 
 def _judge_merged(part: str, whole: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
     """Return how sure it is that a component is a part of another one now: that has its outputs, and reads what it did."""
-    outputs = _ports_of(part, "output", versions.elements_before)
+    outputs = _outputs_of(part, versions.elements_before)
     likeness = sum(heir.likeness for heir in heirs) / max(len(outputs), 1)
     sources = _sources_of(part, versions, side=0)
     own_outputs = {
-        *_ports_of(part, "output", versions.elements_before),
-        *_ports_of(whole, "output", versions.elements_before),
+        *_outputs_of(part, versions.elements_before),
+        *_outputs_of(whole, versions.elements_before),
     }
     outer_sources = [source for source in sources if source not in own_outputs]
     new_sources = _sources_of(whole, versions, side=1)
@@ -336,8 +333,18 @@ def _component_refs(change: Change, common_id: str, versions: VersionPair) -> fr
     return frozenset(ref for element in elements if element for ref in element.component_refs)
 
 
-def _ports_of(component: str, kind: str, elements: Mapping[tuple[str, str], object]) -> list[str]:
-    return [name for other_kind, name in elements if other_kind == kind and name.rpartition(".")[0] == component]
+def component_of(port_key: ElementKey, versions: VersionPair) -> str:
+    """Return the common id of a port's component, empty for no port: its path is the old one where the port is gone."""
+    element = versions.elements_before.get(port_key) or versions.elements_after.get(port_key)
+    return element.parent_key[1] if element and element.parent_key else ""
+
+
+def _outputs_of(component: str, elements: Mapping[ElementKey, ComparedElement]) -> list[str]:
+    return [
+        name
+        for (kind, name), element in elements.items()
+        if kind == "output" and element.parent_key == ("component", component)
+    ]
 
 
 def _sources_of(component: str, versions: VersionPair, *, side: int) -> frozenset[str]:
@@ -346,7 +353,7 @@ def _sources_of(component: str, versions: VersionPair, *, side: int) -> frozense
     return frozenset(
         source
         for reader, sources in connections.sources_by_input.items()
-        if reader.rpartition(".")[0] == component
+        if component_of(("input", reader), versions) == component
         for source in sources
     )
 

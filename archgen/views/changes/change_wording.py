@@ -14,8 +14,10 @@ from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
 from archgen.views.shapes import Inlines, Text
 
 CHANGE_SIGNS = {
-    **{"added": "+", "removed": "\u2212", "changed": "~", "renamed": "→", "moved": "→"},
-    **{"split": "→", "merged": "→", "copied": "+"},
+    **dict.fromkeys(("renamed", "moved", "split", "merged"), "→"),
+    **dict.fromkeys(("added", "copied"), "+"),
+    "removed": "\u2212",
+    "changed": "~",
 }
 """A sign for each kind of change, so that nothing depends on colour."""
 _CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {

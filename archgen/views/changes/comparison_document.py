@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
+from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
@@ -173,8 +174,10 @@ def describe_comparison(
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
         change_groups=tuple(group_changes(other_edits, comparison)),
-        weighty_groups=tuple(group_changes([edit for edit in other_edits if not _is_textual_edit(edit)], comparison)),
-        textual_changes=tuple(filter(_is_textual_edit, other_edits)),
+        weighty_groups=tuple(
+            group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
+        ),
+        textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
         chain_rows=tuple(map(make_chain_row, comparison.chains)),
         finding_groups=finding_groups,
         graphs=graphs,
@@ -204,8 +207,20 @@ def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> It
             yield FindingGroup(kind, heading, caption, sort_by_severity(findings_by_kind[kind]))
 
 
-def _is_textual_edit(edit: Edit) -> bool:
-    return all(map(is_textual, edit.changes))
+def _is_textual_edit(edit: Edit, comparison: Comparison) -> bool:
+    """Whether an edit only concerns texts and pictures. What an output means to another partner is no mere text."""
+    return all(is_textual(change) and not _changes_meaning(change, comparison) for change in edit.changes)
+
+
+def _changes_meaning(change: Change, comparison: Comparison) -> bool:
+    versions = comparison.versions
+    match change.element_kind, change.key:
+        case "output", "description":
+            return is_read_by_others(change.element_id, versions)
+        case "type", "comment":
+            outputs = versions.find_elements_with("output", "type", change.element_id)
+            return any(is_read_by_others(output, versions) for output in outputs)
+    return False
 
 
 def _describe_agreements(edit: Edit, comparison: Comparison) -> Iterator[str]:
