@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import describe_key_change, shorten_text
@@ -86,20 +84,19 @@ def describe_port_change(change_kind: str, element: ComparedElement, versions: V
     return f"node `{node_id}` {verb} `{name}`{topic_note}{heir_note}"
 
 
-_USE_VERBS = {"publishes": "publish", "subscribes": "subscribe to", "serves": "serve", "calls": "call"}
+_USE_VERBS = {
+    "publishes": "publishes",
+    "subscribes": "subscribes to",
+    "serves": "serves",
+    "calls": "calls",
+}
+"""What a node does, by the key that says it."""
 
 
 def _describe_internal_port(change_kind: str, node_id: str, name: str, topic_names: str, message: object) -> str:
     """Describe a topic, service or action of a node that no component knows, such as one for finding faults."""
     _, use, key = name.split(".", 2)
-    verb = _USE_VERBS.get(use, use)
-    subject, _, particle = verb.partition(" ")
-    subject += "es" if subject.endswith("sh") else "s"
-    phrase = (
-        f"now {' '.join(filter(None, (subject, particle)))}"
-        if change_kind == "added"
-        else f"no longer {' '.join(filter(None, (subject, particle)))}"
-    )
+    phrase = f"{'now' if change_kind == 'added' else 'no longer'} {_USE_VERBS.get(use, use)}"
     message_note = f", a `{shorten_text(str(message))}`" if message else ""
     return f"node `{node_id}` {phrase} `{shorten_text(topic_names or key)}`{message_note}; no component knows of it"
 
@@ -112,42 +109,45 @@ def describe_change(change: Change, versions: VersionPair) -> str:
 
 def _describe_concerned(change: Change, versions: VersionPair) -> str:
     """Describe who is at the other end of a change: readers, carriers, requirements that nothing serves any more."""
-    element_id = change.element_id
     match change.element_kind, change.key:
-        case "output", "type":
-            readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
-            return f"it is read by {tick_names(readers)}" if readers else ""
         case "output", "description":
-            return describe_readers(element_id, versions)
-        case "type", "message" if field_changes := describe_field_changes(change.before, change.after, versions):
-            outputs = versions.find_elements_with("output", "type", element_id)
-            return "; ".join(filter(None, (_carrier_phrase(outputs), field_changes)))
-        case "type", "message" | "size" | "comment":
-            outputs = versions.find_elements_with("output", "type", element_id)
-            return _carrier_phrase(outputs)
-        case "message", _:
-            types = versions.find_elements_with("type", "message", element_id)
-            return f"it carries {tick_names(types)}" if types else describe_outer_messages(element_id, versions)
+            return describe_readers(change.element_id, versions)
         case "chain", "deadline":
             return _describe_weaker_promise(change, versions)
         case "component", "requirements":
-            before, after = versions.serving_components
-            lost_requirements = [
-                requirement
-                for requirement in sorted(before)
-                if requirement not in after and element_id == min(before[requirement])
-            ]
-            unserved = [
-                requirement
-                for requirement in lost_requirements
-                if ("requirement", requirement) in versions.elements_after
-            ]
-            return f"no component serves {tick_names(unserved)} any more" if unserved else ""
+            return _describe_unserved(change.element_id, versions)
+        case "output" | "type" | "message", _:
+            return _describe_carriers(change, versions)
     return ""
 
 
-def _carrier_phrase(outputs: Sequence[str]) -> str:
-    return f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+def _describe_carriers(change: Change, versions: VersionPair) -> str:
+    """Describe who carries what has another form, and for another message in which fields that differs."""
+    element_id = change.element_id
+    if change.element_kind == "message":
+        types = versions.find_elements_with("type", "message", element_id)
+        return f"it carries {tick_names(types)}" if types else describe_outer_messages(element_id, versions)
+    if change.element_kind == "output" and change.key == "type":
+        readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
+        return f"it is read by {tick_names(readers)}" if readers else ""
+    if change.element_kind == "type" and change.key in {"message", "size", "comment"}:
+        outputs = versions.find_elements_with("output", "type", element_id)
+        carrier_note = f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+        field_note = describe_field_changes(change.before, change.after, versions) if change.key == "message" else ""
+        return "; ".join(filter(None, (carrier_note, field_note)))
+    return ""
+
+
+def _describe_unserved(component_id: str, versions: VersionPair) -> str:
+    before, after = versions.serving_components
+    unserved = [
+        requirement
+        for requirement in sorted(before)
+        if requirement not in after
+        and component_id == min(before[requirement])
+        and ("requirement", requirement) in versions.elements_after
+    ]
+    return f"no component serves {tick_names(unserved)} any more" if unserved else ""
 
 
 def _describe_weaker_promise(change: Change, versions: VersionPair) -> str:

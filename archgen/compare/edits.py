@@ -11,7 +11,8 @@ from typing import Literal
 
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.reshaped_components import Reshaping, find_reshapings
+from archgen.compare.reshaped_components import find_reshapings
+from archgen.compare.reshaping import Reshaping
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 

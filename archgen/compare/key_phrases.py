@@ -33,10 +33,9 @@ def describe_key_change(change: Change) -> str:
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
         return f"{subject}: {spec.noun} {join_words(values)}"
-    if key == "text":
-        return f"the text of {subject} {_count_lines(before, after)}"
-    if spec.is_prose and not (_is_brief(before) and _is_brief(after)):
-        return f"the {_spell_out(key)} of {subject} {_rewrite_phrase(before, after)}"
+    if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
+        phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
+        return f"the {_spell_out(key)} of {subject} {phrase}"
     if change.element_kind in {"input", "output"} and key in {"type", "optional"}:
         return f"{subject} {_port_phrase(change, spec.verb)}"
     if spec.verb and _has_verb_form(key, before, after):
@@ -123,6 +122,8 @@ def _count_lines(before: object, after: object) -> str:
         return "is new"
     if after is None:
         return "is gone"
+    if "\n" not in f"{before}{after}":
+        return "is rewritten"
     old_lines, new_lines = Counter(str(before).splitlines()), Counter(str(after).splitlines())
     counts = ((new_lines - old_lines).total(), "added"), ((old_lines - new_lines).total(), "removed")
     words = [f"{n} line{'s' if n > 1 else ''} {verb}" for n, verb in counts if n]
