@@ -100,6 +100,8 @@ def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[st
         verdict = f": {row.verdict}" if row.verdict else ""
         deadline = f", deadline {row.deadline}{verdict}" if row.deadline else ""
         yield make_visible(f"  {row.id}: {row.before} → {row.after}{growth}{deadline}")
+        if row.reason:
+            yield make_visible(f"      because of {row.reason}")
     yield ""
 
 

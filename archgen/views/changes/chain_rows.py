@@ -9,6 +9,7 @@ from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.value_arithmetic import is_boundless
 
+_MAX_CAUSES = 3
 MINUS_SIGN = "\u2212"
 
 
@@ -23,6 +24,8 @@ class ChainRow:
     """Signed: `+40 ms`, or with a true minus."""
     deadline: str
     verdict: str
+    reason: str
+    """What made the bound another: sentences about changes."""
 
 
 def make_chain_row(chain_change: ChainChange) -> ChainRow:
@@ -34,7 +37,13 @@ def make_chain_row(chain_change: ChainChange) -> ChainRow:
         _format_growth(chain_change),
         _format_deadline(chain_change),
         _format_verdict(chain_change),
+        _format_causes(chain_change),
     )
+
+
+def _format_causes(chain_change: ChainChange) -> str:
+    shown_causes, surplus = chain_change.causes[:_MAX_CAUSES], len(chain_change.causes) - _MAX_CAUSES
+    return "; ".join((*shown_causes, *([f"and {surplus} more"] if surplus > 0 else [])))
 
 
 def _format_bound(result: ChainResult | None) -> str:

@@ -13,8 +13,10 @@ from dataclasses import dataclass, field
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.views.changes import breaking_verdict
+from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -50,7 +52,9 @@ class NamedVersion:
 
 @dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """An edit that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
+    """An edit that breaks partners: for each reason whom; then what entries of `review.accepted` say about it, and as
+    which findings it is found.
+    """
 
     change: Edit
     partners_by_reason: Mapping[str, tuple[str, ...]]
@@ -142,6 +146,7 @@ def describe_comparison(
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
     edits = list_edits(comparison)
     other_edits = [edit for edit in edits if not edit.breaks]
+    repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
@@ -163,7 +168,11 @@ def describe_comparison(
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
-                edit, _partners_by_reason(edit), tuple(dict.fromkeys(_describe_agreements(edit, comparison)))
+                edit,
+                _partners_by_reason(edit),
+                tuple(
+                    dict.fromkeys((*_describe_agreements(edit, comparison), *_name_findings(edit, repeated_findings)))
+                ),
             )
             for edit in edits
             if edit.breaks
@@ -194,9 +203,20 @@ def severity_of(finding: Diagnostic) -> Severity:
     return finding.severity or Severity.ERROR
 
 
+def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -> Iterator[str]:
+    """Yield as which findings an edit is found, and where."""
+    places: dict[str, list[str]] = {}
+    for finding, change in repeated_findings.items():
+        if change in edit.changes:
+            places.setdefault(finding.rule, []).append(f"`{finding.span}`")
+    for rule, spans in places.items():
+        yield f"found as `{rule}` at {join_words(spans)}"
+
+
 def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
-    # What could not be read in the later version is told before all else, and not once more as a new finding.
-    reported_errors = frozenset(reading_errors.after)
+    # What could not be read in the later version is told before all else, and what says the same as a break with it:
+    # not once more as a new finding.
+    reported_errors = frozenset(reading_errors.after) | find_repeated_findings(comparison).keys()
     findings_by_kind = {
         "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
         "silenced": comparison.silenced_findings,

@@ -113,6 +113,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
             inline_text.to_inlines(Text(row.id, code=True)),
             *(inline_text.to_inlines(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             inline_text.to_inlines(Text(row.verdict, strong=True)),
+            text_runs(row.reason),
         )
         for row in chain_rows
     )
@@ -120,6 +121,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
         Column("Chain", 1.6),
         *(Column(name, 1, "right") for name in ("Before", "After", "Difference", "Deadline")),
         Column("Verdict"),
+        Column("Because of", 2),
     )
     table = Table("table:chains", "Bounds of chains", columns, rows)
     return Section("changes:chains", comparison_document.CHAINS_HEADING, (table,))
