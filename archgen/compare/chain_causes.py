@@ -6,17 +6,22 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from archgen.compare.comparison import ChainChange, Change
+from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.timing_pair import TimingPair, can_affect_timing
 from archgen.timing.analysis import ChainResult
 
 
-class _BothWays(TimingCauses):
-    """The causes of a figure that is better as well as of one that is worse: nobody is blamed here."""
+class _ImprovementCauses(TimingCauses):
+    """The causes of a figure that is better: those that cannot have made it worse."""
 
     def can_worsen(self, change: Change) -> bool:
-        return can_affect_timing(change)
+        has_direction = change.key is not None and find_key(change.element_kind, change.key).worsening in {
+            Worsening.LESS,
+            Worsening.MORE,
+        }
+        return can_affect_timing(change) and not (has_direction and super().can_worsen(change))
 
     def heavier_activities(self, activity_ids: Iterable[str]) -> list[str]:
         own_ids = list(activity_ids)
@@ -34,25 +39,34 @@ class _BothWays(TimingCauses):
 def add_chain_causes(
     context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
 ) -> tuple[ChainChange, ...]:
-    """Return chains with the sentences about the changes that made their bounds what they are."""
+    """Return chains with the changes that made their bounds what they are."""
     if timing_pair is None or not chains:
         return tuple(chains)
-    causes = _BothWays(context, timing_pair)
+    worsening_causes, improvement_causes = TimingCauses(context, timing_pair), _ImprovementCauses(context, timing_pair)
     return tuple(
-        replace(chain, causes=tuple(dict.fromkeys(_describe_causes(context, chain, causes)))) for chain in chains
+        replace(
+            chain,
+            causes=tuple(_list_causes(context, chain, improvement_causes if _is_better(chain) else worsening_causes)),
+        )
+        for chain in chains
     )
 
 
-def _describe_causes(context: ChangeContext, chain: ChainChange, causes: _BothWays) -> Iterator[str]:
+def _is_better(chain: ChainChange) -> bool:
+    """Whether a chain takes shorter than before, as far as that is known."""
+    old_bound, new_bound = (result and result.bound.value for result in (chain.before, chain.after))
+    return new_bound is not None and (old_bound is None or new_bound < old_bound)
+
+
+def _list_causes(context: ChangeContext, chain: ChainChange, causes: TimingCauses) -> Iterator[Change]:
     # A chain that came or went has no other reason than that.
     if chain.before is None or chain.after is None:
         return
     indices = context.change_indices("chain", chain.id, "through") or _find_causes(chain.before, chain.after, causes)
-    for index in indices:
-        yield context.changes[index].text.partition("; ")[0]
+    yield from (context.changes[index] for index in dict.fromkeys(indices))
 
 
-def _find_causes(old_result: ChainResult, new_result: ChainResult, causes: _BothWays) -> list[int]:
+def _find_causes(old_result: ChainResult, new_result: ChainResult, causes: TimingCauses) -> list[int]:
     if not new_result.terms:
         return causes.find_cuts([term.activity for term in old_result.terms])[0]
     old_terms = {term.activity: term for term in old_result.terms}

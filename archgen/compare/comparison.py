@@ -77,8 +77,8 @@ class ChainChange:
     id: str
     before: ChainResult | None
     after: ChainResult | None
-    causes: tuple[str, ...] = ()
-    """The sentences about the changes that made its bound another."""
+    causes: tuple[Change, ...] = ()
+    """The changes that made its bound another."""
 
     @property
     def deadline(self) -> TimingValue | None:

@@ -50,6 +50,11 @@ def describe_key_change(change: Change) -> str:
     return f"{subject}: {_value_phrase(noun, before, after)}"
 
 
+def name_key(kind: str, key: str) -> str:
+    """Return what sentences call a key of a kind of element."""
+    return find_key(kind, key).noun or _key_noun(key)
+
+
 def _has_verb_form(key: str, before: object, after: object) -> bool:
     return key == "container" or (before is not None and after is not None)
 

@@ -12,6 +12,9 @@ from archgen.compare.kinds.functional_kinds import OUTPUT
 from archgen.compare.match_elements import describe_element
 from archgen.compare.version_pair import VersionPair
 
+_MESSAGE_WEIGHT = 3
+"""What is on the wire counts apart from the type, which may have got another name with the output."""
+
 
 @dataclass(frozen=True, slots=True)
 class OutputHeir:
@@ -52,7 +55,13 @@ def _describe_output(relations: ElementRelations, output_id: str) -> FeatureMap:
     # Unlike in `match_elements`, types are matched by now: one with another name is the same.
     types = relations.common_ids("type", [output.type]) or frozenset(filter(None, [output.type]))
     features = describe_element(OUTPUT, relations, output)
-    return {**features, "type": Feature(features["type"].weight, types)}
+    message = relations.architecture.message_of(output)
+    messages = relations.common_ids("message", [message]) or frozenset(filter(None, [message]))
+    return {
+        **features,
+        "type": Feature(features["type"].weight, types),
+        "message": Feature(_MESSAGE_WEIGHT, messages),
+    }
 
 
 def component_of(port_key: ElementKey, versions: VersionPair) -> str:

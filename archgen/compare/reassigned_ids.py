@@ -23,14 +23,15 @@ def find_reassigned_ids(
     elements: tuple[Mapping[str, Any], Mapping[str, Any]],
     relations: tuple[ElementRelations, ElementRelations],
 ) -> Iterator[tuple[str, str]]:
-    """Yield the old and new ids of elements whose old id is another element's now, or nobody's.
+    """Yield the old and new ids of elements whose old id is another element's now.
 
-    Without an id that changed its meaning there are none: a plain rename is recognised by likeness.
+    Requirements and use cases are their texts: they are also found where the old id is nobody's now. A component is
+    more than that, and its plain rename is recognised by likeness.
     """
     old_texts, new_texts = (
         {element_id: _read_texts(element) for element_id, element in side.items()} for side in elements
     )
-    if all(new_texts.get(element_id, texts) == texts for element_id, texts in old_texts.items()):
+    if old_texts == new_texts:
         return
     old_ids, new_ids = (
         _ids_by_fingerprint(kind_name, texts, side, side_relations)
@@ -43,8 +44,7 @@ def find_reassigned_ids(
     }
     moved_pairs = {old_id: new_id for old_id, new_id in pairs.items() if old_id != new_id}
     for old_id, new_id in moved_pairs.items():
-        # Of what moves, one end at least is an id that both versions have.
-        if old_id in new_texts or new_id in old_texts:
+        if kind_name != "component" or old_id in new_texts or new_id in old_texts:
             yield old_id, new_id
 
 

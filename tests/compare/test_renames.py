@@ -127,7 +127,10 @@ def test_a_rename_and_what_changed_besides(told: Told) -> None:
             "renamed component sensing.eye: component `sensing.camera` is called `eye` now (recognised with 74 % confidence); "
             "`/sensing/camera/info` becomes `/sensing/eye/info`"
         ),
-        "changed component sensing.eye: the functionality of `sensing.eye` is rewritten",
+        (
+            "changed component sensing.eye: the functionality of `sensing.eye` is rewritten: "
+            f"`… of the robot in colour.` → `… of the robot in colour, and{' far' * 18} …`"
+        ),
     ]
 
 

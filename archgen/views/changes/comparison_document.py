@@ -16,10 +16,10 @@ from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.views.changes import breaking_verdict
-from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
 
@@ -187,7 +187,7 @@ def describe_comparison(
             group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
         ),
         textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
-        chain_rows=tuple(map(make_chain_row, comparison.chains)),
+        chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
     )
