@@ -54,7 +54,7 @@ def add_chain_causes(
 
 def _is_better(chain: ChainChange) -> bool:
     """Whether a chain takes shorter than before, as far as that is known."""
-    old_bound, new_bound = (result and result.bound.value for result in (chain.before, chain.after))
+    old_bound, new_bound = (result.bound.value if result else None for result in (chain.before, chain.after))
     return new_bound is not None and (old_bound is None or new_bound < old_bound)
 
 
@@ -78,4 +78,9 @@ def _find_causes(old_result: ChainResult, new_result: ChainResult, causes: Timin
         )
         if old_term is None or len({tuple(each) for each in figures}) > 1:
             other_activities.append(term.activity)
-    return causes.find_causes(other_activities)
+    indices = causes.find_causes(other_activities)
+    if indices:
+        return indices
+    # No figure leads to it, as after the loss of a host's cores; of one change nobody doubts that it is the cause.
+    other_indices = causes.all_worsening_changes()
+    return other_indices if len(other_indices) == 1 else []

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.element_likeness import FeatureMap, measure_likeness
 from archgen.compare.element_relations import ElementRelations
@@ -14,20 +15,23 @@ from archgen.compare.version_pair import VersionPair
 _COPIED_FEATURES = frozenset({"ports", "text", "group", "owner", "requirements", "performance", "timing", "tags"})
 """The features of a component that are copied with it: not its name, its node, its readers."""
 _MIN_COPY_LIKENESS = 0.7
+_MAX_COPIES = 20
+"""With more new components than this a project is built up, and each would be compared with all."""
 
 
 def find_copies(added_ids: Sequence[str], versions: VersionPair, relations: ElementRelations) -> Iterator[Reshaping]:
     """Yield the new components that have the ports of one that was there, and are like it in all that is copied."""
-    components = relations.architecture.components
-    for added_id in added_ids if len(added_ids) <= _MAX_COPIES else ():
+    if not added_ids or len(added_ids) > _MAX_COPIES:
+        return
+    originals_by_ports = _group_by_ports(
+        [name for name in relations.architecture.components if ("component", name) in versions.elements_before],
+        relations,
+    )
+    for added_id in added_ids:
         features = _copied_features(relations, added_id)
-        if not features["ports"].marks:
-            continue
         rated_originals = [
             (-measure_likeness(original_features, features), name)
-            for name in components
-            if ("component", name) in versions.elements_before
-            and (original_features := _copied_features(relations, name))["ports"].marks == features["ports"].marks
+            for name, original_features in originals_by_ports.get(features["ports"].marks, {}).items()
         ]
         likeness, original = min(rated_originals, default=(0.0, ""))
         if -likeness >= _MIN_COPY_LIKENESS:
@@ -43,8 +47,16 @@ def find_copies(added_ids: Sequence[str], versions: VersionPair, relations: Elem
             )
 
 
-_MAX_COPIES = 20
-"""With more new components than this a project is built up, and each would be compared with all."""
+def _group_by_ports(
+    component_ids: Sequence[str], relations: ElementRelations
+) -> Mapping[frozenset[str], Mapping[str, FeatureMap]]:
+    """Return the features of components that have ports, by these."""
+    groups: dict[frozenset[str], dict[str, FeatureMap]] = defaultdict(dict)
+    for component_id in component_ids:
+        features = _copied_features(relations, component_id)
+        if features["ports"].marks:
+            groups[features["ports"].marks][component_id] = features
+    return groups
 
 
 def _copied_features(relations: ElementRelations, component_id: str) -> FeatureMap:

@@ -35,7 +35,7 @@ class Edit:
     confidence: float = 1.0
     """How sure it is that the changes are one edit."""
     related_ids: tuple[str, ...] = ()
-    """What a component was split into, what was merged into it, or what it is a copy of."""
+    """What a component was split into, what was merged into it (or a group), or what it is a copy of."""
 
     @property
     def breaks(self) -> tuple[PartnerBreak, ...]:
@@ -72,7 +72,10 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
             yield _join_reshaping(reshaping, members)
     yield from _exchanged_ids(left_changes)
     yield from _other_numbers(left_changes)
-    yield from _new_titles(left_changes)
+    yield from _merged_groups(left_changes)
+    yield from _other_namespaces(left_changes)
+    yield from _follow_ups_of_renames(left_changes)
+    yield from _new_fields(left_changes)
     yield from _keys_of_one_element(left_changes)
 
 
@@ -118,18 +121,96 @@ def _is_rename(change: Change, kinds: Iterable[str]) -> bool:
     return change.kind in {"renamed", "moved"} and change.element_kind in kinds
 
 
-def _new_titles(changes: Iterable[Change]) -> Iterator[Edit]:
-    """Yield the renames of elements that got another title with their id."""
-    titles = {(each.element_kind, each.element_id): each for each in changes if each.key == "title"}
+def _merged_groups(changes: Iterable[Change]) -> Iterator[Edit]:
+    """Yield the groups that are gone since all that they held moved to one other group."""
+    moves_by_group: dict[str, list[Change]] = {}
+    owner_changes = {change.element_id: change for change in changes if change.key == "owner"}
+    for change in changes:
+        if change.kind == "moved":
+            moves_by_group.setdefault((change.old_id or "").partition(".")[0], []).append(change)
+    for removal in [each for each in changes if (each.kind, each.element_kind) == ("removed", "group")]:
+        moves = moves_by_group.get(removal.element_id, [])
+        targets = {move.element_id.partition(".")[0] for move in moves}
+        if len(targets) == 1 and not removal.parts:
+            followers = [owner_changes[move.element_id] for move in moves if move.element_id in owner_changes]
+            owner_notes = dict.fromkeys(each.text.partition("` ")[2] for each in followers)
+            target = targets.pop()
+            sentence = f"group `{removal.element_id}` is merged into `{target}`, with {tick_names(move.element_id for move in moves)}"
+            effects = [effect for move in moves if (effect := move.text.partition("; ")[2])]
+            text = "; ".join((sentence, *(f"which {note}" for note in owner_notes), *effects))
+            members = (removal, *moves, *followers)
+            confidence = min(move.confidence for move in moves)
+            yield Edit("merged", "group", target, text, members, confidence, (removal.element_id,))
+
+
+def _other_namespaces(changes: Iterable[Change]) -> Iterator[Edit]:
+    """Yield the nodes in another namespace, with the topics that only follow it."""
+    topic_changes = [change for change in changes if change.element_kind == "port" and change.key == "topic"]
     for change in list(changes):
-        title_change = titles.get((change.element_kind, change.element_id))
-        if title_change and change.kind in {"renamed", "moved"}:
+        if change.element_kind == "node" and change.key == "namespace":
+            old_space, new_space = (str(value or "").rstrip("/") for value in (change.before, change.after))
+            followers = [
+                each
+                for each in topic_changes
+                if each.element_id.partition(".")[0] == change.element_id
+                and isinstance(each.before, list)
+                and [f"{new_space}{str(name).removeprefix(old_space)}" for name in each.before] == each.after
+            ]
+            if followers:
+                pairs = [each.text.partition(": ")[2].partition("; ")[0].partition(" ")[2] for each in followers]
+                names = join_words(
+                    [*pairs[:_MAX_PAIRS], *([f"{len(pairs) - _MAX_PAIRS} more"] if len(pairs) > _MAX_PAIRS else [])]
+                )
+                text = f"{change.text}; its names follow: {names}"
+                yield Edit("changed", "node", change.element_id, text, (change, *followers))
+
+
+def _follow_ups_of_renames(changes: Iterable[Change]) -> Iterator[Edit]:
+    """Yield the renames and moves of elements that got another title, or another group's owner, with their id."""
+    follow_ups: dict[tuple[str, str], list[Change]] = {}
+    for change in changes:
+        if change.key in {"title", "owner"}:
+            follow_ups.setdefault((change.element_kind, change.element_id), []).append(change)
+    for change in list(changes):
+        own_changes = follow_ups.get((change.element_kind, change.element_id))
+        if own_changes and change.kind in {"renamed", "moved"}:
             sentence, separator, effects = change.text.partition("; ")
-            title = title_change.text.partition(": ")[2]
-            text = f"{sentence}, {title}{separator}{effects}"
-            yield Edit(
-                change.kind, change.element_kind, change.element_id, text, (change, title_change), change.confidence
+            notes = [f", {_shorten_follow_up(each)}" for each in own_changes]
+            text = f"{sentence}{''.join(notes)}{separator}{effects}"
+            members = (change, *own_changes)
+            yield Edit(change.kind, change.element_kind, change.element_id, text, members, change.confidence)
+
+
+def _shorten_follow_up(change: Change) -> str:
+    """Return what changed, without the element that the sentence has named already."""
+    if change.key == "title":
+        return change.text.partition(": ")[2]
+    return f"and {change.text.partition('` ')[2]}"
+
+
+def _new_fields(changes: Iterable[Change]) -> Iterator[Edit]:
+    """Yield the messages that got or lost fields, with what is said of these: units, frames, defaults."""
+    for change in list(changes):
+        if change.element_kind == "message" and change.key == "fields":
+            old_names, new_names = (
+                {str(line).rpartition(" ")[2] for line in value} if isinstance(value, list) else set[str]()
+                for value in (change.before, change.after)
             )
+            other_names = old_names ^ new_names
+            members = [
+                each
+                for each in changes
+                if each.element_kind == "message"
+                and each.element_id == change.element_id
+                and each.key
+                and each.key.partition(".")[0] in {"comments", "defaults"}
+                and each.key.rpartition(".")[2] in other_names
+            ]
+            if members:
+                sentence, separator, effects = change.text.partition("; ")
+                notes = join_words([each.text.partition("; ")[0].partition(": ")[2] for each in members])
+                text = f"{sentence}; {notes}{separator}{effects}"
+                yield Edit("changed", "message", change.element_id, text, (change, *members))
 
 
 def _keys_of_one_element(changes: Iterable[Change]) -> Iterator[Edit]:

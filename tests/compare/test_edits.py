@@ -44,6 +44,10 @@ nodes:
   finder: {implements: finder, host: pc, publishes: {people: /people, rows: /rows}}
   driver: {implements: driver, host: pc}
 """
+PLAIN_LEFT = """\
+      left:
+        {functionality: Sees the trees on the left, outputs: {image: Image}}
+"""
 FINDER = ROBOT[ROBOT.index("      finder:\n") : ROBOT.index("  legs:")]
 PEOPLE = """\
       people_finder:
@@ -180,6 +184,42 @@ def test_a_group_with_another_id_and_title_is_one_item(compared: Compared) -> No
     after = edited(ROBOT, ("  eyes:\n", "  seeing:\n    title: All that sees\n"))
     (edit,) = told_edits(compared, ROBOT, after)
     assert edit.startswith("renamed group `eyes` is called `seeing` now, title `Eyes` → `All that sees`; ")
+
+
+def test_a_component_that_moves_to_another_owner_is_one_item(compared: Compared) -> None:
+    after = edited(ROBOT, (PLAIN_LEFT, ""), ("      driver:\n", f"{PLAIN_LEFT}      driver:\n"))
+    assert told_edits(compared, ROBOT, after)[0].partition("; ")[0] == (
+        "moved component `eyes.left` moved to the group `legs`, and now belongs to `orsa` instead of `vega`"
+    )
+
+
+def test_a_group_that_goes_up_in_another_one_is_one_item(compared: Compared) -> None:
+    driver = ROBOT[ROBOT.index("      driver:\n") : ROBOT.index("types:")]
+    after = edited(ROBOT, (driver, ""), ("  legs:\n    owner: orsa\n    components:\n", driver))
+    assert told_edits(compared, ROBOT, after) == [
+        (
+            "merged group `legs` is merged into `eyes`, with `eyes.driver`; which now belongs to `vega` instead of `orsa`; "
+            "`/legs/driver/speed` becomes `/eyes/driver/speed`"
+        )
+    ]
+
+
+def test_topics_that_follow_a_namespace_are_one_item(compared: Compared) -> None:
+    before = edited(ROBOT, ("people: /people, rows: /rows", "people: people, rows: rows"))
+    after = edited(before, ("finder: {implements: finder,", "finder: {implements: finder, namespace: /safe,"))
+    edits = list_edits(compared(before, after))
+    assert [edit.text for edit in edits] == [
+        "node `finder`: namespace set to `/safe`; its names follow: `/people` → `/safe/people` and `/rows` → `/safe/rows`"
+    ]
+    assert edits[0].broken_partners == ("orsa",)
+
+
+def test_a_field_with_its_unit_is_one_item(compared: Compared) -> None:
+    before = "ros: {definitions: {m_msgs/msg/M: float32 x}}\ntypes: {T: m_msgs/msg/M}\n"
+    after = before.replace("float32 x", '"float32 x\\nfloat32 y # m, to the left"')
+    assert told_edits(compared, before, after) == [
+        "changed message `m_msgs/msg/M`: fields `float32 y` added; what is said of `y` set to `m, to the left`; it carries `T`"
+    ]
 
 
 def test_figures_of_one_element_are_one_item(compared: Compared) -> None:
