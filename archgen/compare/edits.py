@@ -130,14 +130,16 @@ def _merged_groups(changes: Iterable[Change]) -> Iterator[Edit]:
             moves_by_group.setdefault((change.old_id or "").partition(".")[0], []).append(change)
     for removal in [each for each in changes if (each.kind, each.element_kind) == ("removed", "group")]:
         moves = moves_by_group.get(removal.element_id, [])
-        targets = {move.element_id.partition(".")[0] for move in moves}
+        targets = list(dict.fromkeys(move.element_id.partition(".")[0] for move in moves))
         if len(targets) == 1 and not removal.parts:
             followers = [owner_changes[move.element_id] for move in moves if move.element_id in owner_changes]
             owner_notes = dict.fromkeys(each.text.partition("` ")[2] for each in followers)
-            target = targets.pop()
+            (target,) = targets
             sentence = f"group `{removal.element_id}` is merged into `{target}`, with {tick_names(move.element_id for move in moves)}"
             effects = [effect for move in moves if (effect := move.text.partition("; ")[2])]
-            text = "; ".join((sentence, *(f"which {note}" for note in owner_notes), *effects))
+            subject, verb = ("they", "belong") if len(followers) > 1 else ("it", "belongs")
+            notes = [f"{subject} {note.replace('belongs', verb, 1)}" for note in owner_notes]
+            text = "; ".join((sentence, *notes, *effects))
             members = (removal, *moves, *followers)
             confidence = min(move.confidence for move in moves)
             yield Edit("merged", "group", target, text, members, confidence, (removal.element_id,))

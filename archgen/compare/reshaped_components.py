@@ -121,12 +121,11 @@ def _judge_merged(part: str, whole: str, heirs: Sequence[OutputHeir], versions: 
     """Return how sure it is that a component is a part of another one now: that has its outputs, and reads what it did."""
     outputs = outputs_of(part, versions.elements_before)
     likeness = sum(heir.likeness for heir in heirs) / max(len(outputs), 1)
-    sources = sources_of(part, versions, side=0)
     own_outputs = {
         *outputs_of(part, versions.elements_before),
         *outputs_of(whole, versions.elements_before),
     }
-    outer_sources = [source for source in sources if source not in own_outputs]
-    new_sources = sources_of(whole, versions, side=1)
-    source_share = sum(source in new_sources for source in outer_sources) / len(outer_sources) if outer_sources else 1.0
+    outer_sources = sources_of(part, versions, side=0) - own_outputs
+    read_sources = outer_sources & sources_of(whole, versions, side=1)
+    source_share = len(read_sources) / len(outer_sources) if outer_sources else 1.0
     return truncate_confidence(0.6 * likeness + 0.4 * source_share)

@@ -86,7 +86,7 @@ class Reshaping:
         old_points, new_points = (
             set(value) if isinstance(value, list) else set[object]() for value in (change.before, change.after)
         )
-        waypoints = {str(point) for point in old_points ^ new_points}
+        waypoints = sorted(map(str, old_points ^ new_points))
         return bool(waypoints) and all(map(self._is_waypoint_inside, waypoints))
 
     def _is_waypoint_inside(self, waypoint: str) -> bool:
@@ -116,8 +116,8 @@ def _follows_reshaping(change: Change) -> bool:
 
 
 def _components_of_ports(ports: frozenset[str], versions: VersionPair) -> frozenset[str]:
-    keys = [(kind, port) for port in ports for kind in ("output", "input")]
-    return frozenset(component for key in keys if (component := component_of(key, versions)))
+    components = {component_of((kind, port), versions) for port in ports for kind in ("output", "input")}
+    return frozenset(components - {""})
 
 
 def _common_id(change: Change, versions: VersionPair) -> str:

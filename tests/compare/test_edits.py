@@ -198,7 +198,7 @@ def test_a_group_that_goes_up_in_another_one_is_one_item(compared: Compared) -> 
     after = edited(ROBOT, (driver, ""), ("  legs:\n    owner: orsa\n    components:\n", driver))
     assert told_edits(compared, ROBOT, after) == [
         (
-            "merged group `legs` is merged into `eyes`, with `eyes.driver`; which now belongs to `vega` instead of `orsa`; "
+            "merged group `legs` is merged into `eyes`, with `eyes.driver`; it now belongs to `vega` instead of `orsa`; "
             "`/legs/driver/speed` becomes `/eyes/driver/speed`"
         )
     ]
