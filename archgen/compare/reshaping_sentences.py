@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.key_phrases import format_value
+from archgen.compare.meaning_sentences import name_partner
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.output_heirs import OutputHeir, outputs_of, sources_of
 from archgen.compare.sentence_words import shown_id, tick_names
@@ -79,8 +80,20 @@ def _describe_rest(components: Sequence[str], heirs: Sequence[OutputHeir], versi
     if added:
         yield f"{tick_names(sorted(added))} {_is_or_are(added)} new"
     yield from _describe_other_sources(components, {*old_outputs, *new_outputs}, versions)
+    yield from _describe_other_owners(heirs, versions)
     for heir in heirs:
         yield from _describe_heir(heir, versions)
+
+
+def _describe_other_owners(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[str]:
+    """Describe which components belong to another partner than those whose outputs they have."""
+    for old_component, new_component in dict.fromkeys((heir.old_component, heir.new_component) for heir in heirs):
+        old_element = versions.elements_before.get(("component", old_component))
+        new_element = versions.elements_after.get(("component", new_component))
+        old_owner, new_owner = (element.owner if element else None for element in (old_element, new_element))
+        if new_owner and old_owner != new_owner:
+            former_note = f" instead of {name_partner(old_owner, versions)}" if old_owner else ""
+            yield f"`{new_component}` belongs to {name_partner(new_owner, versions)}{former_note}"
 
 
 def _describe_other_sources(components: Sequence[str], own_outputs: set[str], versions: VersionPair) -> Iterator[str]:

@@ -113,6 +113,14 @@ def test_nothing_hides_in_a_split(compared: Compared, changes: list[tuple[str, s
     assert edit.endswith(f"; {rest}")
 
 
+def test_a_part_that_changes_hands_says_so(compared: Compared) -> None:
+    handed_over = edited(SPLIT, (ROWS, ""), ("      driver:\n", f"{ROWS}      driver:\n"))
+    handed_over = edited(handed_over, ("left: left.image", "left: eyes.left.image"))
+    (edit, *_) = told_edits(compared, ROBOT, handed_over)
+    assert edit.startswith("split component `eyes.finder` is split into ")
+    assert "`legs.row_finder` belongs to Orsa instead of Vega" in edit
+
+
 def test_an_output_that_a_split_forgets_is_gone(compared: Compared) -> None:
     three = edited(ROBOT, ("rows: Rows}", "rows: Rows, dust: Dust}"))
     (edit, *_) = told_edits(compared, three, SPLIT)
