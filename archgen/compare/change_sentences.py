@@ -17,8 +17,13 @@ from archgen.compare.version_pair import VersionPair
 from archgen.model.quantity import Quantity
 from archgen.transform import ros_names
 
-_SURE_CONFIDENCE = 0.85
+SURE_CONFIDENCE = 0.85
 """From here on a rename is stated without its confidence."""
+
+
+def note_confidence(confidence: float) -> str:
+    """Return what stands behind a sentence that is not sure, empty for one that is."""
+    return "" if confidence >= SURE_CONFIDENCE else f" (recognised with {round(confidence * 100)} % confidence)"
 
 
 def describe_rename(change: Change, versions: VersionPair) -> str:
@@ -33,12 +38,7 @@ def describe_rename(change: Change, versions: VersionPair) -> str:
         sentence = f"{kind_word} `{old_id}` is called `{change.element_id.rpartition('.')[2]}` now"
     else:
         sentence = f"{kind_word} `{shorten_text(old_id)}` is called `{shorten_text(change.element_id)}` now"
-    confidence_note = (
-        ""
-        if change.confidence >= _SURE_CONFIDENCE
-        else f" (recognised with {round(change.confidence * 100)} % confidence)"
-    )
-    return sentence + confidence_note + _describe_following_names(change, versions)
+    return sentence + note_confidence(change.confidence) + _describe_following_names(change, versions)
 
 
 def _describe_following_names(change: Change, versions: VersionPair) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.reshaped_components import find_reshapings
@@ -20,7 +21,6 @@ EditKind = Literal[ChangeKind, "split", "merged", "copied"]
 _NUMBERED_KINDS = frozenset({"requirement", "use_case"})
 _MAX_PAIRS = 6
 """How many old and new ids one sentence names."""
-_SURE_CONFIDENCE = 0.85
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,7 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
 
 def _join_reshaping(reshaping: Reshaping, members: tuple[Change, ...]) -> Edit:
     confidence = reshaping.confidence
-    note = "" if confidence >= _SURE_CONFIDENCE else f" (recognised with {round(confidence * 100)} % confidence)"
-    text = reshaping.text + note
+    text = reshaping.text + note_confidence(confidence)
     if reshaping.kind == "copied":
         sentence, _, effects = members[0].text.partition("; ")
         text = "; ".join(filter(None, (f"{sentence}, {text}", effects)))
@@ -107,7 +106,7 @@ def _exchanged_ids(changes: Iterable[Change]) -> Iterator[Edit]:
 def _other_numbers(changes: Iterable[Change]) -> Iterator[Edit]:
     """Yield the requirements, and the use cases, that only got other ids."""
     for kind in ("use_case", "requirement"):
-        renames = [change for change in changes if _is_rename(change, {kind}) and change.confidence >= _SURE_CONFIDENCE]
+        renames = [change for change in changes if _is_rename(change, {kind}) and change.confidence >= SURE_CONFIDENCE]
         if len(renames) > 1:
             pairs = [f"`{change.old_id}` → `{change.element_id}`" for change in renames]
             surplus = len(pairs) - _MAX_PAIRS
