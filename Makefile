@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
 
-.PHONY: demo test test-all check lint format bench mutants golden pages clean
+.PHONY: demo test test-all properties check lint format bench mutants golden pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -13,6 +13,7 @@ help:
 	@echo "make check     ruff, mypy, lint-imports and the tests of make test"
 	@echo "make test      set up, and run the tests that take at most 20 s each"
 	@echo "make test-all  all tests: also those that take longer, build a wheel or need an installed ROS"
+	@echo "make properties  the property tests again, on new random draws each time"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
 	@echo "make bench     measure speed and scale"
 	@echo "make golden    renew the expected outputs of example_ramcip"
@@ -30,6 +31,9 @@ test: .make/test
 # not tried here, such as a Python that is not installed.
 test-all: test
 	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n auto --dist worksteal $(TESTS)
+
+properties: .make/test
+	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n auto --dist worksteal $(TESTS)
 
 check: lint test
 

@@ -141,7 +141,8 @@ def _explain_in_comment(target: Path, base: str | None) -> Iterator[None]:
 
 def _refuses_breaks(checked_project: CheckedProject) -> bool:
     """Whether the project's policy is to fail: then it fails, too, where nobody can say what a change breaks."""
-    return checked_project.architecture.review.breaking is Severity.ERROR
+    policy = checked_project.architecture.review.breaking
+    return policy is not None and policy.gravest is Severity.ERROR
 
 
 def _write_unjudged(target: Path, reason: str) -> None:

@@ -52,13 +52,14 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
     change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes)
     chain_changes = add_chain_causes(change_context, chain_changes, timing_pair)
-    breaking_severity = stricter_policy(before.architecture.review, after.architecture.review)
+    policy = stricter_policy(before.architecture.review, after.architecture.review)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
-    if breaking_severity is not Severity.OFF:
+    if policy.gravest is not Severity.OFF:
         changes = mark_breaking_changes(
             change_context,
             chain_changes,
             timing_pair,
+            policy,
         )
         idle_acceptances = find_idle_acceptances(changes, after.architecture.review)
     return Comparison(
@@ -72,7 +73,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         chain_changes,
         find_concerned_owners(changes, version_pair),
         judged_findings.silenced_findings,
-        breaking_severity=breaking_severity,
+        policy=policy,
         idle_acceptances=idle_acceptances,
     )
 

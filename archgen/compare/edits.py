@@ -16,6 +16,7 @@ from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.reshaping import Reshaping
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
+from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
 EditKind = Literal[ChangeKind, "split", "merged", "copied"]
 _NUMBERED_KINDS = frozenset({"requirement", "use_case"})
@@ -46,6 +47,12 @@ class Edit:
     def broken_partners(self) -> tuple[str, ...]:
         """Return the partners who lose something, sorted."""
         return tuple(sorted({each.partner for each in self.breaks}))
+
+    @property
+    def break_categories(self) -> tuple[BreakCategory, ...]:
+        """Return the categories of what partners lose, in the order of the policy."""
+        categories = {each.category for each in self.breaks}
+        return tuple(category for category in BREAK_CATEGORIES if category in categories)
 
 
 def list_edits(comparison: Comparison) -> tuple[Edit, ...]:

@@ -238,5 +238,5 @@ def _is_package_slip(package: str, name: str) -> bool:
     stem, known_stem = package.rpartition("_")[0], name.rpartition("_")[0]
     if stem and stem == known_stem:
         return slips <= _MAX_NAME_SLIPS
-    is_long = len(known_stem) >= _SURE_STEM_LENGTH and package[0] == name[0]
+    is_long = len(known_stem) >= _SURE_STEM_LENGTH and package[:1] == name[:1]
     return slips == 0 or (slips == 1 and (is_long or sorted(package) == sorted(name)))

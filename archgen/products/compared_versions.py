@@ -55,10 +55,10 @@ def read_versions(
         after = read_version(right or "HEAD", path, version_cache)
         if dots == "...":
             return read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache, after), after
-        return _read_earlier(left or "HEAD", path, version_cache, after), after
+        return read_earlier_version(left or "HEAD", path, version_cache, after), after
     if first is not None:
         after = read_version(second, path, version_cache)
-        return _read_earlier(first, path, version_cache, after), after
+        return read_earlier_version(first, path, version_cache, after), after
     # The newer version first here: it names the main line that the older one is found by.
     after = read_version(second, path, version_cache)
     main_line = after.checked_project.architecture.review.main
@@ -106,10 +106,10 @@ def read_at_base(
         return ProjectVersion(base.description, _check_moved(base.commit_id, path, version_cache, later))
 
 
-def _read_earlier(
+def read_earlier_version(
     version_text: str, path: Path | None, version_cache: VersionCache, later: ProjectVersion
 ) -> ProjectVersion:
-    """Read a version, also where the project lay in another folder than in a later version."""
+    """Read a version as `read_version` does, also where the project lay in another folder than in a later version."""
     try:
         return read_version(version_text, path, version_cache)
     except project.NotAtRevisionError:

@@ -29,7 +29,7 @@ groups:
 RETYPED = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace("Lamp", "Torch")
 SHOWN = """\
 Breaking changes
-  ~ breaks sssa: `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
+  ~ breaks sssa (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
 it is read by `display.screen.image`
       gives sssa, who reads `sensing.camera.image` as `display.screen.image`, `sensor_msgs/msg/CompressedImage` instead of \
 `sensor_msgs/msg/Image`
@@ -65,7 +65,7 @@ def diff(run: Run, *words: str) -> tuple[int, str]:
 
 def test_only_what_breaks_somebody_and_why(run: Run, both: Path) -> None:
     write(both, ROBOT, RETYPED)
-    assert diff(run, "--breaking") == (0, f"{SHOWN}\nwarning: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}\nwarning: 1 breaking change for sssa (wire)\n")
     status, whole = diff(run)
     assert (status, whole.startswith(SHOWN)) == (0, True)
     assert "title" in whole
@@ -83,7 +83,7 @@ def test_the_stricter_policy_counts(run: Run, both: Path, before: str, after: st
     status, out = diff(run, "--breaking")
     assert status == 1
     assert out.endswith(
-        "\nerror: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted\n"
+        "\nerror: 1 breaking change for sssa (wire); `review.breaking: error` refuses what is not accepted\n"
         "  = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: "
         "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`\n"
     )
@@ -95,7 +95,7 @@ def test_the_stricter_policy_counts(run: Run, both: Path, before: str, after: st
 )
 def test_milder_policies_only_say_so(run: Run, both: Path, before: str, after: str, said: str) -> None:
     write(both, ROBOT + f"review: {{breaking: {before}}}\n", RETYPED + f"review: {{breaking: {after}}}\n")
-    assert diff(run, "--breaking") == (0, f"{SHOWN}\n{said}: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}\n{said}: 1 breaking change for sssa (wire)\n")
 
 
 def test_a_project_that_does_not_ask(run: Run, both: Path) -> None:
@@ -115,7 +115,7 @@ def accepting(entries: str) -> str:
 
 AGREED = "{key: type, reason: agreed in March}"
 REFUSED = """
-error: 1 breaking change for sssa; `review.breaking: error` refuses what is not accepted
+error: 1 breaking change for sssa (wire); `review.breaking: error` refuses what is not accepted
   = help: mend it, or sssa says why it is right, in `review/sssa.yaml`: \
 `review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`
 """
@@ -125,7 +125,7 @@ def test_what_the_partner_accepts_in_its_own_file_is_shown_with_its_reason(run: 
     write(both, ROBOT + STRICT, RETYPED + STRICT, f"review/sssa.yaml: {ENTRY}: {AGREED}")
     assert diff(run, "--breaking") == (
         0,
-        f"{SHOWN}      accepted by sssa: agreed in March\n\n1 breaking change for sssa, accepted\n",
+        f"{SHOWN}      accepted by sssa: agreed in March\n\n1 breaking change for sssa (wire), accepted\n",
     )
 
 
@@ -150,7 +150,7 @@ def test_what_the_partner_does_not_say_of_this_change_accepts_nothing(
     assert diff(run, "--breaking") == (1, f"{SHOWN}      {said}\n{REFUSED}")
     mild = STRICT.replace("error", "warning")
     write(both, ROBOT + mild, RETYPED + mild, agreement)
-    assert diff(run, "--breaking") == (0, f"{SHOWN}      {said}\n\nwarning: 1 breaking change for sssa\n")
+    assert diff(run, "--breaking") == (0, f"{SHOWN}      {said}\n\nwarning: 1 breaking change for sssa (wire)\n")
 
 
 def test_an_acceptance_from_before_was_of_another_change(run: Run, both: Path) -> None:
@@ -245,12 +245,13 @@ def test_json(run: Run, both: Path) -> None:
     assert [error.message for error in jsonschema_rs.validator_for(schema).iter_errors(data)] == []
     (change,) = data["changes"]
     assert (status, change["breaks"], change["accepted"]) == (1, ["sssa"], None)
-    assert [(one["partner"], one["why"][:10], one["agreed"]) for one in change["because"]] == [
-        ("sssa", "gives sssa", None)
+    assert [(one["partner"], one["category"], one["why"][:10], one["agreed"]) for one in change["because"]] == [
+        ("sssa", "wire", "gives sssa", None)
     ]
     assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
+        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note"},
         "fails": True,
         "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],
@@ -297,4 +298,119 @@ def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
         )
         assert ran.out.endswith(f"\nwarning: cannot be judged: `{broken}` cannot be read\n")
         (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")
-    assert "breaks sssa: `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
+    assert "breaks sssa (wire): `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
+
+
+TEXTS = """\
+types: {Picture: {message: sensor_msgs/msg/Image, comment: in metres}}
+"""
+TYPED = ROBOT.replace("image: sensor_msgs/msg/Image", "image: Picture") + TEXTS
+REWORDED = TYPED.replace("in metres", "in feet")
+RENAMED = TYPED.replace("camera", "eye")
+
+
+def policy(text: str) -> str:
+    """Give the section with a policy on breaking changes."""
+    return f"review: {{breaking: {text}}}\n" if text else ""
+
+
+@pytest.mark.parametrize(
+    ("changed", "policies", "expected"),
+    [
+        # One severity holds for wire and promise: texts and ids count no more than they do by default.
+        (REWORDED, ("error", "error"), (0, "warning: 1 breaking change for sssa (meaning)")),
+        (REWORDED, ("note", "note"), (0, "note: 1 breaking change for sssa (meaning)")),
+        (
+            REWORDED,
+            ("off", "off"),
+            (0, "`review.breaking` is off: this project does not ask what breaks another partner"),
+        ),
+        (RENAMED, ("error", "error"), (0, "note: 1 breaking change for sssa (source)")),
+        (RENAMED, ("", ""), (0, "note: 1 breaking change for sssa (source)")),
+        # Each category by itself, and the stricter of both versions for each.
+        (REWORDED, ("{meaning: off}", "{meaning: off}"), (0, "no change breaks another partner")),
+        (REWORDED, ("{meaning: off}", ""), (0, "warning: 1 breaking change for sssa (meaning)")),
+        (
+            REWORDED,
+            ("{wire: error, meaning: note}", "{meaning: note}"),
+            (0, "note: 1 breaking change for sssa (meaning)"),
+        ),
+        (RENAMED, ("{source: off}", "{source: off}"), (0, "no change breaks another partner")),
+        (
+            REWORDED,
+            ("{meaning: error}", "off"),
+            (
+                1,
+                "error: 1 breaking change for sssa (meaning); `review.breaking: {meaning: error}` refuses what is not accepted",
+            ),
+        ),
+        (
+            RENAMED,
+            ("{wire: off}", "{source: error}"),
+            (
+                1,
+                "error: 1 breaking change for sssa (source); `review.breaking: {source: error}` refuses what is not accepted",
+            ),
+        ),
+    ],
+)
+def test_each_category_has_a_severity(
+    run: Run, both: Path, changed: str, policies: tuple[str, str], expected: tuple[int, str]
+) -> None:
+    before, after = map(policy, policies)
+    write(both, TYPED + before, changed + after)
+    status, out = diff(run, "--breaking")
+    assert (status, expected[1] in out.splitlines()) == (expected[0], True)
+
+
+def test_an_acceptance_counts_for_every_category_of_the_change(run: Run, both: Path) -> None:
+    strict = policy("{meaning: error}")
+    write(both, TYPED + strict, REWORDED + strict, "review/sssa.yaml: Picture: {key: comment, reason: we know}")
+    status, out = diff(run, "--breaking")
+    assert (status, out.splitlines()[-1]) == (0, "1 breaking change for sssa (meaning), accepted")
+
+
+def test_other_ids_alone_stand_among_the_other_changes_unless_they_matter(run: Run, both: Path) -> None:
+    write(both, TYPED, RENAMED)
+    assert diff(run)[1] == (
+        "sensing: Sensing\n"
+        "  > component `sensing.camera` is called `eye` now (recognised with 72 % confidence); "
+        "for sssa only ids change (source)\n"
+        "\n"
+        "1 change (1 renamed); concerns certh, sssa\n"
+    )
+    assert "breaks" not in diff(run, "--format", "markdown")[1]
+    loud = policy("{source: warning}")
+    write(both, TYPED + loud, RENAMED + loud)
+    assert diff(run)[1].startswith("Breaking changes\n  > breaks sssa (source): component `sensing.camera`")
+
+
+def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run, both: Path) -> None:
+    mixed = policy("{meaning: error, wire: note}")
+    text = TYPED.replace("outputs: {image: Picture}", "outputs: {image: Picture, depth: Depth}")
+    text = text.replace("inputs: {image: camera.image}", "inputs: {image: camera.image, depth: camera.depth}")
+    after = text.replace("in metres", "in feet").replace(", depth: Depth}", "}").replace(", depth: camera.depth", "")
+    write(both, text + mixed, after + mixed)
+    status, out = diff(run, "--breaking")
+    assert status == 1
+    assert [line.split(":")[0] for line in out.splitlines() if line.startswith("  ")][::2] == [
+        "  ~ breaks sssa (meaning)",
+        "  - breaks sssa (wire)",
+        "  = help",
+    ]
+
+
+def test_an_unknown_category_is_told_with_a_guess(run: Run, both: Path) -> None:
+    write(both, ROBOT, ROBOT + policy("{wrie: error}"))
+    ran = run("check", "b")
+    assert ran.status == 1
+    assert "a policy on breaking changes has no key `wrie`" in ran.out
+    assert "did you mean `wire`?" in ran.out
+
+
+def test_what_cannot_be_judged_is_refused_if_any_category_is_an_error(run: Run, both: Path) -> None:
+    for text, status in (("{source: error}", 1), ("{wire: warning}", 0)):
+        write(both, ROBOT + policy(text), ROBOT + policy(text))
+        (both / "b" / "more.yaml").write_text("groups: [", encoding="utf-8")
+        ran = run("diff", "./a", "./b", "--breaking")
+        assert (ran.status, "cannot be judged: `more.yaml` cannot be read" in ran.out) == (status, True)

@@ -55,13 +55,14 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
     ran = run("diff")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (
-        "sensing: Sensing\n"
-        "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
+        "Breaking changes\n"
+        "  ~ breaks sssa (promise): `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
+        "      promises for `sensing.camera.image` 5 Hz instead of 10 Hz; `display.screen.image` of sssa reads it\n"
         "\n"
         "Latency of chains\n"
         "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
-        "1 change (1 changed); concerns certh, sssa\n"
+        "1 change (1 changed); concerns certh, sssa; breaks sssa\n"
     )
     assert run("diff", "main", "-C", robot).out == ran.out
     assert run("diff", "main..slow").out == ran.out
@@ -196,9 +197,12 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("form", "start"),
     [
-        ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
+        ("text", "Breaking changes\n  ~ breaks sssa (promise): `sensing.camera`: rate"),
         ("json", '{\n  "version": 1,'),
-        ("markdown", "### 1 change of the architecture: concerns `certh` and `sssa`\n\n`where this branch left main ("),
+        (
+            "markdown",
+            "### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n\n`where this branch left main (",
+        ),
         ("html", "<!DOCTYPE html>\n"),
         ("svg", '<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"'),
     ],

@@ -84,7 +84,8 @@ BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
         1,
         "### 2 changes of the architecture: breaks `b`, also concerns `a`",
     ),
-    "a rate is lower, and high enough": ([("a.yaml", "10 Hz", "5 Hz")], 0, "### 1 change of the architecture: concerns `a` and `b`"),
+    "a rate is lower, and high enough": ([("a.yaml", "10 Hz", "5 Hz")], 1, "### 1 change of the architecture: breaks `b`, also concerns `a`"),
+    "a rate is higher": ([("a.yaml", "10 Hz", "20 Hz")], 0, "### 1 change of the architecture: concerns `a` and `b`"),
     "a rate is too low": ([SLOW], 1, "### 1 change of the architecture: breaks `b`, also concerns `a`"),
     "a rate is too low, and the deadline follows": ([SLOW, LONGER], 1, "### 2 changes of the architecture: breaks `a` and `b`"),
     "the policy is switched off": (

@@ -217,12 +217,12 @@ def test_what_the_project_refuses(
 
 def test_a_warning_refuses_nothing_and_off_is_not_even_looked_at(compared: Compared) -> None:
     warned = compared(REVIEWED.replace("error", "warning"), GONE.replace("error", "warning"))
-    assert (warned.is_refused, warned.breaking_severity) == (False, Severity.WARNING)
+    assert (warned.is_refused, warned.policy.gravest) == (False, Severity.WARNING)
     assert [change.broken_partners for change in warned.changes if change.breaks] == [("sssa",)]
     quiet = compared(REVIEWED.replace("error", "off"), GONE.replace("error", "off"))
-    assert (quiet.is_refused, quiet.breaking_severity) == (False, Severity.OFF)
+    assert (quiet.is_refused, quiet.policy.gravest) == (False, Severity.OFF)
     assert [change for change in quiet.changes if change.breaks] == []
-    assert compared(ROBOT, ROBOT).breaking_severity is Severity.WARNING
+    assert compared(ROBOT, ROBOT).policy.gravest is Severity.WARNING
 
 
 def test_only_what_breaks(compared: Compared) -> None:

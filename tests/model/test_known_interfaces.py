@@ -74,6 +74,7 @@ def test_nearest(message: str, guess: str | None) -> None:
         ("nav2_msgs/msg/costmap", "nav2_msgs/msg/Costmap"),
         ("std_srvs/trigger", "std_srvs/srv/Trigger"),
         ("Image/Depth", None),
+        ("/Image", None),
         ("v1.2", None),
         ("camera picture", None),
         ("a/b/c/d", None),

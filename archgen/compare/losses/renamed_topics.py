@@ -84,6 +84,7 @@ def _find_causes(context: ChangeContext, node_id: str, port_id: str) -> list[int
         context.indices_by_change_kind("component", component_id, "renamed", "moved"),
         context.indices_by_change_kind("group", group_id, "renamed"),
         context.change_indices("node", node_id),
+        context.change_indices("output", port_id, "medium"),
         context.change_indices("output", port_id),
     )
     return next((indices for indices in candidate_indices if indices), [])

@@ -35,7 +35,9 @@ def find_unserved_requirements(context: ChangeContext) -> Iterator[PartnerLoss]:
                 f"leaves `{requirement}` without a component, also for {join_words(broken_partners)}{use_case_note}"
             )
             yield from (
-                loss for partner in broken_partners for loss in context.losses_of_partner([index], partner, reason_text)
+                loss
+                for partner in broken_partners
+                for loss in context.losses_of_partner([index], partner, reason_text, "promise")
             )
 
 

@@ -9,6 +9,7 @@ from archgen.compare.edits import list_edits
 from archgen.diagnostics.safe_text import format_json
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
+from archgen.model.review_settings import BREAK_CATEGORIES
 from archgen.timing.analysis import ChainResult
 from archgen.views.changes.comparison_document import sort_by_severity
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -35,7 +36,8 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
         "chains": [_chain_record(item) for item in comparison.chains],
         "owners": list(comparison.concerned_owners),
         "breaking": {
-            "severity": str(comparison.breaking_severity),
+            "severity": str(comparison.policy.gravest),
+            "policy": {category: str(comparison.policy.severity_of(category)) for category in BREAK_CATEGORIES},
             "fails": comparison.is_refused,
             "judged": comparison.is_judged,
             "idle": [
@@ -81,7 +83,12 @@ def change_record(architecture_change: Change) -> dict[str, Any]:
         # The keys are the format, not the names of attributes: they stay when those change.
         "breaks": list(architecture_change.broken_partners),
         "because": [
-            {"partner": partner_break.partner, "why": partner_break.reason, "agreed": partner_break.agreement}
+            {
+                "partner": partner_break.partner,
+                "category": partner_break.category,
+                "why": partner_break.reason,
+                "agreed": partner_break.agreement,
+            }
             for partner_break in architecture_change.breaks
         ],
         "accepted": architecture_change.acceptance_reason,

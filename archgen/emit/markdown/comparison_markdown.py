@@ -93,7 +93,7 @@ def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument)
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
         if document.refusal_help:
-            comment.add_block(write_sentence(comparison_document.REFUSAL_LEAD + document.refusal_help))
+            comment.add_block(write_sentence(document.refusal_lead + document.refusal_help))
         comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
     # Without any change the verdict is the headline.
     for line in document.verdict[1 if document.is_empty else 0 :]:
@@ -101,10 +101,11 @@ def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument)
 
 
 def _breaking_item(item: BreakingChange) -> str:
-    lines = [_change_item(item.change)]
-    for reason, partners in item.partners_by_reason.items():
-        lines.append(f"  - breaks {_join_partners(partners)}: {write_sentence(reason)}")
-    return "\n".join((*lines, *(f"  - {write_sentence(line)}" for line in item.agreements)))
+    losses = (
+        f"  - breaks {_join_partners(loss.partners)} ({loss.category}): {write_sentence(loss.reason)}"
+        for loss in item.losses
+    )
+    return "\n".join((_change_item(item.change), *losses, *(f"  - {write_sentence(line)}" for line in item.agreements)))
 
 
 def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:

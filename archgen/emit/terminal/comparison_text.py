@@ -70,19 +70,20 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
     told_reasons = set[str]()
     for item in document.breaking_changes:
         yield _change_line(item.change, _breaks_note(item, colour=colour), colour=colour)
-        reasons = item.partners_by_reason.keys()
+        reasons = dict.fromkeys(loss.reason for loss in item.losses).keys()
         yield from (make_visible(f"      {reason}") for reason in reasons if reason not in told_reasons)
         if not told_reasons.isdisjoint(reasons):
             yield "      as above" if told_reasons.issuperset(reasons) else "      and as above"
         told_reasons |= reasons
         yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
-        yield make_visible(f"  {comparison_document.REFUSAL_LEAD}{document.refusal_help}")
+        yield make_visible(f"  {document.refusal_lead}{document.refusal_help}")
     yield ""
 
 
 def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
-    return _paint_text(f"breaks {make_visible(', '.join(item.change.broken_partners))}: ", "1;31", colour=colour)
+    partners = make_visible(", ".join(item.change.broken_partners))
+    return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
 def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
-from archgen.compare import Change, Comparison
+from archgen.compare import Change, Comparison, PartnerBreak
 from archgen.compare.agreements import agreement_key, find_partner_id
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.model.review_settings import AcceptedChange, agreement_file
+from archgen.model.review_settings import (
+    BREAK_CATEGORIES,
+    AcceptedChange,
+    BreakCategory,
+    BreakPolicy,
+    agreement_file,
+)
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
@@ -24,16 +31,12 @@ _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 def describe_verdict(comparison: Comparison) -> Iterator[str]:
     """Yield how many changes break whom and what the policy says, then the accepted entries that are idle."""
     obstacle = describe_obstacle(comparison)
-    policy = _describe_policy(comparison)
-    if obstacle and comparison.breaking_severity is not Severity.OFF:
-        certain_note = (
-            f"; certain: {policy.removeprefix(f'{comparison.breaking_severity}: ')}"
-            if any(change.breaks for change in comparison.changes)
-            else ""
-        )
-        yield f"{comparison.breaking_severity}: {obstacle}{certain_note}"
+    verdict = _judge_changes(comparison)
+    if obstacle and comparison.policy.gravest is not Severity.OFF:
+        certain_note = f"; certain: {verdict.sentence}" if any(change.breaks for change in comparison.changes) else ""
+        yield f"{comparison.policy.gravest}: {obstacle}{certain_note}"
     else:
-        yield policy
+        yield f"{verdict.severity}: {verdict.sentence}" if verdict.severity else verdict.sentence
     for entry in comparison.idle_acceptances:
         yield _describe_idle(comparison, entry)
 
@@ -46,15 +49,43 @@ def describe_obstacle(comparison: Comparison) -> str:
     return f"cannot be judged: {join_words(notes)}" if notes else ""
 
 
-def describe_refusal(changes: Sequence[Change], matched_ids: MatchedIds, *, is_refused: bool) -> str:
-    """Describe what to do about the first change that the policy refuses; empty if it refuses none."""
-    refused_change = next((item for item in changes if item.unheard_partners), None)
-    if not is_refused or refused_change is None:
-        return ""
-    partners = [find_partner_id(partner, matched_ids) for partner in refused_change.unheard_partners]
-    files = join_words([f"`{agreement_file(partner)}`" for partner in partners])
-    say = "says" if len(partners) == 1 else "each say"
-    return f"mend it, or {join_words(partners)} {say} why it is right, in {files}: {_write_entry(refused_change, 'THE REASON')}"
+def describe_refusal(comparison: Comparison) -> str:
+    """Describe which policy refuses a comparison, and what to do about the first change; empty if none is refused."""
+    for change in comparison.changes:
+        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        if refused_breaks:
+            partners = sorted({each.partner for each in refused_breaks})
+            return describe_remedy(change, partners, comparison.matched_ids)
+    return ""
+
+
+def describe_remedy(change: Change, partners: Sequence[str], matched_ids: MatchedIds) -> str:
+    """Describe what to do about a change that breaks partners who did not agree."""
+    partner_ids = [find_partner_id(partner, matched_ids) for partner in partners]
+    files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
+    say = "says" if len(partner_ids) == 1 else "each say"
+    return (
+        f"mend it, or {join_words(partner_ids)} {say} why it is right, in {files}: {_write_entry(change, 'THE REASON')}"
+    )
+
+
+def join_categories(categories: Iterable[BreakCategory]) -> str:
+    """Return categories once each, in the order of the policy: `wire, promise`."""
+    present_categories = set(categories)
+    return ", ".join(category for category in BREAK_CATEGORIES if category in present_categories)
+
+
+def write_policy(comparison: Comparison) -> str:
+    """Return the policy that refuses changes, as files write it: `review.breaking: error`, or the categories it names."""
+    policy = comparison.policy
+    if policy == BreakPolicy.from_severity(Severity.ERROR):
+        return "`review.breaking: error`"
+    refusing = [category for category in BREAK_CATEGORIES if policy.severity_of(category) is Severity.ERROR]
+    return f"`review.breaking: {{{', '.join(f'{category}: error' for category in refusing)}}}`"
+
+
+def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
+    return comparison.policy.severity_of(partner_break.category) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
@@ -89,21 +120,30 @@ def _quote_text(text: str) -> str:
     return text if _PLAIN_TEXT.fullmatch(text) else json.dumps(text, ensure_ascii=False)
 
 
-def _describe_policy(comparison: Comparison) -> str:
-    if comparison.breaking_severity is Severity.OFF:
-        return "`review.breaking` is off: this project does not ask what breaks another partner"
+class _Verdict(NamedTuple):
+    """How many changes break whom; the severity is None where there is nothing to answer."""
+
+    severity: Severity | None
+    sentence: str
+
+
+def _judge_changes(comparison: Comparison) -> _Verdict:
+    if comparison.policy.gravest is Severity.OFF:
+        return _Verdict(None, "`review.breaking` is off: this project does not ask what breaks another partner")
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
-        return "no change breaks another partner"
+        return _Verdict(None, "no change breaks another partner")
     partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
-    count_phrase = f"{count_noun(len(breaking_changes), 'breaking change')} for {', '.join(partners)}"
+    categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
+    sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {', '.join(partners)} ({categories})"
     accepted_count = sum(change.acceptance_reason is not None for change in breaking_changes)
     if accepted_count == len(breaking_changes):
-        return f"{count_phrase}, accepted"
-    accepted_note = f", {accepted_count} of them accepted" if accepted_count else ""
-    if comparison.is_refused:
-        return f"error: {count_phrase}{accepted_note}; `review.breaking: error` refuses what is not accepted"
-    return f"{comparison.breaking_severity}: {count_phrase}{accepted_note}"
+        return _Verdict(None, f"{sentence}, accepted")
+    sentence += f", {accepted_count} of them accepted" if accepted_count else ""
+    severity = max(map(comparison.break_severity, breaking_changes))
+    if severity is Severity.ERROR:
+        sentence += f"; {write_policy(comparison)} refuses what is not accepted"
+    return _Verdict(severity, sentence)
 
 
 def _describe_idle(comparison: Comparison, entry: AcceptedChange) -> str:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.model.review_settings import BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
@@ -25,7 +26,6 @@ from archgen.views.inline_text import count_noun
 
 BREAKING_HEADING = "Breaking changes"
 CHAINS_HEADING = "Latency of chains"
-REFUSAL_LEAD = "`review.breaking: error` refuses this: "
 UNSOUND_LEAD = "is not sound"
 UNSOUND_SENTENCE = "What cannot be read there is left out of the comparison:"
 _FINDING_HEADINGS = {
@@ -51,14 +51,28 @@ class NamedVersion:
 
 
 @dataclass(frozen=True, slots=True)
+class SharedLoss:
+    """What some partners lose by a change, in the words and the category of `PartnerBreak`."""
+
+    reason: str
+    category: BreakCategory
+    partners: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """An edit that breaks partners: for each reason whom; then what entries of `review.accepted` say about it, and as
+    """An edit that breaks partners: what which of them lose; then what entries of `review.accepted` say about it, and as
     which findings it is found.
     """
 
     change: Edit
-    partners_by_reason: Mapping[str, tuple[str, ...]]
+    losses: tuple[SharedLoss, ...]
     agreements: tuple[str, ...]
+
+    @property
+    def categories(self) -> str:
+        """Return the categories of what is lost: `wire, promise`."""
+        return ", ".join(self.change.break_categories)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +112,8 @@ class ComparisonDocument:
     """The owners of what changed, those who are broken included."""
     partner_titles: Mapping[str, str]
     breaking_changes: tuple[BreakingChange, ...]
+    refusal_lead: str
+    """Which policy refuses the changes, as the beginning of a sentence that `refusal_help` ends."""
     refusal_help: str
     """What to do if the project's policy refuses the changes, empty if it does not."""
     verdict: tuple[str, ...]
@@ -145,7 +161,8 @@ def describe_comparison(
 ) -> ComparisonDocument:
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
     edits = list_edits(comparison)
-    other_edits = [edit for edit in edits if not edit.breaks]
+    breaking_edits = [edit for edit in edits if _is_shown_as_break(edit, comparison)]
+    other_edits = [_note_source(edit) for edit in edits if not _is_shown_as_break(edit, comparison)]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
@@ -163,23 +180,21 @@ def describe_comparison(
         obstacle=breaking_verdict.describe_obstacle(comparison),
         is_empty=not (comparison.changes or comparison.chains or finding_groups),
         only_breaking=comparison.only_breaking,
-        broken_partners=_sorted_partners(comparison.changes),
-        concerned_partners=comparison.concerned_owners,
+        broken_partners=_sorted_partners(breaking_edits),
+        concerned_partners=tuple(sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)})),
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
                 edit,
-                _partners_by_reason(edit),
+                tuple(_share_losses(edit)),
                 tuple(
                     dict.fromkeys((*_describe_agreements(edit, comparison), *_name_findings(edit, repeated_findings)))
                 ),
             )
-            for edit in edits
-            if edit.breaks
+            for edit in breaking_edits
         ),
-        refusal_help=breaking_verdict.describe_refusal(
-            comparison.changes, comparison.matched_ids, is_refused=comparison.is_refused
-        ),
+        refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
+        refusal_help=breaking_verdict.describe_refusal(comparison),
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
         change_groups=tuple(group_changes(other_edits, comparison)),
@@ -286,14 +301,31 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
             yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
 
 
-def _partners_by_reason(edit: Edit) -> Mapping[str, tuple[str, ...]]:
-    """Return each reason why an edit breaks somebody, with the partners it breaks."""
-    partners: dict[str, set[str]] = {}
+def _is_shown_as_break(edit: Edit, comparison: Comparison) -> bool:
+    """Whether an edit stands among the breaking ones. Other ids alone do not, unless they matter or are asked for: they
+    break nobody's program.
+    """
+    if comparison.only_breaking or comparison.policy.source > Severity.NOTE:
+        return bool(edit.breaks)
+    return any(category != "source" for category in edit.break_categories)
+
+
+def _note_source(edit: Edit) -> Edit:
+    """Return an edit with a note on the partners for whom only ids change."""
+    if not edit.breaks:
+        return edit
+    return replace(edit, text=f"{edit.text}; for {join_words(edit.broken_partners)} only ids change (source)")
+
+
+def _share_losses(edit: Edit) -> Iterator[SharedLoss]:
+    """Yield each loss once, with the partners who have it."""
+    partners: dict[tuple[str, BreakCategory], set[str]] = {}
     for partner_break in edit.breaks:
-        partners.setdefault(partner_break.reason, set()).add(partner_break.partner)
-    return {reason: tuple(sorted(names)) for reason, names in partners.items()}
+        partners.setdefault((partner_break.reason, partner_break.category), set()).add(partner_break.partner)
+    for (reason, category), names in partners.items():
+        yield SharedLoss(reason, category, tuple(sorted(names)))
 
 
-def _sorted_partners(changes: Iterable[Change]) -> tuple[str, ...]:
+def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:
     """Return the partners for whom something breaks."""
     return tuple(sorted({partner for change in changes for partner in change.broken_partners}))

@@ -69,15 +69,16 @@ def _breaking_section(document: ComparisonDocument) -> Section | None:
         return None
     blocks: list[Block] = []
     if document.refusal_help:
-        blocks.append(Paragraph(text_runs(comparison_document.REFUSAL_LEAD + document.refusal_help), "error"))
+        blocks.append(Paragraph(text_runs(document.refusal_lead + document.refusal_help), "error"))
     blocks.append(Bullets(tuple(map(_breaking_item, document.breaking_changes))))
     return Section("changes:breaking", comparison_document.BREAKING_HEADING, tuple(blocks))
 
 
 def _breaking_item(item: BreakingChange) -> Inlines:
     lines: list[Text] = []
-    for reason, partners in item.partners_by_reason.items():
-        lines += [Text(f"breaks {', '.join(partners)}", strong=True, line_break=True), Text(": "), *text_runs(reason)]
+    for loss in item.losses:
+        lines += [Text(f"breaks {', '.join(loss.partners)}", strong=True, line_break=True)]
+        lines += [Text(f" ({loss.category}): "), *text_runs(loss.reason)]
     for line in item.agreements:
         lines += [Text("", line_break=True), *text_runs(line)]
     return (*_change_runs(item.change), *lines)

@@ -27,6 +27,7 @@ RETYPED = (
     "gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
     "(the message stays `sensor_msgs/msg/Image`)"
 )
+RENAMED = "renames what sssa reads: `{}` is `{}` now; its files follow in this change"
 OUTPUT = ("image: Colour image, ", "")
 DANGLING = ("image: camera.image", "image: ")
 
@@ -102,13 +103,13 @@ FUNCTIONS = {
     "a renamed output that its reader follows": (
         BASE,
         [("image: Colour", "picture: Colour"), ("camera.image", "camera.picture")],
-        [],
+        [f"sensing.camera.picture sssa: {RENAMED.format('sensing.camera.image', 'sensing.camera.picture')}"],
     ),
     "a renamed output that its reader does not follow": (
         BASE.replace("  tracking:", "      screen: {inputs: {picture: camera.image}}\n  tracking:"),
         [("image: Colour", "images: Colour"), ("picture: camera.image", "picture: camera.images")],
         [
-            "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+            "sensing.camera.images sssa: renames what sssa reads: `sensing.camera.image` is `sensing.camera.images` now; `tracking.tracker.image` has to follow"
         ],
     ),
     "a component in another group": (
@@ -117,7 +118,7 @@ FUNCTIONS = {
             ("      camera: {outputs: {image: Colour image, depth: Depth image}}\n", "      lens: Lens\n"),
             ("{lamp: Lamp}", "{lamp: Lamp, camera: {outputs: {image: Colour image, depth: Depth image}}}"),
         ],
-        [],
+        [f"eyes.camera sssa: {RENAMED.format('sensing.camera.image', 'eyes.camera.image')}"],
     ),
     "a conceptual type": (
         BASE,

@@ -27,15 +27,22 @@ groups:
   tracking: {owner: sssa, components: {tracker: {inputs: {image: sensing.camera.image}}}}
 """
 )
-TAKEN = "takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+RENAMED = "renames what sssa reads: `sensing.camera.image` is `{}` now; "
+LEFT, FOLLOWED = "`tracking.tracker.image` has to follow", "its files follow in this change"
 
 
 @pytest.mark.parametrize(
     ("edits", "said"),
     [
-        ([("camera: {", "eye: {"), ("{image: camera", "{image: eye")], f"sensing.eye sssa: {TAKEN}"),
-        ([("  sensing:\n", "  seeing:\n")], f"seeing sssa: {TAKEN}"),
-        ([("  sensing:\n", "  seeing:\n"), ("sensing.camera", "seeing.camera")], ""),
+        (
+            [("camera: {", "eye: {"), ("{image: camera", "{image: eye")],
+            f"sensing.eye sssa: {RENAMED.format('sensing.eye.image')}{LEFT}",
+        ),
+        ([("  sensing:\n", "  seeing:\n")], f"seeing sssa: {RENAMED.format('seeing.camera.image')}{LEFT}"),
+        (
+            [("  sensing:\n", "  seeing:\n"), ("sensing.camera", "seeing.camera")],
+            f"seeing sssa: {RENAMED.format('seeing.camera.image')}{FOLLOWED}",
+        ),
         ([("{image: camera.image}", "{title: Screen}")], ""),
     ],
 )

@@ -122,7 +122,11 @@ LINKS = {
     "the size of one topic of two": (
         MAP,
         [("size: 1 kB", "size: 4 kB"), ("size: 10 kB", "size: 9.9 kB"), ("size: 1 MB", "size: 2 MB")],
-        both("Map/size", ASKS.format("111.2"), "sssa", "tum"),
+        [
+            "Colour image/size sssa: promises for `Colour image` 2 MB instead of 1 MB; sssa uses it",
+            "Map/size tum: promises for `Map` 4 kB instead of 1 kB; tum uses it",
+            *both("Map/size", ASKS.format("111.2"), "sssa", "tum"),
+        ],
     ),
     "a topic that is new on the link": (
         LINKED,

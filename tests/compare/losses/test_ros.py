@@ -16,6 +16,9 @@ nodes:
   mind: {implements: tracker, subscribes: {image: {qos: {reliability: reliable}}}}
 """
 )
+FOLLOWED = (
+    "{0} sssa: renames what sssa reads: `sensing.camera.image` is `{0}.image` now; its files follow in this change"
+)
 RENAMED = "takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; it is `{}` now"
 DERIVED = NODES.replace("topic: /eye/image, ", "")
 FEWER = ("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 50 ms")
@@ -66,10 +69,11 @@ NAMES = {
             (
                 "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; "
                 "it is `/sensing/colour_camera/image` now"
-            )
+            ),
+            FOLLOWED.format("sensing.colour_camera"),
         ],
     ),
-    "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], []),
+    "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], [FOLLOWED.format("sensing.colour_camera")]),
     "a node": (NODES, [("  eye: {", "  left_eye: {")], []),
     "a node that writes what another one reads": (
         NODES,
@@ -103,7 +107,10 @@ NAMES = {
     "a group after which the topic is called": (
         DERIVED,
         [("sensing", "seeing")],
-        ["seeing sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/seeing/camera/image` now"],
+        [
+            "seeing sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/seeing/camera/image` now",
+            FOLLOWED.format("seeing.camera").replace("seeing.camera sssa", "seeing sssa"),
+        ],
     ),
     "a shared topic that the output of the reader keeps": (
         SHARED + "ros: {shared_topics: [/eye/all]}\n",
@@ -237,7 +244,7 @@ NAMES = {
     "quality of a component that is called otherwise": (
         NODES,
         [FEWER, ("camera", "colour_camera")],
-        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}", FOLLOWED.format("sensing.colour_camera")],
     ),
     "quality for a component that is called otherwise": (
         NODES,
@@ -300,7 +307,14 @@ DEFINITIONS = {
         [("      uint8 red\n      uint8 blue\n", "      uint8 blue\n      uint8 red\n")],
         [f"x_msgs/msg/Pixel/fields sssa: puts fields in another order in `x_msgs/msg/Pixel`, which sssa uses; {NEW}"],
     ),
-    "another comment": (MESSAGES, [("# a comment", "# another comment")], []),
+    "another comment": (
+        MESSAGES,
+        [("# a comment", "# another comment")],
+        [
+            "x_msgs/msg/Image/comment sssa: says of `x_msgs/msg/Image` `another comment` instead of `a comment`; sssa uses it"
+        ],
+    ),
+    "the same comment in other letters": (MESSAGES, [("# a comment", "# A comment.")], []),
     "a message that nobody else reads": (MESSAGES, [("uint32[] ids", "uint32[] numbers")], []),
 }
 

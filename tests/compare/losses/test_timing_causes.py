@@ -100,8 +100,8 @@ CASES = {
         SCREEN,
         RENAMED,
         [
-            "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`",
             "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/sensing/camera/images` now",
+            "sensing.camera.images sssa: renames what sssa reads: `sensing.camera.image` is `sensing.camera.images` now; `tracking.tracker.image` has to follow",
             *both("sensing.camera.images", f"cuts the {MET} 151 ms; `mind` of sssa and `feet` of tum are on it", "sssa", "tum"),
         ],
     ),

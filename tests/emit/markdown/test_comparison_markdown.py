@@ -15,7 +15,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.review_settings import AcceptedChange, BreakPolicy
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -99,7 +99,7 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 #### Breaking changes
 
 - \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
-  - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+  - breaks `certh` (promise): makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
   - found as `late-chain` at `robot.yaml:22:10`
 
 #### Latency of chains
@@ -137,8 +137,8 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     assert (kind.element_kind, rate.element_kind) == ("type", "component")
     breaks = (
         PartnerBreak("sssa", "`display.finder` takes `Image`", "agreed in May"),
-        PartnerBreak("sssa", "two", "agreed in May"),
-        PartnerBreak("certh", "two"),
+        PartnerBreak("sssa", "two", "agreed in May", "meaning"),
+        PartnerBreak("certh", "two", category="meaning"),
     )
     claims = (AcceptedChange("Image", "agreed in *June*", "message", Span("archgen.yaml", 1, 1, 1, 1)),)
     kind = replace(kind, breaks=breaks, claims=claims)
@@ -151,8 +151,8 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 #### Breaking changes
 
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
-  - breaks `sssa`: `display.finder` takes `Image`
-  - breaks `certh` and `sssa`: two
+  - breaks `sssa` (wire): `display.finder` takes `Image`
+  - breaks `certh` and `sssa` (meaning): two
   - accepted by sssa: agreed in May
   - said in `archgen.yaml`, not by certh and sssa: agreed in \\*June\\*
 
@@ -162,9 +162,9 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 
 - \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
 """)
-    refused = replace(found, changes=(kind,), breaking_severity=Severity.ERROR)
+    refused = replace(found, changes=(kind,), policy=BreakPolicy(meaning=Severity.ERROR))
     assert (
-        "\n`review.breaking: error` refuses this: mend it, or certh says why it is right, in `review/certh.yaml`: "
+        "\n`review.breaking: {meaning: error}` refuses this: mend it, or certh says why it is right, in `review/certh.yaml`: "
         "`review: {accepted: {Image: {key: message, reason: THE REASON}}}`\n"
     ) in written(refused, broken)
 

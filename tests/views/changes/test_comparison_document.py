@@ -139,7 +139,10 @@ def test_a_refused_change_says_what_to_write_in_every_format(read_sides: ReadSid
         assert "names no breaking change here" not in texts[form], form
     _, texts = describe(sides, only_breaking=True)
     for form in FORMS:
-        assert "error: 1 breaking change for sssa; review.breaking: error refuses what is not accepted" in texts[form]
+        assert (
+            "error: 1 breaking change for sssa (wire); review.breaking: error refuses what is not accepted"
+            in texts[form]
+        )
         assert "names no breaking change here, and nothing in either version has this id" in texts[form], form
         assert REFUSED.replace("`", "") in texts[form], form
 
