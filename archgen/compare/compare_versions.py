@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
+from archgen.compare.chain_causes import add_chain_causes
 from archgen.compare.chain_changes import compare_chains
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Comparison
@@ -49,11 +50,13 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
+    change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes)
+    chain_changes = add_chain_causes(change_context, chain_changes, timing_pair)
     policy = stricter_policy(before.architecture.review, after.architecture.review)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
     if policy.gravest is not Severity.OFF:
         changes = mark_breaking_changes(
-            ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes),
+            change_context,
             chain_changes,
             timing_pair,
             policy,

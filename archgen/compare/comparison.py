@@ -85,6 +85,8 @@ class ChainChange:
     id: str
     before: ChainResult | None
     after: ChainResult | None
+    causes: tuple[Change, ...] = ()
+    """The changes that made its bound another."""
 
     @property
     def deadline(self) -> TimingValue | None:

@@ -8,6 +8,7 @@ from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.meaning_sentences import describe_lost_effects
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
@@ -136,6 +137,8 @@ def _describe_sources(
     outside_ids = [name for name in shown_ids if ("output", name) not in changed_keys]
     if outside_ids:
         yield f"it {'reads' if change_kind == 'added' else 'read'} {tick_names(outside_ids)}"
+    if change_kind == "removed":
+        yield from describe_lost_effects(common_inputs, versions)
 
 
 def _common_input(own_id: str, versions: VersionPair) -> str:

@@ -45,7 +45,14 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
             )
         ),
         chains=tuple(
-            chain_change
+            replace(
+                chain_change,
+                causes=tuple(
+                    cause
+                    for cause in chain_change.causes
+                    if not wanted_keys.isdisjoint(_touched_keys(cause, comparison))
+                ),
+            )
             for chain_change in comparison.chains
             if not wanted_ids.isdisjoint(_activities_and_nodes(chain_change))
         ),

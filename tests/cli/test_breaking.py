@@ -374,7 +374,7 @@ def test_other_ids_alone_stand_among_the_other_changes_unless_they_matter(run: R
     write(both, TYPED, RENAMED)
     assert diff(run)[1] == (
         "sensing: Sensing\n"
-        "  > component `sensing.camera` is called `eye` now (recognised with 72 % confidence); "
+        "  > component `sensing.camera` is called `eye` now; "
         "for sssa only ids change (source)\n"
         "\n"
         "1 change (1 renamed); concerns certh, sssa\n"

@@ -135,7 +135,7 @@ CASES = (
             ("wcet: 30 ms", "wcet: 40 ms"),
         ),
         (
-            "component `seeing.detector` is called `finder` now (recognised with 84 % confidence)",
+            "component `seeing.detector` is called `finder` now",
             "`seeing.finder`: worst case execution time `30 ms` → `40 ms`",
         ),
         ("agri",),

@@ -252,7 +252,14 @@ def test_what_nodes_say_of_ports() -> None:
     internal = element("port m.internal.publishes.x", parent="node m")
     assert (
         describe_port_change("removed", bare, pair({}, by_key(internal)))
-        == "node `n` no longer has `internal.publishes.x`"
+        == "node `n` no longer publishes `x`; no component knows of it"
+    )
+    heard = element(
+        "port n.internal.subscribes.x", parent="node n", topic=frozenset({"/x"}), message="std_msgs/msg/String"
+    )
+    assert (
+        describe_port_change("added", heard, pair({}, {}))
+        == "node `n` now subscribes to `/x`, a `std_msgs/msg/String`; no component knows of it"
     )
 
 

@@ -46,7 +46,7 @@ GROUP = KindSpec(
     features=(
         *NAME_FEATURES,
         # The names of its components outweigh all else: a group is what it holds.
-        FeatureSpec("components", 8, lambda _, group: frozenset(group.components)),
+        FeatureSpec("components", 8, lambda _, group: frozenset(group.components), is_decisive=True),
         text_feature(2, "description"),
         FeatureSpec("owner", 0.5, lambda relations, group: relations.common_ids("partner", [group.owner])),
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
+from archgen.compare.edits import list_edits
 from archgen.diagnostics.safe_text import format_json
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
@@ -26,6 +27,7 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
     return {
         "version": FORMAT_VERSION,
         "changes": [change_record(item) for item in comparison.changes],
+        "edits": _list_edit_records(comparison),
         "findings": {
             "new": [finding_to_json(item) for item in sort_by_severity(comparison.new_findings)],
             "cured": [finding_to_json(item) for item in sort_by_severity(comparison.cured_findings)],
@@ -48,6 +50,23 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
             "after": [finding_to_json(item) for item in reading_errors[1]],
         },
     }
+
+
+def _list_edit_records(comparison: Comparison) -> list[dict[str, Any]]:
+    """Return what people are shown as one item each, with the positions of its changes."""
+    positions = {id(change): position for position, change in enumerate(comparison.changes)}
+    return [
+        {
+            "kind": edit.kind,
+            "sort": edit.element_kind,
+            "element": edit.element_id,
+            "related": list(edit.related_ids),
+            "confidence": edit.confidence,
+            "text": edit.text,
+            "changes": [positions[id(change)] for change in edit.changes],
+        }
+        for edit in list_edits(comparison)
+    ]
 
 
 def change_record(architecture_change: Change) -> dict[str, Any]:

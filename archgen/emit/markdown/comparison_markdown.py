@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
@@ -22,7 +22,6 @@ from archgen.views.changes.comparison_document import BreakingChange, Comparison
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
 from archgen.views.graphs.changes.group_folding import fits_budget
-from archgen.views.inline_text import count_noun
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
@@ -31,7 +30,7 @@ _MAX_ERRORS = 5
 _MAX_COMMAND = 250
 _PLAIN_COMMAND = "archgen diff"
 # Escaped: at the beginning of an item "+" would start a list, and "~" a strike-through.
-_MARKDOWN_SIGNS = {**CHANGE_SIGNS, "added": "\\+", "changed": "\\~"}
+_MARKDOWN_SIGNS = {kind: f"\\{sign}" if sign in "+~" else sign for kind, sign in CHANGE_SIGNS.items()}
 
 
 def write_comparison_markdown(
@@ -120,6 +119,8 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
             _MAX_OPEN_ITEMS if len(change_group.changes) > _MAX_OPEN_ITEMS + 1 else _MAX_OPEN_ITEMS + 1,
             max(open_left, 0),
         )
+        # A fold with one item hides no more than it says.
+        open_count += len(change_group.changes) - open_count == 1
         open_left -= open_count
         comment.add_items(
             f"**{_group_heading(change_group)}**",
@@ -128,12 +129,11 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
             open_count,
         )
     if document.textual_changes:
-        comment.add_items(
-            "",
-            [_change_item(change) for change in document.textual_changes],
-            f"{count_noun(len(document.textual_changes), 'change')} of texts and pictures only",
-            0,
-        )
+        items = [_change_item(change) for change in document.textual_changes]
+        if len(items) == 1:
+            comment.add_items("**Texts and pictures only**", items)
+        else:
+            comment.add_items("", items, f"{len(items)} changes of texts and pictures only", 0)
 
 
 def _group_heading(change_group: ChangeGroup) -> str:
@@ -142,7 +142,7 @@ def _group_heading(change_group: ChangeGroup) -> str:
     return " · ".join(word for word in (title, group_code) if word)
 
 
-def _change_item(change: Change) -> str:
+def _change_item(change: Edit) -> str:
     return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
 
 
@@ -158,25 +158,35 @@ def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None
     if rows:
         comment.add_block(f"#### {comparison_document.CHAINS_HEADING}")
         comment.add_table(("chain", "before", "after", "difference", "deadline", "verdict"), rows)
+    reasons = [
+        f"- {write_code(shorten_name(row.id))} because of {write_sentence(row.reason)}"
+        for row in chain_rows
+        if row.reason
+    ]
+    if reasons:
+        open_count = len(reasons) if len(reasons) <= _MAX_OPEN_ITEMS + 1 else _MAX_OPEN_ITEMS
+        comment.add_items("", reasons, "{} more reasons", open_count)
 
 
 def _add_findings(comment: LimitedComment, group: FindingGroup) -> None:
     """Add findings. Notes are folded where they are new, and all that were cured."""
     items = [_finding_item(finding) for finding in group.findings]
-    if group.kind == "cured":
-        comment.add_items("", items, count_noun(len(items), "cured finding"), 0)
+    if group.kind == "cured" and len(items) > 1:
+        comment.add_items("", items, f"{len(items)} cured findings", 0)
         return
     open_count, noun = len(items), "finding"
     if group.kind == "new":
         # They are sorted by severity: what is grave comes first.
         open_count = sum(finding.severity is not Severity.NOTE for finding in group.findings)
-    if open_count:
-        comment.add_block(f"#### {group.heading}")
     if open_count > _MAX_OPEN_ITEMS + 1:
         open_count = _MAX_OPEN_ITEMS
     elif group.kind == "new":
         noun = "note"
-    summary = count_noun(len(items) - open_count, f"{'more' if open_count else 'new'} {noun}")
+    # A fold with one item hides no more than it says.
+    open_count += len(items) - open_count == 1
+    if open_count:
+        comment.add_block(f"#### {group.heading}")
+    summary = f"{len(items) - open_count} {'more' if open_count else 'new'} {noun}s"
     comment.add_items("", items, summary, open_count)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
@@ -14,8 +14,14 @@ from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
 from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
 
 # Plain ASCII, as terminals of build servers show it.
-_TERMINAL_SIGNS = {"added": "+", "removed": "-", "changed": "~", "renamed": ">", "moved": ">"}
-_SIGN_COLOURS = {"added": "32", "removed": "31", "changed": "33", "renamed": "36", "moved": "36"}
+_TERMINAL_SIGNS = {
+    **dict.fromkeys(("renamed", "moved", "split", "merged"), ">"),
+    "added": "+",
+    "copied": "+",
+    "removed": "-",
+    "changed": "~",
+}
+_SIGN_COLOURS = {">": "36", "+": "32", "-": "31", "~": "33"}
 _SEVERITY_COLOURS = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
 
 
@@ -80,8 +86,9 @@ def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
     return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
-def _change_line(change: Change, note: str = "", *, colour: bool) -> str:
-    sign = _paint_text(_TERMINAL_SIGNS[change.kind], _SIGN_COLOURS[change.kind], colour=colour)
+def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:
+    plain_sign = _TERMINAL_SIGNS[change.kind]
+    sign = _paint_text(plain_sign, _SIGN_COLOURS[plain_sign], colour=colour)
     return f"  {sign} {note}{make_visible(change.text)}"
 
 
@@ -94,6 +101,8 @@ def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[st
         verdict = f": {row.verdict}" if row.verdict else ""
         deadline = f", deadline {row.deadline}{verdict}" if row.deadline else ""
         yield make_visible(f"  {row.id}: {row.before} → {row.after}{growth}{deadline}")
+        if row.reason:
+            yield make_visible(f"      because of {row.reason}")
     yield ""
 
 

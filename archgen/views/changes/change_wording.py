@@ -9,13 +9,22 @@ from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare import Change, Comparison
-from archgen.compare.comparison import ChangeKind
+from archgen.compare.edits import Edit, EditKind
 from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
 from archgen.views.shapes import Inlines, Text
 
-CHANGE_SIGNS = {"added": "+", "removed": "\u2212", "changed": "~", "renamed": "→", "moved": "→"}
+CHANGE_SIGNS = {
+    **dict.fromkeys(("renamed", "moved", "split", "merged"), "→"),
+    **dict.fromkeys(("added", "copied"), "+"),
+    "removed": "\u2212",
+    "changed": "~",
+}
 """A sign for each kind of change, so that nothing depends on colour."""
-_CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {"added": "added", "removed": "removed"}
+_CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {
+    "added": "added",
+    "copied": "added",
+    "removed": "removed",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +33,7 @@ class ChangeGroup:
 
     group_id: str
     title: str
-    changes: tuple[Change, ...]
+    changes: tuple[Edit, ...]
 
     @property
     def heading(self) -> str:
@@ -32,10 +41,10 @@ class ChangeGroup:
         return f"{self.group_id}: {self.title}" if self.group_id and self.title else self.title or self.group_id
 
 
-def group_changes(changes: Iterable[Change], comparison: Comparison) -> Iterator[ChangeGroup]:
+def group_changes(changes: Iterable[Edit], comparison: Comparison) -> Iterator[ChangeGroup]:
     """Group changes by the group of their element, then those outside of all groups by kind."""
     groups = {**comparison.before.architecture.groups, **comparison.after.architecture.groups}
-    changes_by_heading: dict[tuple[bool, str], list[Change]] = {}
+    changes_by_heading: dict[tuple[bool, str], list[Edit]] = {}
     for change in changes:
         # Kinds without a heading are those inside of groups: their ids begin with the group's.
         heading_name = ELEMENT_KINDS[change.element_kind].heading
@@ -58,7 +67,7 @@ def is_textual(change: Change) -> bool:
     return find_effect(change.element_kind, change.key) is Effect.TEXT
 
 
-def count_by_kind(changes: Iterable[Change]) -> str:
+def count_by_kind(changes: Iterable[Edit]) -> str:
     """Count changes by kind: `1 added, 2 removed`."""
     kinds = Counter(str(change.kind) for change in changes)
     return ", ".join(f"{kinds[kind]} {kind}" for kind in CHANGE_SIGNS if kinds[kind])
@@ -71,6 +80,6 @@ def text_runs(text: str) -> Inlines:
     return tuple(Text(piece, code=index % 2 == 1) for index, piece in enumerate(pieces) if piece)
 
 
-def choose_mark(kind: ChangeKind) -> Literal["added", "removed", "changed"]:
+def choose_mark(kind: EditKind) -> Literal["added", "removed", "changed"]:
     """Return the mark by which emitters colour a kind of change."""
     return _CHANGE_MARKS.get(kind, "changed")

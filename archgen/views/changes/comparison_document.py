@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from archgen.compare import Change, Comparison
+from archgen.compare.edits import Edit, list_edits
+from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.model.review_settings import BreakCategory
@@ -18,6 +20,7 @@ from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
 
@@ -58,9 +61,11 @@ class SharedLoss:
 
 @dataclass(frozen=True, slots=True)
 class BreakingChange:
-    """A change that breaks partners: what which of them lose; then what entries of `review.accepted` say about it."""
+    """An edit that breaks partners: what which of them lose; then what entries of `review.accepted` say about it, and as
+    which findings it is found.
+    """
 
-    change: Change
+    change: Edit
     losses: tuple[SharedLoss, ...]
     agreements: tuple[str, ...]
 
@@ -119,7 +124,7 @@ class ComparisonDocument:
     """Changes that break nobody."""
     weighty_groups: tuple[ChangeGroup, ...]
     """The same without `textual_changes`, for formats that fold these."""
-    textual_changes: tuple[Change, ...]
+    textual_changes: tuple[Edit, ...]
     chain_rows: tuple[ChainRow, ...]
     finding_groups: tuple[FindingGroup, ...]
     graphs: tuple[Graph, ...] = field(default=())
@@ -155,10 +160,10 @@ def describe_comparison(
     graphs: tuple[Graph, ...] = (),
 ) -> ComparisonDocument:
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
-    breaking_changes = [change for change in comparison.changes if _is_shown_as_break(change, comparison)]
-    other_changes = [
-        _note_source(change) for change in comparison.changes if not _is_shown_as_break(change, comparison)
-    ]
+    edits = list_edits(comparison)
+    breaking_edits = [edit for edit in edits if _is_shown_as_break(edit, comparison)]
+    other_edits = [_note_source(edit) for edit in edits if not _is_shown_as_break(edit, comparison)]
+    repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
@@ -167,31 +172,37 @@ def describe_comparison(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
         after=NamedVersion(new_name, reading_errors.after),
-        headline=_write_headline(comparison, verdict, finding_groups, caveat),
-        counts=_count_differences(comparison, finding_groups),
-        kind_counts=count_by_kind(comparison.changes),
+        headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
+        counts=_count_differences(edits, finding_groups),
+        kind_counts=count_by_kind(edits),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
         obstacle=breaking_verdict.describe_obstacle(comparison),
         is_empty=not (comparison.changes or comparison.chains or finding_groups),
         only_breaking=comparison.only_breaking,
-        broken_partners=_sorted_partners(breaking_changes),
+        broken_partners=_sorted_partners(breaking_edits),
         concerned_partners=tuple(sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)})),
         partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
         breaking_changes=tuple(
             BreakingChange(
-                change, tuple(_share_losses(change)), tuple(breaking_verdict.describe_agreements(change, comparison))
+                edit,
+                tuple(_share_losses(edit)),
+                tuple(
+                    dict.fromkeys((*_describe_agreements(edit, comparison), *_name_findings(edit, repeated_findings)))
+                ),
             )
-            for change in breaking_changes
+            for edit in breaking_edits
         ),
         refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
         refusal_help=breaking_verdict.describe_refusal(comparison),
         verdict=verdict,
-        changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
-        change_groups=tuple(group_changes(other_changes, comparison)),
-        weighty_groups=tuple(group_changes([change for change in other_changes if not is_textual(change)], comparison)),
-        textual_changes=tuple(filter(is_textual, other_changes)),
-        chain_rows=tuple(map(make_chain_row, comparison.chains)),
+        changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
+        change_groups=tuple(group_changes(other_edits, comparison)),
+        weighty_groups=tuple(
+            group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
+        ),
+        textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
+        chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
     )
@@ -207,9 +218,20 @@ def severity_of(finding: Diagnostic) -> Severity:
     return finding.severity or Severity.ERROR
 
 
+def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -> Iterator[str]:
+    """Yield as which findings an edit is found, and where."""
+    places: dict[str, list[str]] = {}
+    for finding, change in repeated_findings.items():
+        if change in edit.changes:
+            places.setdefault(finding.rule, []).append(f"`{finding.span}`")
+    for rule, spans in places.items():
+        yield f"found as `{rule}` at {join_words(spans)}"
+
+
 def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
-    # What could not be read in the later version is told before all else, and not once more as a new finding.
-    reported_errors = frozenset(reading_errors.after)
+    # What could not be read in the later version is told before all else, and what says the same as a break with it:
+    # not once more as a new finding.
+    reported_errors = frozenset(reading_errors.after) | find_repeated_findings(comparison).keys()
     findings_by_kind = {
         "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
         "silenced": comparison.silenced_findings,
@@ -220,15 +242,41 @@ def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> It
             yield FindingGroup(kind, heading, caption, sort_by_severity(findings_by_kind[kind]))
 
 
+def _is_textual_edit(edit: Edit, comparison: Comparison) -> bool:
+    """Whether an edit only concerns texts and pictures. What an output means to another partner is no mere text."""
+    return all(is_textual(change) and not _changes_meaning(change, comparison) for change in edit.changes)
+
+
+def _changes_meaning(change: Change, comparison: Comparison) -> bool:
+    versions = comparison.versions
+    match change.element_kind, change.key:
+        case "output", "description":
+            return is_read_by_others(change.element_id, versions)
+        case "type", "comment":
+            outputs = versions.find_elements_with("output", "type", change.element_id)
+            return any(is_read_by_others(output, versions) for output in outputs)
+    return False
+
+
+def _describe_agreements(edit: Edit, comparison: Comparison) -> Iterator[str]:
+    for change in edit.changes:
+        if change.breaks:
+            yield from breaking_verdict.describe_agreements(change, comparison)
+
+
 def _write_headline(
-    comparison: Comparison, verdict: Sequence[str], finding_groups: Sequence[FindingGroup], caveat: str
+    comparison: Comparison,
+    edits: Sequence[Edit],
+    verdict: Sequence[str],
+    finding_groups: Sequence[FindingGroup],
+    caveat: str,
 ) -> str:
     obstacle = breaking_verdict.describe_obstacle(comparison)
     if obstacle:
-        count = f"; certain: {count_noun(len(comparison.changes), 'change')} of the architecture"
+        count = f"; certain: {count_noun(len(edits), 'change')} of the architecture"
         return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
     if comparison.changes:
-        return f"{count_noun(len(comparison.changes), 'change')} of the architecture{caveat}"
+        return f"{count_noun(len(edits), 'change')} of the architecture{caveat}"
     if verdict:
         return f"{verdict[0][:1].upper()}{verdict[0][1:]}{caveat}"
     counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
@@ -236,9 +284,9 @@ def _write_headline(
     return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
 
 
-def _count_differences(comparison: Comparison, finding_groups: Sequence[FindingGroup]) -> str:
-    kind_counts = count_by_kind(comparison.changes)
-    count_phrases = [count_noun(len(comparison.changes), "change") + (f" ({kind_counts})" if kind_counts else "")]
+def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGroup]) -> str:
+    kind_counts = count_by_kind(edits)
+    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
     count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     return ", ".join(count_phrases)
 
@@ -253,31 +301,31 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
             yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
 
 
-def _is_shown_as_break(change: Change, comparison: Comparison) -> bool:
-    """Whether a change stands among the breaking ones. Other ids alone do not, unless they matter or are asked for: they
+def _is_shown_as_break(edit: Edit, comparison: Comparison) -> bool:
+    """Whether an edit stands among the breaking ones. Other ids alone do not, unless they matter or are asked for: they
     break nobody's program.
     """
     if comparison.only_breaking or comparison.policy.source > Severity.NOTE:
-        return bool(change.breaks)
-    return any(category != "source" for category in change.break_categories)
+        return bool(edit.breaks)
+    return any(category != "source" for category in edit.break_categories)
 
 
-def _note_source(change: Change) -> Change:
-    """Return a change with a note on the partners for whom only ids change."""
-    if not change.breaks:
-        return change
-    return replace(change, text=f"{change.text}; for {join_words(change.broken_partners)} only ids change (source)")
+def _note_source(edit: Edit) -> Edit:
+    """Return an edit with a note on the partners for whom only ids change."""
+    if not edit.breaks:
+        return edit
+    return replace(edit, text=f"{edit.text}; for {join_words(edit.broken_partners)} only ids change (source)")
 
 
-def _share_losses(change: Change) -> Iterator[SharedLoss]:
+def _share_losses(edit: Edit) -> Iterator[SharedLoss]:
     """Yield each loss once, with the partners who have it."""
     partners: dict[tuple[str, BreakCategory], set[str]] = {}
-    for partner_break in change.breaks:
+    for partner_break in edit.breaks:
         partners.setdefault((partner_break.reason, partner_break.category), set()).add(partner_break.partner)
     for (reason, category), names in partners.items():
         yield SharedLoss(reason, category, tuple(sorted(names)))
 
 
-def _sorted_partners(changes: Iterable[Change]) -> tuple[str, ...]:
+def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:
     """Return the partners for whom something breaks."""
     return tuple(sorted({partner for change in changes for partner in change.broken_partners}))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import ChainRow
@@ -101,7 +101,7 @@ def _change_section(document: ComparisonDocument) -> Section | None:
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
 
 
-def _change_runs(change: Change) -> Inlines:
+def _change_runs(change: Edit) -> Inlines:
     sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
     return (sign, Text(" "), *text_runs(change.text))
 
@@ -114,6 +114,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
             inline_text.to_inlines(Text(row.id, code=True)),
             *(inline_text.to_inlines(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             inline_text.to_inlines(Text(row.verdict, strong=True)),
+            text_runs(row.reason),
         )
         for row in chain_rows
     )
@@ -121,6 +122,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
         Column("Chain", 1.6),
         *(Column(name, 1, "right") for name in ("Before", "After", "Difference", "Deadline")),
         Column("Verdict"),
+        Column("Because of", 2),
     )
     table = Table("table:chains", "Bounds of chains", columns, rows)
     return Section("changes:chains", comparison_document.CHAINS_HEADING, (table,))
