@@ -115,5 +115,7 @@ def keep_breaking_only(comparison: Comparison) -> Comparison:
         silenced_findings=(),
         chains=(),
         concerned_owners=concerned_owners,
+        boundaries=(),
+        loads=(),
         only_breaking=True,
     )

@@ -12,6 +12,7 @@ from archgen.compare.meaning_sentences import (
     describe_output_timing,
     describe_readers,
 )
+from archgen.compare.owner_sentences import describe_new_owner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.model.quantity import Quantity
@@ -103,7 +104,9 @@ def _describe_internal_port(change_kind: str, node_id: str, name: str, topic_nam
 
 def describe_change(change: Change, versions: VersionPair) -> str:
     """Describe the old and new value of a key, and whom that concerns."""
-    sentence = describe_output_timing(change, versions) or describe_key_change(change)
+    sentence = (
+        describe_new_owner(change, versions) or describe_output_timing(change, versions) or describe_key_change(change)
+    )
     return "; ".join(filter(None, (sentence, _describe_concerned(change, versions))))
 
 

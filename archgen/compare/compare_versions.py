@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
 from archgen.compare.chain_causes import add_chain_causes
 from archgen.compare.chain_changes import compare_chains
@@ -15,7 +17,9 @@ from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.connection_maps import map_connections
 from archgen.compare.difference_finder import DifferenceFinder
 from archgen.compare.element_listing import list_elements
+from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.finding_changes import judge_findings
+from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
@@ -46,6 +50,8 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         (before.sound_files, after.sound_files),
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
+    if any(change.element_kind == "link" for change in changes):
+        version_pair = replace(version_pair, link_users=find_link_users(before, after, matched_ids))
     judged_findings = judge_findings(before, after, matched_ids)
     timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
@@ -62,6 +68,11 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
             policy,
         )
         idle_acceptances = find_idle_acceptances(changes, after.architecture.review)
+    boundaries: tuple[BoundaryChange, ...] = ()
+    loads: tuple[LoadChange, ...] = ()
+    if changes:
+        boundaries = find_boundary_changes(before, after, matched_ids, timing_pair)
+        loads = find_load_changes(after.architecture, matched_ids, timing_pair)
     return Comparison(
         before,
         after,
@@ -71,10 +82,12 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         judged_findings.new_findings,
         judged_findings.cured_findings,
         chain_changes,
-        find_concerned_owners(changes, version_pair),
+        find_concerned_owners(changes, version_pair, (*boundaries, *loads, *chain_changes)),
         judged_findings.silenced_findings,
         policy=policy,
         idle_acceptances=idle_acceptances,
+        boundaries=boundaries,
+        loads=loads,
     )
 
 

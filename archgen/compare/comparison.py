@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -87,6 +88,8 @@ class ChainChange:
     after: ChainResult | None
     causes: tuple[Change, ...] = ()
     """The changes that made its bound another."""
+    concerned_partners: frozenset[str] = frozenset()
+    """The partners with a part on it in either version; none where the bound is nearly the same."""
 
     @property
     def deadline(self) -> TimingValue | None:
@@ -117,6 +120,10 @@ class Comparison:
     silenced_findings: tuple[Diagnostic, ...] = ()
     policy: BreakPolicy = field(default_factory=BreakPolicy)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
+    boundaries: tuple[BoundaryChange, ...] = ()
+    """What changed at the interfaces between partners, by interface."""
+    loads: tuple[LoadChange, ...] = ()
+    """The hosts and links whose load changed noticeably."""
     only_breaking: bool = False
     """Whether only the changes that break a partner were kept."""
 

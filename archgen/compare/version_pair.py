@@ -29,6 +29,9 @@ class VersionPair:
     sound_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The files that were read without an error, before and after."""
 
+    link_users: Mapping[str, frozenset[str]] | None = None
+    """The partners whose data crosses each link in either version; None where timing does not know."""
+
     def may_be_unread(self, key: ElementKey) -> bool:
         """Whether an element that is missing in one version may be in a part of it that could not be read."""
         # The version in which it is missing: the first one for an added element, the second one for a removed element.

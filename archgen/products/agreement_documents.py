@@ -153,7 +153,7 @@ def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: 
         neighbours = [
             partner_id
             for partner_id in architecture.partners
-            if partner_id != name and find_interfaces_between(lookup, name, partner_id)
+            if partner_id != name and find_interfaces_between(lookup.architecture, name, partner_id)
         ]
         sentences.append(f"`{name}` has interfaces with {', '.join(neighbours) or 'nobody'}")
     return f"nothing flows between `{first}` and `{second}`; {'; '.join(sentences)}"

@@ -11,6 +11,7 @@ from archgen.findings.comparison_rules import BREAKING_CHANGE
 from archgen.link.interface_sources import interface_name_of
 from archgen.pipeline import CheckedProject
 from archgen.views.changes.breaking_verdict import describe_remedy, join_categories
+from archgen.views.changes.partner_names import name_each, name_partners
 
 
 def find_breaks(comparison: Comparison, checked_project: CheckedProject) -> tuple[Diagnostic, ...]:
@@ -27,9 +28,10 @@ def _describe_break(change: Change, comparison: Comparison, checked_project: Che
     unheard_breaks = [each for each in change.breaks if each.agreement is None]
     reasons = dict.fromkeys(each.reason for each in unheard_breaks)
     categories = join_categories(each.category for each in unheard_breaks)
+    partners = name_each(change.unheard_partners, name_partners(comparison))
     return Diagnostic(
         BREAKING_CHANGE.name,
-        f"breaks {join_words(change.unheard_partners)} ({categories}): {change.text}; this {join_words(list(reasons))}",
+        f"breaks {join_words(partners)} ({categories}): {change.text}; this {join_words(list(reasons))}",
         _find_span(change, comparison, checked_project),
         comparison.break_severity(change),
         help=describe_remedy(change, change.unheard_partners, comparison.matched_ids),

@@ -69,7 +69,7 @@ def test_only_what_breaks_somebody_and_why(run: Run, both: Path) -> None:
     status, whole = diff(run)
     assert (status, whole.startswith(SHOWN)) == (0, True)
     assert "title" in whole
-    assert whole.endswith("; concerns certh, sssa; breaks sssa\n")
+    assert whole.endswith("; concerns CERTH, SSSA; breaks SSSA\n")
 
 
 def test_nobody_is_broken(run: Run, both: Path) -> None:

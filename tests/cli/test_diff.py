@@ -59,6 +59,9 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "  ~ breaks sssa (promise): `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
         "      promises for `sensing.camera.image` 5 Hz instead of 10 Hz; `display.screen.image` of sssa reads it\n"
         "\n"
+        "Between partners\n"
+        "  ~ `sensing.camera.image` from CERTH to SSSA: rate 10 Hz → 5 Hz; largest gap 107 ms → 207 ms\n"
+        "\n"
         "Latency of chains\n"
         "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
@@ -108,7 +111,7 @@ def test_consequences_and_cured_findings(run: Run, robot: Path) -> None:
     )
     assert "  warning[unread-output]: nobody reads `image` of `sensing.camera` (archgen.yaml:8:26)\n" in out
     assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms: met\n" in out
-    assert out.rstrip().endswith("; concerns certh, sssa")
+    assert out.rstrip().endswith("; concerns CERTH, SSSA")
 
 
 def test_json_follows_its_schema(run: Run, robot: Path) -> None:

@@ -72,26 +72,26 @@ def review(run: Run, tmp_path: Path) -> Callable[..., tuple[int, str]]:
 
 
 BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
-    "an output is taken away": ([NO_STOP], 1, "### 1 change of the architecture in what could be read: breaks `b`, also concerns `a`"),
+    "an output is taken away": ([NO_STOP], 1, "### 1 change of the architecture in what could be read: breaks B, also concerns A"),
     "an output is taken away with its reader and the chain": (
         [NO_STOP, NO_READER, NO_CHAIN],
         1,
-        "### 3 changes of the architecture: breaks `a` and `b`",
+        "### 3 changes of the architecture: breaks A and B",
     ),
-    "a reader turns away": ([NO_READER, ("b.yaml", ", deadline: 300 ms", "")], 1, "### 2 changes of the architecture: breaks `a` and `b`"),
+    "a reader turns away": ([NO_READER, ("b.yaml", ", deadline: 300 ms", "")], 1, "### 2 changes of the architecture: breaks A and B"),
     "constants swap values": (
         [("msg/m_msgs/msg/Stop.msg", "RESUME=0\nuint8 STOP=1", "RESUME=1\nuint8 STOP=0")],
         1,
-        "### 2 changes of the architecture: breaks `b`, also concerns `a`",
+        "### 2 changes of the architecture: breaks B, also concerns A",
     ),
-    "a rate is lower, and high enough": ([("a.yaml", "10 Hz", "5 Hz")], 1, "### 1 change of the architecture: breaks `b`, also concerns `a`"),
-    "a rate is higher": ([("a.yaml", "10 Hz", "20 Hz")], 0, "### 1 change of the architecture: concerns `a` and `b`"),
-    "a rate is too low": ([SLOW], 1, "### 1 change of the architecture: breaks `b`, also concerns `a`"),
-    "a rate is too low, and the deadline follows": ([SLOW, LONGER], 1, "### 2 changes of the architecture: breaks `a` and `b`"),
+    "a rate is lower, and high enough": ([("a.yaml", "10 Hz", "5 Hz")], 1, "### 1 change of the architecture: breaks B, also concerns A"),
+    "a rate is higher": ([("a.yaml", "10 Hz", "20 Hz")], 0, "### 1 change of the architecture: concerns A and B"),
+    "a rate is too low": ([SLOW], 1, "### 1 change of the architecture: breaks B, also concerns A"),
+    "a rate is too low, and the deadline follows": ([SLOW, LONGER], 1, "### 2 changes of the architecture: breaks A and B"),
     "the policy is switched off": (
         [SLOW, ("archgen.yaml", "breaking: error", 'breaking: "off"')],
         1,
-        "### 2 changes of the architecture: breaks `b`, also concerns `a`",
+        "### 2 changes of the architecture: breaks B, also concerns A",
     ),
     "a field is added while the reader becomes optional": (
         [
@@ -99,17 +99,17 @@ BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
             ("b.yaml", "{stop: sense.eye.stop}", "{stop: {from: sense.eye.stop, optional: true}}"),
         ],
         1,
-        "### 2 changes of the architecture: breaks `b`, also concerns `a`",
+        "### 2 changes of the architecture: breaks B, also concerns A",
     ),
     "the producer is given to its reader": (
         [SLOW, ("a.yaml", "owner: a", "owner: b")],
         1,
-        "### 2 changes of the architecture: breaks `a` and `b`",
+        "### 2 changes of the architecture: breaks A and B",
     ),
     "a file cannot be read, and another one loses an output": (
         [NO_STOP, ("b.yaml", "300 ms}}\n", "300 ms}}\nx\n")],
         1,
-        "### Cannot be judged: `b.yaml` cannot be read; certain: 1 change of the architecture: breaks `b`, also concerns `a`",
+        "### Cannot be judged: `b.yaml` cannot be read; certain: 1 change of the architecture: breaks B, also concerns A",
     ),
     "a file cannot be read": (
         [("b.yaml", "300 ms}}\n", "300 ms}}\nx\n")],
@@ -140,12 +140,12 @@ def test_what_a_branch_does(
 
 def test_a_folder_that_is_renamed_hides_nothing(review: Callable[..., tuple[int, str]]) -> None:
     status, comment = review(SLOW, folder="arch/harvester")
-    assert (comment.splitlines()[0], status) == ("### 1 change of the architecture: breaks `b`, also concerns `a`", 1)
+    assert (comment.splitlines()[0], status) == ("### 1 change of the architecture: breaks B, also concerns A", 1)
 
 
 def test_a_folder_that_is_renamed_with_the_project_in_it_hides_nothing(review: Callable[..., tuple[int, str]]) -> None:
     status, comment = review(SLOW, ("archgen.yaml", "id: mini", "id: maxi"), folder="arch")
-    assert (": breaks `b`" in comment.splitlines()[0], status) == (True, 1)
+    assert (": breaks B" in comment.splitlines()[0], status) == (True, 1)
 
 
 def test_a_folder_that_is_renamed_alone_is_no_change(review: Callable[..., tuple[int, str]]) -> None:

@@ -156,7 +156,7 @@ def test_uncommitted_changes_are_in_the_comment_and_the_title_says_so(run: Run, 
     (folder / "archgen.yaml").write_text(BROKEN, encoding="utf-8")
     assert run("review", folder, "--base", "main", "--no-build").status == 1
     assert f"`main ({main})` → `the working tree, with changes that are not committed`" in comment(folder)
-    assert "breaks `south`" in comment(folder).splitlines()[0]
+    assert "breaks South" in comment(folder).splitlines()[0]
 
 
 def test_a_file_that_is_not_committed_yet_is_a_change_of_the_working_tree(run: Run, tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ project: {id: robot, title: Robot}
     [
         ("wcet: 2 ms", "wcet: 3 ms", "component g.a", "timing.wcet", "2 ms", "3 ms", None),
         ("host: pc\n    p", "host: arm\n    p", "node na", "host", "pc", "arm", "node `na` now runs on `arm` instead of `pc`"),
-        ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` now belongs to `sssa` instead of `certh`"),
+        ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` belongs to SSSA now, not to CERTH"),
         ("owner: certh", "owner: [certh, sssa]", "group g", "co_owners", None, ["sssa"], "group `g`: further owners `sssa` added"),
         ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "`g.b`: functionality `Does it.` → `Does that.`"),
         ("cores: 4", "cores: 2", "host pc", "cores", 4, 2, "host `pc`: cores 4 → 2"),

@@ -97,7 +97,8 @@ def test_chains_owners_and_findings_are_narrowed_too(compared: Compared) -> None
     for name, chains, findings, owners in (
         ("g.a", ["k"], True, ("certh", "sssa")),
         ("g.b", ["k"], False, ("certh",)),
-        ("h.c", [], False, ()),
+        # It reads what comes half as often now.
+        ("h.c", [], False, ("certh", "sssa")),
     ):
         # Chains lead through the nodes of components.
         side = selected(name, f"n{name[-1]}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from pathlib import Path
 
@@ -9,10 +10,10 @@ import pytest
 
 from archgen import pipeline, resources
 from archgen.link.interface_sources import load_interfaces
+from archgen.model.partner_interfaces import find_all_interfaces, find_interfaces_between
 from archgen.products import agreement_documents
 from archgen.views.agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.message_fields import field_table, list_field_rows
-from archgen.views.agreement.partner_interfaces import find_interfaces_between
 from archgen.views.shapes import Outline, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
 
@@ -31,7 +32,9 @@ def changed(folder: Path, *edits: tuple[str, str]) -> PartnerAgreement:
 
 
 def keys(folder: Path, first: str, second: str, source: str = DUO) -> list[tuple[str, str, str]]:
-    return [(each.key, *each.pair) for each in find_interfaces_between(view(checked(folder, source)), first, second)]
+    return [
+        (each.key, *each.pair) for each in find_interfaces_between(checked(folder, source).architecture, first, second)
+    ]
 
 
 def test_both_directions_those_of_the_first_partner_first(tmp_path: Path) -> None:
@@ -65,7 +68,7 @@ def test_a_node_of_two_partners_components_makes_neither_answer_for_the_other(tm
     shared = DUO.replace("planner_node: {implements: planner,", "planner_node: {implements: [planner, finder],")
     shared = shared.replace("implements: finder\n", "implements: finder\n    owner: south\n")
     assert ("seeing.camera.image", "south", "north") in keys(tmp_path, "north", "south", shared)
-    found = find_interfaces_between(view(checked(tmp_path, shared)), "north", "south")
+    found = find_interfaces_between(checked(tmp_path, shared).architecture, "north", "south")
     assert [port.id for each in found if each.key == "seeing.camera.image" for port in each.inputs] == [
         "moving.calibration.image"
     ]
@@ -99,6 +102,16 @@ def test_a_physical_flow_needs_no_message(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("name", ["example_ramcip", "duo"])
+def test_all_interfaces_are_those_of_each_pair(tmp_path: Path, name: str) -> None:
+    architecture = (
+        checked(tmp_path) if name == "duo" else pipeline.check_project(resources.resource_path(name))
+    ).architecture
+    pairs = itertools.combinations(sorted(architecture.partners), 2)
+    of_pairs = [each for pair in pairs for each in find_interfaces_between(architecture, *pair)]
+    assert list(find_all_interfaces(architecture)) == of_pairs != []
+
+
 def test_every_connection_between_owners_is_in_their_agreement() -> None:
     found = view(pipeline.check_project(resources.resource_path("example_ramcip")))
     architecture, partners = found.architecture, sorted(found.architecture.partners)
@@ -106,7 +119,7 @@ def test_every_connection_between_owners_is_in_their_agreement() -> None:
         (each.key, port.id): each.pair
         for at, first in enumerate(partners)
         for second in partners[at + 1 :]
-        for each in find_interfaces_between(found, first, second)
+        for each in find_interfaces_between(architecture, first, second)
         for port in each.inputs
     }
     for edge in architecture.edges:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.views.agreement.interface_versions import hash_interface
-from archgen.views.agreement.partner_interfaces import find_interfaces_between
 from tests.agreeing import checked, view
 
 ROBOT = """\
@@ -48,7 +48,7 @@ def versions(folder: Path, text: str) -> dict[str, str]:
     lookup = view(checked(folder, text))
     return {
         interface.topic_names[0]: hash_interface(lookup, interface)
-        for interface in find_interfaces_between(lookup, "a", "b")
+        for interface in find_interfaces_between(lookup.architecture, "a", "b")
     }
 
 

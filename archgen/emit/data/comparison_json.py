@@ -7,6 +7,7 @@ from typing import Any
 from archgen.compare import ChainChange, Change, Comparison
 from archgen.compare.edits import list_edits
 from archgen.diagnostics.safe_text import format_json
+from archgen.emit.data.figures_json import boundary_record, load_record
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
 from archgen.model.review_settings import BREAK_CATEGORIES
@@ -34,6 +35,8 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
             "silenced": [finding_to_json(item) for item in sort_by_severity(comparison.silenced_findings)],
         },
         "chains": [_chain_record(item) for item in comparison.chains],
+        "boundaries": [boundary_record(item) for item in comparison.boundaries],
+        "loads": [load_record(item) for item in comparison.loads],
         "owners": list(comparison.concerned_owners),
         "breaking": {
             "severity": str(comparison.policy.gravest),

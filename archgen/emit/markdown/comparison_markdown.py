@@ -19,6 +19,7 @@ from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
 from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
 from archgen.views.graphs.changes.group_folding import fits_budget
@@ -46,6 +47,8 @@ def write_comparison_markdown(
         _add_reading_errors(comment, version)
     _add_breaking_changes(comment, document)
     _add_changes(comment, document)
+    _add_figures(comment, comparison_document.BOUNDARY_HEADING, document.boundary_lines)
+    _add_figures(comment, comparison_document.LOAD_HEADING, document.load_lines)
     _add_chains(comment, document.chain_rows)
     for group in document.finding_groups:
         _add_findings(comment, group)
@@ -67,11 +70,10 @@ def _heading_line(document: ComparisonDocument) -> str:
     return f"### {write_sentence(document.headline)}" + (f": {', '.join(notes)}" if notes else "")
 
 
-def _join_partners(partner_ids: Sequence[str]) -> str:
-    shown_names = [write_code(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
-        [f"{len(partner_ids) - _SHOWN_PARTNERS} more"] if len(partner_ids) > _SHOWN_PARTNERS else []
-    )
-    return join_words(shown_names)
+def _join_partners(partners: Sequence[str]) -> str:
+    shown_names = [write_sentence(name) for name in partners[:_SHOWN_PARTNERS]]
+    surplus = len(partners) - _SHOWN_PARTNERS
+    return join_words([*shown_names, *([f"{surplus} more"] if surplus > 0 else [])])
 
 
 def _count_line(document: ComparisonDocument) -> str:
@@ -144,6 +146,14 @@ def _group_heading(change_group: ChangeGroup) -> str:
 
 def _change_item(change: Edit) -> str:
     return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
+
+
+def _add_figures(comment: LimitedComment, heading: str, lines: Sequence[FigureLine]) -> None:
+    if lines:
+        comment.add_block(f"#### {heading}")
+        items = [f"- {_MARKDOWN_SIGNS[line.kind]} {write_sentence(line.text)}" for line in lines]
+        open_count = _MAX_OPEN_ITEMS if len(items) > _MAX_OPEN_ITEMS + 1 else len(items)
+        comment.add_items("", items, "{} more", open_count)
 
 
 def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None:

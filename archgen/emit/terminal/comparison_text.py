@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare.edits import Edit
+from archgen.compare.edits import Edit, EditKind
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
@@ -12,6 +12,7 @@ from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
 from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
 
 # Plain ASCII, as terminals of build servers show it.
 _TERMINAL_SIGNS = {
@@ -47,6 +48,8 @@ def write_comparison_lines(
         for change in change_group.changes:
             yield _change_line(change, colour=colour)
         yield ""
+    yield from _figure_lines(comparison_document.BOUNDARY_HEADING, document.boundary_lines, colour=colour)
+    yield from _figure_lines(comparison_document.LOAD_HEADING, document.load_lines, colour=colour)
     yield from _chain_lines(document.chain_rows, colour=colour)
     for finding_group in document.finding_groups:
         yield from _finding_lines(finding_group, colour=colour)
@@ -82,14 +85,25 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
 
 
 def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
-    partners = make_visible(", ".join(item.change.broken_partners))
+    partners = make_visible(", ".join(item.partners))
     return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
 def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:
-    plain_sign = _TERMINAL_SIGNS[change.kind]
-    sign = _paint_text(plain_sign, _SIGN_COLOURS[plain_sign], colour=colour)
-    return f"  {sign} {note}{make_visible(change.text)}"
+    return f"  {_paint_sign(change.kind, colour=colour)} {note}{make_visible(change.text)}"
+
+
+def _paint_sign(kind: EditKind, *, colour: bool) -> str:
+    plain_sign = _TERMINAL_SIGNS[kind]
+    return _paint_text(plain_sign, _SIGN_COLOURS[plain_sign], colour=colour)
+
+
+def _figure_lines(heading: str, lines: Sequence[FigureLine], *, colour: bool) -> Iterator[str]:
+    if not lines:
+        return
+    yield _paint_text(heading, "1", colour=colour)
+    yield from (f"  {_paint_sign(line.kind, colour=colour)} {make_visible(line.text)}" for line in lines)
+    yield ""
 
 
 def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[str]:

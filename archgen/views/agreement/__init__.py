@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.agreement_picture import draw_agreement
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
-from archgen.views.agreement.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.views.agreement.plain_terms import list_plain_terms
 from archgen.views.agreement.signature_record import SignatureRecord, SignedTag
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
@@ -96,7 +96,8 @@ def _compare_with(
 def _record_interfaces(lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds) -> tuple[InterfaceRecord, ...]:
     activity_names = activity_builder.name_activities(lookup.architecture)
     all_terms = [
-        gather_terms(lookup, activity_names, interface) for interface in find_interfaces_between(lookup, *pair)
+        gather_terms(lookup, activity_names, interface)
+        for interface in find_interfaces_between(lookup.architecture, *pair)
     ]
     return tuple(
         InterfaceRecord(terms, _interface_key(terms, matched_ids), list_plain_terms(lookup, terms, matched_ids))

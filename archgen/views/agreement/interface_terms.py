@@ -9,7 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.model.component import Component
+from archgen.model.interface_ends import foreign_owners
 from archgen.model.node import Endpoint, Qos
+from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder
@@ -17,7 +19,6 @@ from archgen.views import inline_text
 from archgen.views.agreement import interface_timing, interface_versions, message_fields
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
-from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
@@ -200,7 +201,7 @@ def partner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
 
 
 def _list_ends(lookup: Lookup, interface: PartnerInterface) -> Iterator[InterfaceEnd]:
-    giving_components, taking_components = components_at_ends(lookup, interface)
+    giving_components, taking_components = components_at_ends(lookup.architecture, interface)
     verbs = ("serves", "calls") if interface.flow in {"service", "action"} else ("publishes", "reads")
     if interface.flow == "physical":
         verbs = ("gives", "takes")
@@ -259,7 +260,7 @@ def _components_of(lookup: Lookup, interface: PartnerInterface) -> Iterable[Comp
     """Return the components at both ends, each once."""
     return {
         component.id: component
-        for components_of_end in components_at_ends(lookup, interface)
+        for components_of_end in components_at_ends(lookup.architecture, interface)
         for component in components_of_end
     }.values()
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
 from archgen.timing.figures.timing_values import TimingValue
@@ -15,7 +16,6 @@ from archgen.timing.system import activity_builder
 from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
-from archgen.views.agreement.partner_interfaces import PartnerInterface
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, promise_limit
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines

@@ -12,11 +12,11 @@ from collections.abc import Iterable, Iterator
 from archgen.model.declared_timing import OutputTiming
 from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.figures.tick_unit import written_period
 from archgen.views.agreement.interface_timing import find_giver_timing, list_givers
-from archgen.views.agreement.partner_interfaces import PartnerInterface
 from archgen.views.agreement.promise_rows import identify_qos
 from archgen.views.lookup import Lookup
 

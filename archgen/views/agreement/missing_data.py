@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.ros_distro import is_ros_1
 from archgen.views.agreement.interface_timing import find_giver_timing, list_givers
-from archgen.views.agreement.partner_interfaces import PartnerInterface
 from archgen.views.lookup import Lookup
 
 

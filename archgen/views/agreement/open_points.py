@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator
 from archgen.analyses.port_types import is_expected_type
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system.activity_builder import ActivityNames
 from archgen.views.agreement.interface_timing import find_broken_limits, list_givers
-from archgen.views.agreement.partner_interfaces import PartnerInterface
 from archgen.views.lookup import Lookup
 from archgen.views.timing import value_format
 

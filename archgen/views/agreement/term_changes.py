@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
+from archgen.model.partner_interfaces import PartnerPair
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.agreement.partner_interfaces import PartnerPair
 from archgen.views.agreement.plain_terms import PlainTerm
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark

@@ -19,12 +19,16 @@ from archgen.model.review_settings import BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
+from archgen.views.changes.figure_lines import FigureLine, write_boundary_lines, write_load_lines
+from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
 
 BREAKING_HEADING = "Breaking changes"
+BOUNDARY_HEADING = "Between partners"
+LOAD_HEADING = "Load of hosts and links"
 CHAINS_HEADING = "Latency of chains"
 UNSOUND_LEAD = "is not sound"
 UNSOUND_SENTENCE = "What cannot be read there is left out of the comparison:"
@@ -66,6 +70,7 @@ class BreakingChange:
     """
 
     change: Edit
+    partners: tuple[str, ...]
     losses: tuple[SharedLoss, ...]
     agreements: tuple[str, ...]
 
@@ -108,9 +113,9 @@ class ComparisonDocument:
     """Whether nothing differs besides errors of reading."""
     only_breaking: bool
     broken_partners: tuple[str, ...]
+    """Partners here and below by what people call them."""
     concerned_partners: tuple[str, ...]
-    """The owners of what changed, those who are broken included."""
-    partner_titles: Mapping[str, str]
+    """All whom it concerns, those who are broken included."""
     breaking_changes: tuple[BreakingChange, ...]
     refusal_lead: str
     """Which policy refuses the changes, as the beginning of a sentence that `refusal_help` ends."""
@@ -125,6 +130,8 @@ class ComparisonDocument:
     weighty_groups: tuple[ChangeGroup, ...]
     """The same without `textual_changes`, for formats that fold these."""
     textual_changes: tuple[Edit, ...]
+    boundary_lines: tuple[FigureLine, ...]
+    load_lines: tuple[FigureLine, ...]
     chain_rows: tuple[ChainRow, ...]
     finding_groups: tuple[FindingGroup, ...]
     graphs: tuple[Graph, ...] = field(default=())
@@ -162,12 +169,12 @@ def describe_comparison(
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
     edits = list_edits(comparison)
     breaking_edits = [edit for edit in edits if _is_shown_as_break(edit, comparison)]
-    other_edits = [_note_source(edit) for edit in edits if not _is_shown_as_break(edit, comparison)]
+    partner_names = name_partners(comparison)
+    other_edits = [_note_source(edit, partner_names) for edit in edits if not _is_shown_as_break(edit, comparison)]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
-    partners = {**comparison.before.architecture.partners, **comparison.after.architecture.partners}
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
@@ -180,13 +187,15 @@ def describe_comparison(
         obstacle=breaking_verdict.describe_obstacle(comparison),
         is_empty=not (comparison.changes or comparison.chains or finding_groups),
         only_breaking=comparison.only_breaking,
-        broken_partners=_sorted_partners(breaking_edits),
-        concerned_partners=tuple(sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)})),
-        partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
+        broken_partners=name_each(_sorted_partners(breaking_edits), partner_names),
+        concerned_partners=name_each(
+            sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)}), partner_names
+        ),
         breaking_changes=tuple(
             BreakingChange(
                 edit,
-                tuple(_share_losses(edit)),
+                name_each(edit.broken_partners, partner_names),
+                tuple(_share_losses(edit, partner_names)),
                 tuple(
                     dict.fromkeys((*_describe_agreements(edit, comparison), *_name_findings(edit, repeated_findings)))
                 ),
@@ -202,6 +211,8 @@ def describe_comparison(
             group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
         ),
         textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
+        boundary_lines=write_boundary_lines(comparison, partner_names),
+        load_lines=write_load_lines(comparison, partner_names),
         chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
@@ -310,20 +321,23 @@ def _is_shown_as_break(edit: Edit, comparison: Comparison) -> bool:
     return any(category != "source" for category in edit.break_categories)
 
 
-def _note_source(edit: Edit) -> Edit:
+def _note_source(edit: Edit, partner_names: Mapping[str, str]) -> Edit:
     """Return an edit with a note on the partners for whom only ids change."""
     if not edit.breaks:
         return edit
-    return replace(edit, text=f"{edit.text}; for {join_words(edit.broken_partners)} only ids change (source)")
+    return replace(
+        edit,
+        text=f"{edit.text}; for {join_words(name_each(edit.broken_partners, partner_names))} only ids change (source)",
+    )
 
 
-def _share_losses(edit: Edit) -> Iterator[SharedLoss]:
+def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[SharedLoss]:
     """Yield each loss once, with the partners who have it."""
     partners: dict[tuple[str, BreakCategory], set[str]] = {}
     for partner_break in edit.breaks:
         partners.setdefault((partner_break.reason, partner_break.category), set()).add(partner_break.partner)
     for (reason, category), names in partners.items():
-        yield SharedLoss(reason, category, tuple(sorted(names)))
+        yield SharedLoss(reason, category, name_each(sorted(names), partner_names))
 
 
 def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:

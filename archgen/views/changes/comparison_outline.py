@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare.edits import Edit
+from archgen.compare.edits import Edit, EditKind
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.shapes import Block, Bullets, Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text
 
 _MAX_ERRORS = 8
@@ -21,6 +22,8 @@ def write_comparison_outline(document: ComparisonDocument) -> Outline:
         _breaking_section(document),
         _picture_section(document),
         _change_section(document),
+        _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines),
+        _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines),
         _chain_section(document.chain_rows),
         *(_findings_section(group) for group in document.finding_groups),
     )
@@ -39,8 +42,7 @@ def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines
     yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
     for name, partners in (("Breaks", document.broken_partners), ("Concerns", document.concerned_partners)):
         if partners:
-            titles = [document.partner_titles.get(partner, partner) for partner in partners]
-            yield name, inline_text.to_inlines(", ".join(titles))
+            yield name, text_runs(", ".join(partners))
 
 
 def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
@@ -102,8 +104,16 @@ def _change_section(document: ComparisonDocument) -> Section | None:
 
 
 def _change_runs(change: Edit) -> Inlines:
-    sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
-    return (sign, Text(" "), *text_runs(change.text))
+    return (*_sign_runs(change.kind), *text_runs(change.text))
+
+
+def _sign_runs(kind: EditKind) -> Inlines:
+    return Text(CHANGE_SIGNS[kind], strong=True, change=choose_mark(kind)), Text(" ")
+
+
+def _figure_section(anchor: str, heading: str, lines: Sequence[FigureLine]) -> Section | None:
+    items = tuple((*_sign_runs(line.kind), *text_runs(line.text)) for line in lines)
+    return Section(anchor, heading, (Bullets(items),)) if items else None
 
 
 def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:

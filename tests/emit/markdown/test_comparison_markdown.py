@@ -92,7 +92,7 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
     assert (
         told(("wcet: 20 ms", "wcet: 60 ms"))
         == """\
-### 1 change of the architecture: breaks `certh`, also concerns `sssa`
+### 1 change of the architecture: breaks CERTH, also concerns SSSA
 
 `main` → `arm`: 1 changed
 
@@ -144,7 +144,7 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     kind = replace(kind, breaks=breaks, claims=claims)
     text = written(replace(found, changes=(rate, kind)), broken)
     assert text.startswith("""\
-### 2 changes of the architecture: breaks `certh` and `sssa`
+### 2 changes of the architecture: breaks CERTH and SSSA
 
 `main` → `arm`: 2 changed
 
@@ -171,7 +171,7 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 
 def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
     text = told(("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"))
-    assert text.startswith("### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n")
+    assert text.startswith("### 1 change of the architecture: breaks SSSA, also concerns CERTH\n")
     assert '  n0 -->|"#126; Image"| n1\n' in text
 
 
@@ -208,7 +208,7 @@ def test_many_changes_of_one_group_are_folded_and_drawn_as_one_box(told: Told) -
     many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}}}\n" for at in range(60))
     text = told(("      finder:", f"{many}      finder:"))
     assert "<details><summary>52 more changes</summary>" in text
-    assert text.startswith("### 60 changes of the architecture: concerns `certh` and `sssa`\n")
+    assert text.startswith("### 60 changes of the architecture: concerns CERTH and SSSA\n")
     assert '("Display<br>#8203;+ 60 components"):::added' in text
     assert "1 group folded to one box each" in text
 

@@ -1,0 +1,171 @@
+"""What changed at the boundaries between partners: the figures of the interfaces that an agreement would show as changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from archgen.analyses.qos_compatibility import find_qos_conflicts
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.figure_changes import BoundaryChange, BoundaryKind, FigureChange
+from archgen.compare.interface_figures import FigureReader, InterfaceFigures, concerns_nobody, is_same_figure
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.timing_pair import TimingPair
+from archgen.frozen import dataclass
+from archgen.model.node import Qos
+from archgen.model.partner_interfaces import PartnerPair, find_all_interfaces
+
+_ASKED_QOS = "QoS asked"
+
+
+@dataclass(frozen=True, slots=True)
+class _InterfaceVersion:
+    """An interface of one version: its id there, and its figures."""
+
+    own_id: str
+    figures: InterfaceFigures
+
+
+_BoundaryKey = tuple[str, PartnerPair]
+
+
+def find_boundary_changes(
+    before: ArchitectureVersion, after: ArchitectureVersion, matched_ids: MatchedIds, timing_pair: TimingPair | None
+) -> tuple[BoundaryChange, ...]:
+    """Return what changed at the interfaces of partners, sorted by id; nothing where a version could not be read whole."""
+    # Of an interface that seems gone nobody knows whether it stands in the part that was not read.
+    if before.architecture.unread_keys or after.architecture.unread_keys:
+        return ()
+    # Where no change can affect timing, the figures are those that the rules judged; what is new has some too.
+    old_analysis, new_analysis = (
+        (timing_pair.before, timing_pair.after) if timing_pair else (before.analysis, after.analysis)
+    )
+    old_reader = FigureReader(before.architecture, old_analysis, matched_ids)
+    new_reader = FigureReader(after.architecture, new_analysis)
+    new_versions = _list_interfaces(new_reader)
+    old_versions = _follow_topics(_list_interfaces(old_reader), new_versions, matched_ids)
+    changes = _merge_pairs(_follow_hands(_compare_interfaces(old_versions, new_versions)))
+    if before.waiting_rules or after.waiting_rules:
+        # With errors of linking an interface may seem gone that only has an unknown owner or type.
+        return tuple(change for change in changes if change.kind == "changed" and not change.old_givers)
+    return tuple(changes)
+
+
+def _list_interfaces(reader: FigureReader) -> dict[_BoundaryKey, _InterfaceVersion]:
+    common_id = reader.matched_ids.common_id
+    versions = {}
+    for interface in find_all_interfaces(reader.architecture):
+        giver, taker = interface.pair
+        key = common_id("output", interface.key) if interface.output else interface.key
+        pair = common_id("partner", giver), common_id("partner", taker)
+        versions[key, pair] = _InterfaceVersion(interface.key, reader.read_figures(interface))
+    return versions
+
+
+def _follow_topics(
+    old_versions: Mapping[_BoundaryKey, _InterfaceVersion],
+    new_versions: Mapping[_BoundaryKey, _InterfaceVersion],
+    matched_ids: MatchedIds,
+) -> dict[_BoundaryKey, _InterfaceVersion]:
+    """Return the old interfaces; topics without an output that are called after a renamed element under their new names."""
+    followed = {}
+    for (name, pair), version in old_versions.items():
+        new_name = matched_ids.rename_in_text(name) if name.startswith("/") else name
+        is_renamed = (name, pair) not in new_versions and (new_name, pair) in new_versions
+        followed[new_name if is_renamed else name, pair] = version
+    return followed
+
+
+def _compare_interfaces(
+    old_versions: Mapping[_BoundaryKey, _InterfaceVersion], new_versions: Mapping[_BoundaryKey, _InterfaceVersion]
+) -> Iterator[BoundaryChange]:
+    for key in sorted({*old_versions, *new_versions}):
+        (name, (giver, taker)), old, new = key, old_versions.get(key), new_versions.get(key)
+        figures = tuple(_compare_figures(old.figures if old else {}, new.figures if new else {}))
+        kind: BoundaryKind = "changed" if old and new else "added" if new else "removed"
+        old_id = old.own_id if old and new and old.own_id != name else None
+        if figures or kind != "changed":
+            concerned = {giver, taker} if kind != "changed" else _find_concerned(figures, giver, taker, new)
+            yield BoundaryChange(kind, name, old_id, (giver,), (taker,), figures, frozenset(concerned))
+
+
+def _compare_figures(old_figures: InterfaceFigures, new_figures: InterfaceFigures) -> Iterator[FigureChange]:
+    for key in dict.fromkeys((*new_figures, *old_figures)):
+        before, after = old_figures.get(key), new_figures.get(key)
+        if not is_same_figure(key.name, before, after):
+            yield FigureChange(key, before, after)
+
+
+def _find_concerned(
+    figures: Iterable[FigureChange], giver: str, taker: str, new: _InterfaceVersion | None
+) -> Iterable[str]:
+    """Return both partners, nobody where it is too little; the taker alone where it asks for another QoS that is offered
+    as well.
+    """
+    names = {figure.key.name for figure in figures if not concerns_nobody(figure)}
+    if names == {_ASKED_QOS} and new and not _has_conflict(new.figures):
+        return (taker,)
+    return (giver, taker) if names else ()
+
+
+def _has_conflict(figures: InterfaceFigures) -> bool:
+    qos_by_side: dict[str, list[Qos]] = {"QoS offered": [], _ASKED_QOS: []}
+    for key, figure in figures.items():
+        if isinstance(figure, Qos):
+            qos_by_side[key.name].append(figure)
+    offered, asked = qos_by_side.values()
+    return any(True for writer in offered for reader in asked for _ in find_qos_conflicts(writer, reader))
+
+
+def _follow_hands(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
+    """Yield the changes; what one partner gave a third one before, and another does now, is one change."""
+    change_list = list(changes)
+    lost, gained = (
+        {(change.interface_id, change.takers): change for change in change_list if change.kind == kind}
+        for kind in ("removed", "added")
+    )
+    for change in change_list:
+        key = change.interface_id, change.takers
+        if change.kind == "added" and key in lost:
+            yield _hand_over(lost[key], change)
+        elif change.kind != "removed":
+            yield change
+        elif key not in gained:
+            # What it was like interests nobody any more, and would keep pairs of partners apart.
+            yield replace(change, figures=())
+
+
+def _hand_over(lost: BoundaryChange, gained: BoundaryChange) -> BoundaryChange:
+    """Return what another partner gives now, with the figures that are others since."""
+    old_figures = {figure.key: figure.before for figure in lost.figures}
+    figures = [
+        FigureChange(figure.key, old_figures.get(figure.key), figure.after)
+        for figure in gained.figures
+        if not is_same_figure(figure.key.name, old_figures.get(figure.key), figure.after)
+    ]
+    return replace(
+        gained,
+        kind="changed",
+        old_givers=lost.givers,
+        figures=tuple(figures),
+        concerned_partners=gained.concerned_partners | lost.concerned_partners,
+    )
+
+
+def _merge_pairs(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
+    """Yield one change for all pairs of partners for whom the same of one interface changed."""
+    merged: dict[object, BoundaryChange] = {}
+    for change in changes:
+        key = change.kind, change.interface_id, change.old_givers, change.figures
+        known = merged.get(key)
+        merged[key] = (
+            replace(
+                known,
+                givers=tuple(dict.fromkeys((*known.givers, *change.givers))),
+                takers=tuple(dict.fromkeys((*known.takers, *change.takers))),
+                concerned_partners=known.concerned_partners | change.concerned_partners,
+            )
+            if known
+            else change
+        )
+    yield from merged.values()
