@@ -197,7 +197,7 @@ def test_a_group_with_another_id_and_title_is_one_item(compared: Compared) -> No
 def test_a_component_that_moves_to_another_owner_is_one_item(compared: Compared) -> None:
     after = edited(ROBOT, (PLAIN_LEFT, ""), ("      driver:\n", f"{PLAIN_LEFT}      driver:\n"))
     assert told_edits(compared, ROBOT, after)[0].partition("; ")[0] == (
-        "moved component `eyes.left` moved to the group `legs`, and now belongs to `orsa` instead of `vega`"
+        "moved component `eyes.left` moved to the group `legs`, and belongs to Orsa now, not to Vega"
     )
 
 
@@ -206,7 +206,7 @@ def test_a_group_that_goes_up_in_another_one_is_one_item(compared: Compared) -> 
     after = edited(ROBOT, (driver, ""), ("  legs:\n    owner: orsa\n    components:\n", driver))
     assert told_edits(compared, ROBOT, after) == [
         (
-            "merged group `legs` is merged into `eyes`, with `eyes.driver`; it now belongs to `vega` instead of `orsa`; "
+            "merged group `legs` is merged into `eyes`, with `eyes.driver`; it belongs to Vega now, not to Orsa; "
             "`/legs/driver/speed` becomes `/eyes/driver/speed`"
         )
     ]

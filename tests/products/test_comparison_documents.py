@@ -84,7 +84,7 @@ def test_what_the_page_says(tmp_path: Path) -> None:
     assert "Robot What changed: before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
     assert "Breaks CERTH, SSSA Concerns CERTH, SSSA Breaking changes" in said
     assert (
-        "~ display.finder : worst case execution time 20 ms → 60 ms breaks certh (promise): makes the chain see miss its"
+        "~ display.finder : worst case execution time 20 ms → 60 ms breaks CERTH (promise): makes the chain see miss its"
         in said
     )
     assert "Other changes Display + component display.lamp is added" in said

@@ -99,8 +99,12 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 #### Breaking changes
 
 - \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
-  - breaks `certh` (promise): makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+  - breaks CERTH (promise): makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
   - found as `late-chain` at `robot.yaml:22:10`
+
+#### Load of hosts and links
+
+- \\~ host `pc`: 6.8 % → 16.8 % of its cores; used by CERTH and SSSA
 
 #### Latency of chains
 
@@ -151,8 +155,8 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 #### Breaking changes
 
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
-  - breaks `sssa` (wire): `display.finder` takes `Image`
-  - breaks `certh` and `sssa` (meaning): two
+  - breaks SSSA (wire): `display.finder` takes `Image`
+  - breaks CERTH and SSSA (meaning): two
   - accepted by sssa: agreed in May
   - said in `archgen.yaml`, not by certh and sssa: agreed in \\*June\\*
 
