@@ -29,7 +29,7 @@ groups:
 RETYPED = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace("Lamp", "Torch")
 SHOWN = """\
 Breaking changes
-  ~ breaks sssa (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
+  ~ breaks SSSA (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
 it is read by `display.screen.image`
       gives sssa, who reads `sensing.camera.image` as `display.screen.image`, `sensor_msgs/msg/CompressedImage` instead of \
 `sensor_msgs/msg/Image`
@@ -298,7 +298,7 @@ def test_what_could_not_be_read_breaks_nobody(run: Run, both: Path) -> None:
         )
         assert ran.out.endswith(f"\nwarning: cannot be judged: `{broken}` cannot be read\n")
         (both / "new" / broken).write_text(files[broken].replace("/eye/image", "/eye/rgb"), encoding="utf-8")
-    assert "breaks sssa (wire): `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
+    assert "breaks SSSA (wire): `eye.publishes.image`" in run("diff", "old", "new", "--breaking").out
 
 
 TEXTS = """\
@@ -375,14 +375,14 @@ def test_other_ids_alone_stand_among_the_other_changes_unless_they_matter(run: R
     assert diff(run)[1] == (
         "sensing: Sensing\n"
         "  > component `sensing.camera` is called `eye` now; "
-        "for sssa only ids change (source)\n"
+        "for SSSA only ids change (source)\n"
         "\n"
-        "1 change (1 renamed); concerns certh, sssa\n"
+        "1 change (1 renamed); concerns CERTH, SSSA\n"
     )
     assert "breaks" not in diff(run, "--format", "markdown")[1]
     loud = policy("{source: warning}")
     write(both, TYPED + loud, RENAMED + loud)
-    assert diff(run)[1].startswith("Breaking changes\n  > breaks sssa (source): component `sensing.camera`")
+    assert diff(run)[1].startswith("Breaking changes\n  > breaks SSSA (source): component `sensing.camera`")
 
 
 def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run, both: Path) -> None:
@@ -394,8 +394,8 @@ def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run,
     status, out = diff(run, "--breaking")
     assert status == 1
     assert [line.split(":")[0] for line in out.splitlines() if line.startswith("  ")][::2] == [
-        "  ~ breaks sssa (meaning)",
-        "  - breaks sssa (wire)",
+        "  ~ breaks SSSA (meaning)",
+        "  - breaks SSSA (wire)",
         "  = help",
     ]
 
