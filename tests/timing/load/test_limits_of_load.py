@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import link_queueing, response_times
+from archgen.timing.load import link_queueing, response_times, search_budgets
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import written_streams
@@ -127,12 +127,14 @@ def test_what_has_not_settled_in_so_many_turns_is_given_up_and_the_rest_kept(mon
         assert [show_ms(pace.jitter) for pace in paces] == jitters
 
 
-def test_one_budget_bounds_all_searches() -> None:
+def test_one_budget_bounds_all_searches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing may be looked at: no response is found, though 1 + 2 would do."""
     nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "period: 10 ms, wcet: 2 ms"}
     system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 1}}"))
-    for budget, causes in ((SearchBudget(0), ["diverged", "diverged"]), (None, [3, 3])):
-        state = propagate_events(system, find_triggers(system), budget)
+    for term_count, causes in ((0, ["diverged", "diverged"]), (1000, [3, 3])):
+        monkeypatch.setattr(search_budgets, "_TERMS_PER_GROUP", term_count)
+        monkeypatch.setattr(search_budgets, "_TERMS_PER_MEMBER", 0)
+        state = propagate_events(system, find_triggers(system))
         found = [time.cause.notes[0] if time.value is None else time.value for time in state.responses.values()]
         assert found == [cause if isinstance(cause, str) else cause * MS / system.tick for cause in causes]
 
