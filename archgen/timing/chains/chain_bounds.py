@@ -19,7 +19,13 @@ from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, sum_bounds
+from archgen.timing.figures.value_arithmetic import (
+    is_boundless,
+    is_known_bound,
+    largest_value,
+    smallest_value,
+    sum_bounds,
+)
 from archgen.timing.system.timing_system import Arc
 
 
@@ -152,7 +158,9 @@ def _build_result(
         bound=bound,
         best=_extreme_value(network, regions, "best"),
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
-        reduced_age=_extreme_value(network, regions, "reduced age"),
+        reduced_age=_limit_reduced_age(
+            _extreme_value(network, regions, "reduced age"), _limit_age(network, chain_points[0].activities, bound)
+        ),
         deadline=deadline,
         verdict=judge_deadline(bound, deadline),
     )
@@ -205,6 +213,23 @@ def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:
     if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
         return result.bound
     return sum_bounds((result.bound, network.steps.arrivals.activation_gap(result.through[0])))
+
+
+def _limit_age(network: CostNetwork, start_ids: Sequence[str], bound: TimingValue) -> TimingValue:
+    """Return the largest data age of a chain that any of some elements begins."""
+    activities = network.steps.analysis.system.activities
+    gaps = [
+        network.steps.arrivals.activation_gap(name) for name in start_ids if activities[name].behaviour != "periodic"
+    ]
+    return sum_bounds((bound, largest_value(gaps))) if gaps else bound
+
+
+def _limit_reduced_age(reduced_age: TimingValue, data_age: TimingValue) -> TimingValue:
+    """Return the age of what is sent: never more than it may become before the next output replaces it."""
+    # A data age that is not known yet limits nothing but what has no bound at all.
+    if is_known_bound(data_age) or is_boundless(reduced_age):
+        return smallest_value((reduced_age, data_age))
+    return reduced_age
 
 
 def judge_deadline(bound: TimingValue, deadline: TimingValue | None) -> Literal["met", "missed", "open"]:

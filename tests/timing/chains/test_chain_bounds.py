@@ -11,6 +11,7 @@ from archgen.timing.chains import duerr_bounds
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.figures.timing_values import TimingValue
 from tests.timing.made import analysis, arc, architecture, event, missing, periodic
+from tests.timing.sketches import analyse_sketch, read_sketch
 
 S1 = {"a": (10, 1), "b": (20, 3)}
 S2 = {"imu": (5, 1), "ctrl": (10, 3), "loc": (20, 8), "plan": (100, 55)}
@@ -55,6 +56,25 @@ def test_periodic_chains_reach_the_published_figures(
         Fraction(reaction * 10**6),
         Fraction(age * 10**6),
     )
+
+
+@pytest.mark.parametrize(
+    ("wires", "gap", "bound", "age"),
+    [
+        ("front>boxes rear>boxes boxes>stop", 8, 40 + 1 + 20 + 8 + 2, 71),  # by the sum of its own steps 125
+        ("rear>boxes boxes>stop", 50, 40 + 1 + 10 + 50 + 2, 64),
+    ],
+)
+def test_what_is_sent_is_never_older_than_the_data_age(wires: str, gap: int, bound: int, age: int) -> None:
+    nodes = {
+        "front": "period: 40 ms, wcet: 1 ms",
+        "rear": "period: 40 ms, wcet: 1 ms",
+        "boxes": "behaviour: event, wcet: 10 ms",
+        "stop": f"period: {gap} ms, wcet: 2 ms",
+    }
+    sketch = nodes, wires, "chains: {c: {through: [rear, boxes, stop]}}"
+    result = bound_all_chains(analyse_sketch(*sketch), read_sketch(*sketch))["c"]
+    assert (_ms(result.bound), _ms(result.reduced_age)) == (bound, age)
 
 
 def test_reduced_age_of_a_periodic_chain_is_response_and_gap_of_each_producer() -> None:
