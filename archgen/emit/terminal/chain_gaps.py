@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.timing.analysis import ChainResult
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.event_models import UNLINKED_NOTE
@@ -15,10 +16,14 @@ _HOST_SEPARATOR = " - "
 """What stands between the names of two hosts that no link joins, where a link's name would stand."""
 
 
-def describe_gaps(result: ChainResult, system: TimingSystem) -> str:
+def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
+    overloaded_hosts = find_overloaded_hosts(analysis, result.terms)
+    if overloaded_hosts:
+        return f"{join_words(overloaded_hosts)} {'is' if len(overloaded_hosts) == 1 else 'are'} overloaded"
     if result.bound.complete:
         return ""
+    system = analysis.system
     phrases = [*_describe_unknown_figures(result, system), *_describe_unlinked(result, system)]
     named_elements = {
         name
@@ -30,8 +35,12 @@ def describe_gaps(result: ChainResult, system: TimingSystem) -> str:
     elsewhere = tuple(name for name in result.bound.missing if name not in named_elements)
     if elsewhere and result.terms:
         phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
-    phrases += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
-    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}" if phrases else "no bound"
+    phrases += [text for text in result.bound.assumptions if not result.terms]
+    unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
+    if not phrases:
+        return f"{_describe_basis(result)}no bound found {unfound_text}" if unfound_text else "no bound"
+    phrases += [f"none found {unfound_text}"] if unfound_text else []
+    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}"
 
 
 def _describe_unknown_figures(result: ChainResult, system: TimingSystem) -> Iterable[str]:

@@ -18,7 +18,6 @@ from archgen.timing.chains.figure_explanations import ReasonLine
 from archgen.timing.chains.measured_comparison import MeasuredComparison
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.system.timing_system import TimingSystem
 
 ChainResults = Mapping[str, ChainResult]
 AnswerJson = dict[str, Any]
@@ -122,13 +121,14 @@ def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
 
 
 def format_sensitivity(
-    chain: ChainResult, system: TimingSystem, ranking: ChainSensitivity, width: int | None = None
+    chain: ChainResult, analysis: Analysis, ranking: ChainSensitivity, width: int | None = None
 ) -> Iterator[str]:
     """Yield a ranking of what decides a chain."""
     if not chain.terms:
-        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, system)}"
+        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, analysis)}"
         return
-    yield f"{chain.id}: {format_figure(chain.bound)}"
+    gaps_text = describe_gaps(chain, analysis)
+    yield f"{chain.id}: {format_figure(chain.bound)}{f'   {gaps_text}' if gaps_text else ''}"
     yield ""
     if ranking.gains:
         yield "Improved by 10 %, each figure takes off"

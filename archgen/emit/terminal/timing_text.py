@@ -7,15 +7,20 @@ from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, HostLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.system.timing_system import TimingSystem
+from archgen.timing.figures.value_arithmetic import list_assumptions
 
-_VERDICT_WORDS = {"met": "met", "missed": "MISSED", "open": "open"}
+_VERDICT_WORDS: Mapping[ChainVerdict, str] = {
+    "met": "met",
+    "missed": "MISSED",
+    "not proven": "not proven",
+    "open": "open",
+}
 
 
 def format_timing(
@@ -23,7 +28,7 @@ def format_timing(
 ) -> Iterator[str]:
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
-        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis.system, chains.values())),
+        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
         ("Hosts", _host_rows(analysis)),
         ("Links", _link_rows(analysis)),
         ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
@@ -43,7 +48,7 @@ def _section_lines(title: str, rows: Iterable[TextRow], width: int | None) -> It
         yield ""
 
 
-def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
@@ -51,7 +56,7 @@ def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator
             format_figure(result.bound),
             deadline,
             _VERDICT_WORDS[result.verdict] if result.deadline else "",
-            describe_gaps(result, system),
+            describe_gaps(result, analysis),
         )
 
 
@@ -115,15 +120,12 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
     for ring in analysis.deadlocked:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
-        yield f"diverged: no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
-    if analysis.boundless_on_cores:
-        names = figure_wording.join_first_names(analysis.boundless_on_cores)
-        yield f"unbounded: no bound was found for {names}"
+        yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
 
 
 def format_chain(
     result: ChainResult,
-    system: TimingSystem,
+    analysis: Analysis,
     age: TimingValue,
     published: tuple[Fraction, Fraction] | None = None,
     width: int | None = None,
@@ -134,11 +136,11 @@ def format_chain(
         yield from align_rows(_term_rows(result.terms), width)
         yield ""
     rows: list[TextRow] = [
-        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, system))
+        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, analysis))
     ]
     if age != result.bound:
         rows = [
-            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, system))
+            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, analysis))
         ]
         rows.append(("largest data age, until the next event's comes", format_figure(age), format_missing(age)))
     rows += [
@@ -157,7 +159,7 @@ def format_chain(
     if result.deadline:
         rows.append(("deadline", format_figure(result.deadline), _VERDICT_WORDS[result.verdict]))
     yield from align_rows(rows, width)
-    for assumption in result.bound.assumptions if result.terms else ():
+    for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 
 

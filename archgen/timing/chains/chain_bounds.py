@@ -9,11 +9,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
 from archgen.timing.chains import chain_regions
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
@@ -22,6 +21,7 @@ from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, Timi
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
+    is_unfound,
     largest_value,
     smallest_value,
     sum_bounds,
@@ -40,10 +40,12 @@ class BoundedPath:
 
 @dataclass(frozen=True, slots=True)
 class LateChain:
-    """A chain that may miss its deadline: its bound, and the terms."""
+    """A chain that can miss its deadline, or is not proven to meet it: its bound, its best case, and the terms."""
 
     chain: Chain
     bound: TimingValue
+    best: TimingValue
+    verdict: ChainVerdict
     terms: tuple[ChainTerm, ...]
 
 
@@ -66,8 +68,8 @@ def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str
     }
 
 
-def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
-    """Yield the chains that may miss their deadlines; their other figures are left out.
+def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
+    """Yield the chains that can miss their deadlines, and those of which that cannot be excluded, without other figures.
 
     `margin` is the share of each deadline that must stay free.
     """
@@ -78,13 +80,21 @@ def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: F
         regions = chain_regions.lay_out_chain(
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
-        # Only the bound: the three other aims would each cost a graph of their own, and rules need none of them.
+        # Only the bound: the three other aims would each cost a graph of their own, and of chains that are in time rules
+        # need none of them.
         path_set = _paths_for_aim(network, regions, "bound") if regions else None
         path = next(path_set.best_paths(), None) if path_set else None
         if path_set is not None and path is not None:
             bound = _bound_path_set(network, path_set, path, "bound")
-            if judge_deadline(bound, TimingValue((1 - margin) * asked_chain.deadline.value)) == "missed":
-                yield LateChain(asked_chain, bound, build_terms(network, path))
+            deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
+            if is_known_bound(bound) and not _is_late(bound, deadline):
+                continue
+            best = _extreme_value(network, regions, "best")
+            # The margin is for what is uncertain: nothing is missed as long as it is only used up.
+            can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
+            if can_be_missed or _is_late(bound, deadline):
+                verdict: ChainVerdict = "missed" if can_be_missed else "not proven"
+                yield LateChain(asked_chain, bound, best, verdict, build_terms(network, path))
 
 
 def find_paths_between(
@@ -151,18 +161,19 @@ def _build_result(
         )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
+    best = _extreme_value(network, regions, "best")
     return ChainResult(
         id=asked_chain.id,
         through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
         terms=build_terms(network, path),
         bound=bound,
-        best=_extreme_value(network, regions, "best"),
+        best=best,
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
         reduced_age=_limit_reduced_age(
             _extreme_value(network, regions, "reduced age"), _limit_age(network, chain_points[0].activities, bound)
         ),
         deadline=deadline,
-        verdict=judge_deadline(bound, deadline),
+        verdict=judge_deadline(bound, best, deadline),
     )
 
 
@@ -232,15 +243,22 @@ def _limit_reduced_age(reduced_age: TimingValue, data_age: TimingValue) -> Timin
     return reduced_age
 
 
-def judge_deadline(bound: TimingValue, deadline: TimingValue | None) -> Literal["met", "missed", "open"]:
-    """Compare a bound with a deadline. What is known may exceed it before everything is known."""
+def judge_deadline(bound: TimingValue, best: TimingValue, deadline: TimingValue | None) -> ChainVerdict:
+    """Judge a chain by its bound and its best case, which may both be incomplete."""
     if deadline is None or deadline.value is None:
         return "open"
-    if is_boundless(bound):
+    if is_boundless(bound) or (best.value is not None and best.value > deadline.value):
         return "missed"
-    if bound.value is not None and bound.value > deadline.value:
-        return "missed"
+    if _is_late(bound, deadline):
+        return "not proven"
     return "met" if is_known_bound(bound) else "open"
+
+
+def _is_late(bound: TimingValue, deadline: TimingValue) -> bool:
+    """Whether a bound does not keep a deadline, whatever the figures that are still missing may turn out to be."""
+    if bound.value is not None and deadline.value is not None and bound.value > deadline.value:
+        return True
+    return is_boundless(bound) or (is_unfound(bound) and not bound.missing)
 
 
 def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.timing.analysis import Analysis, ChainResult, EventPace, Reason
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
 from archgen.timing.system.timing_system import Activity
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
@@ -56,8 +57,11 @@ def explain_chain(result: ChainResult) -> Iterator[ReasonLine]:
         if term.link.value != 0:
             yield ReasonLine(1, f"link to {term.activity}: {_format_figure(term.link)}")
         yield ReasonLine(1, f"{term.activity} waits {_format_figure(term.sampling)}: {term.why}", term.at)
-        yield ReasonLine(1, f"{term.activity} takes {_format_figure(term.response)} at most")
-    for assumption in result.bound.assumptions:
+        takes_text = f"takes {_format_figure(term.response)} at most"
+        if term.response.value is None:
+            takes_text = f"takes a time that is not bounded: {_format_figure(term.response)}"
+        yield ReasonLine(1, f"{term.activity} {takes_text}")
+    for assumption in list_assumptions(result.bound):
         yield ReasonLine(1, f"assumes: {assumption}")
 
 
@@ -112,9 +116,18 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
     if not rate_only:
         response_text = (
             f"response between {_format_figure(response.best)} and {_format_figure(response.worst)} ({response.tier})"
+            if not is_unfound(response.worst)
+            else _describe_unfound_response(analysis, name)
         )
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
+
+
+def _describe_unfound_response(analysis: Analysis, name: str) -> str:
+    """Describe a response for which no bound was found, with what was analysed."""
+    response = analysis.responses[name]
+    at_least = f"response of at least {_format_figure(response.best)}; " if response.best.value is not None else ""
+    return f"{at_least}no bound found {describe_unfound_places(group_by_host(analysis, [name]))}"
 
 
 def describe_behaviour(activity: Activity, pace: EventPace) -> str:

@@ -28,7 +28,6 @@ from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
-    UNBOUNDED_CAUSE,
     EventModels,
     ThreadWork,
     WorstResponse,
@@ -141,9 +140,9 @@ def find_responses(
 
 
 def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
-    """Replace overload by unbounded: all of the joined cores may bear what is too much for one."""
+    """Replace overload: all of the joined cores may bear what is too much for one, only no bound was found."""
     thread, response = thread_response
-    return thread, response._replace(cause=UNBOUNDED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
+    return thread, response._replace(cause=DIVERGED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
 
 
 def _highest_priority(thread: ThreadWork) -> int:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from archgen.compare import ChainChange
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.figures.figure_wording import format_duration, name_unknown_reason
 
 MINUS_SIGN = "\u2212"
 
@@ -41,10 +40,8 @@ def _format_bound(result: ChainResult | None) -> str:
     """Format how long a chain takes at most."""
     if result is None:
         return "not there"
-    if is_boundless(result.bound):
-        return "no bound"
     if result.bound.value is None:
-        return "unknown"
+        return name_unknown_reason(result.bound)
     return ("" if result.bound.complete else "at least ") + format_duration(result.bound.value)
 
 

@@ -22,8 +22,8 @@ UNKNOWN_FIGURE = "unknown"
 """What every formatter returns for an unknown value; callers compare with it to mute the cell."""
 _UNBOUNDED_WORDS = {
     "overload": "no bound: the host is overloaded",
-    "unbounded": "no bound",
-    "diverged": "no bound: the search for one did not end",
+    "unbounded": "unbounded",
+    "diverged": "no bound found",
 }
 """Words for a value that does not exist, by the first word of the assumption that explains it."""
 
