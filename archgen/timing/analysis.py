@@ -87,13 +87,17 @@ class HostLoad:
     """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
     utilisation: TimingValue
-    cores: int
+    cores: int | None
+    """None where nobody wrote how many there are, and it matters."""
     rate_monotonic_bound: TimingValue
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
     activity_shares: tuple[tuple[str, TimingValue], ...]
     """What each activity adds."""
     core_loads: tuple[tuple[str, int, TimingValue], ...] = ()
-    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation."""
+    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation.
+
+    Cores that nobody wrote the number of are left out.
+    """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
 
 

@@ -10,6 +10,7 @@ from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_o
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.event_models import UNLINKED_NOTE
+from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 
 _HOST_SEPARATOR = " - "
@@ -32,7 +33,9 @@ def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
         for name in term_value.missing
     }
     # The bound is the maximum over all ways, the terms are those of one of them.
-    elsewhere = tuple(name for name in result.bound.missing if name not in named_elements)
+    elsewhere = tuple(
+        name for name in result.bound.missing if name not in named_elements and not is_missing_cores(name)
+    )
     if elsewhere and result.terms:
         phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
     phrases += [text for text in result.bound.assumptions if not result.terms]
@@ -60,11 +63,13 @@ def _describe_unknown_figures(result: ChainResult, system: TimingSystem) -> Iter
         if name not in links and name not in paced_names and name in system.activities
     ]
     times = [name for name in responses if name not in timed_names and name in system.activities]
+    cores = [name for name in dict.fromkeys([*responses, *links, *result.bound.missing]) if is_missing_cores(name)]
     latencies = dict.fromkeys([*links, *(name for name in responses if name not in system.activities)])
-    link_names = [name for name in latencies if _HOST_SEPARATOR not in name]
+    link_names = [name for name in latencies if _HOST_SEPARATOR not in name and not is_missing_cores(name)]
     for quantity, names in (("period or rate", periods), ("execution time", times), ("latency", link_names)):
         if names:
             yield f"{quantity} of {figure_wording.join_first_names(tuple(names))} unknown"
+    yield from (f"{name} not written" for name in cores)
 
 
 def _describe_unlinked(result: ChainResult, system: TimingSystem) -> Iterable[str]:

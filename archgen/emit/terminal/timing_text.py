@@ -62,9 +62,12 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[T
 
 def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.hosts.items():
-        cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
+        cores = "? cores" if load.cores is None else f"{load.cores} core{'s' if load.cores != 1 else ''}"
         load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
-        yield name, cores, load_text, load.verdict, format_missing(load.utilisation) or _format_bounds(load)
+        missing_text = format_missing(load.utilisation)
+        if load.cores is None:
+            missing_text = f"how many cores it has is not written{f'; {missing_text}' if missing_text else ''}"
+        yield name, cores, load_text, load.verdict, missing_text or _format_bounds(load)
 
 
 def _format_bounds(load: HostLoad) -> str:

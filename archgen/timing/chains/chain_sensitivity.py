@@ -15,6 +15,7 @@ from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_chain
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.system.core_placement import is_missing_cores
 
 IMPROVED_SHARE = Fraction(9, 10)
 """What is left of a duration that is improved by a tenth."""
@@ -161,7 +162,8 @@ def _rank_unknown_figures(
             ("latency", term.link),
         ):
             for name in () if value.complete else value.missing:
-                lacking_terms[name, figure_name] = lacking_terms.get((name, figure_name), 0) + 1
+                key = (name, "number") if is_missing_cores(name) else (name, figure_name)
+                lacking_terms[key] = lacking_terms.get(key, 0) + 1
     gaps = [
         UnknownFigure(
             name,

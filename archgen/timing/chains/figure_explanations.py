@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.timing.analysis import Analysis, ChainResult, EventPace, Reason
+from archgen.timing.analysis import Analysis, ChainResult, EventPace, HostLoad, Reason
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.figures import figure_wording
@@ -87,10 +87,14 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
     """Explain a host's load: what each activity adds."""
     load = analysis.hosts[name]
     yield ReasonLine(
-        0, f"{name}: load {_format_figure(load.utilisation, 'share')} of {load.cores} cores: {load.verdict}"
+        0, f"{name}: load {_format_figure(load.utilisation, 'share')} of {_count_cores(load)}: {load.verdict}"
     )
     for activity, part in load.activity_shares:
         yield ReasonLine(1, f"{activity} adds {_format_figure(part, 'share')}", _span_of_activity(analysis, activity))
+
+
+def _count_cores(load: HostLoad) -> str:
+    return "a core, and nobody wrote how many there are" if load.cores is None else f"{load.cores} cores"
 
 
 def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:

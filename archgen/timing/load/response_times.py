@@ -123,7 +123,7 @@ def find_responses(
     else:
         wanted_threads = threads
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
-    solve_resource = _solve_one_core if one_core else solve_several_cores
+    solve_resource = _leave_open if resource.missing else _solve_one_core if one_core else solve_several_cores
     response_of: dict[str, WorstResponse] = {}
     thread_responses = solve_resource(system, resource, (threads, foreign_threads), wanted_threads, budget)
     for thread, response in map(_soften_overload, thread_responses) if resource.joined else thread_responses:
@@ -148,6 +148,19 @@ def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple
 def _highest_priority(thread: ThreadWork) -> int:
     """Return the greatest priority of a thread, -1 where it has none."""
     return -1 if thread.highest_priority is None else thread.highest_priority
+
+
+def _leave_open(
+    _: TimingSystem,
+    resource: ProcessingResource,
+    __: _OwnAndForeign,
+    wanted_threads: Sequence[ThreadWork],
+    ___: SearchBudget,
+) -> Iterable[tuple[ThreadWork, WorstResponse]]:
+    """Yield no bound for threads of which nobody knows how many cores they have, but what is too much for any core."""
+    for thread in wanted_threads:
+        causes = (*((thread.cause,) if thread.cause else ()), UnknownCause(resource.missing))
+        yield thread, WorstResponse(None, "unknown", OVERLOAD_CAUSE if thread.share > 1 else unite_causes(causes))
 
 
 def _solve_one_core(
