@@ -9,7 +9,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.overloaded_resources import find_link_causes
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.timing.analysis import ChainResult, ChainTerm
-from archgen.timing.chains.chain_bounds import judge_deadline
+from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 

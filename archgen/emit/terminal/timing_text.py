@@ -6,21 +6,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
+from archgen.emit.terminal import timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, HostLoad
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
+from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import list_assumptions
-
-_VERDICT_WORDS: Mapping[ChainVerdict, str] = {
-    "met": "met",
-    "missed": "MISSED",
-    "not proven": "not proven",
-    "open": "open",
-}
 
 
 def format_timing(
@@ -34,9 +29,11 @@ def format_timing(
         ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
         ("Elements", _element_rows(analysis)),
         ("Loops: latency of one round", _loop_rows(loops)),
+        ("What is taken for granted", _assumption_rows(analysis)),
     )
-    for title, rows in sections:
-        yield from _section_lines(title, rows, width)
+    lines = [line for title, rows in sections for line in _section_lines(title, rows, width)]
+    yield from lines
+    yield from _section_lines("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
     yield from _fault_lines(analysis)
 
 
@@ -55,7 +52,7 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[T
             result.id,
             format_figure(result.bound),
             deadline,
-            _VERDICT_WORDS[result.verdict] if result.deadline else "",
+            VERDICT_WORDS[result.verdict] if result.deadline else "",
             describe_gaps(result, analysis),
         )
 
@@ -117,6 +114,14 @@ def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[TextRow]:
         yield " > ".join(loop.through), format_figure(loop.latency), group_note or format_missing(loop.latency)
 
 
+def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
+    """Yield what was left out and counts as nothing."""
+    clocked = [activity for activity in analysis.system.activities.values() if activity.behaviour == "periodic"]
+    unwritten_count = sum("jitter" not in activity.places for activity in clocked)
+    if unwritten_count:
+        yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+
+
 def _fault_lines(analysis: Analysis) -> Iterator[str]:
     for ring in analysis.endless:
         yield f"endless: every event circulates for ever in {' > '.join(ring)}"
@@ -160,8 +165,10 @@ def format_chain(
         )
         rows.append(("    reduced data age", figure_wording.format_duration(published[1])))
     if result.deadline:
-        rows.append(("deadline", format_figure(result.deadline), _VERDICT_WORDS[result.verdict]))
+        rows.append(("deadline", format_figure(result.deadline), VERDICT_WORDS[result.verdict]))
     yield from align_rows(rows, width)
+    if result.terms:
+        yield "  Hold the first of these against a deadline, the reduced reaction time against a trace that begins with the sample."
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

@@ -14,6 +14,7 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
 from archgen.timing.chains import chain_regions
+from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
 from archgen.timing.figures import figure_wording
@@ -21,7 +22,6 @@ from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, Timi
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
-    is_unfound,
     largest_value,
     smallest_value,
     sum_bounds,
@@ -87,12 +87,12 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
         if path_set is not None and path is not None:
             bound = _bound_path_set(network, path_set, path, "bound")
             deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
-            if is_known_bound(bound) and not _is_late(bound, deadline):
+            if is_known_bound(bound) and not may_be_late(bound, deadline):
                 continue
             best = _extreme_value(network, regions, "best")
             # The margin is for what is uncertain: nothing is missed as long as it is only used up.
             can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
-            if can_be_missed or _is_late(bound, deadline):
+            if can_be_missed or may_be_late(bound, deadline):
                 verdict: ChainVerdict = "missed" if can_be_missed else "not proven"
                 yield LateChain(asked_chain, bound, best, verdict, build_terms(network, path))
 
@@ -241,24 +241,6 @@ def _limit_reduced_age(reduced_age: TimingValue, data_age: TimingValue) -> Timin
     if is_known_bound(data_age) or is_boundless(reduced_age):
         return smallest_value((reduced_age, data_age))
     return reduced_age
-
-
-def judge_deadline(bound: TimingValue, best: TimingValue, deadline: TimingValue | None) -> ChainVerdict:
-    """Judge a chain by its bound and its best case, which may both be incomplete."""
-    if deadline is None or deadline.value is None:
-        return "open"
-    if is_boundless(bound) or (best.value is not None and best.value > deadline.value):
-        return "missed"
-    if _is_late(bound, deadline):
-        return "not proven"
-    return "met" if is_known_bound(bound) else "open"
-
-
-def _is_late(bound: TimingValue, deadline: TimingValue) -> bool:
-    """Whether a bound does not keep a deadline, whatever the figures that are still missing may turn out to be."""
-    if bound.value is not None and deadline.value is not None and bound.value > deadline.value:
-        return True
-    return is_boundless(bound) or (is_unfound(bound) and not bound.missing)
 
 
 def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:

@@ -51,7 +51,8 @@ def explain_activity(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
 def explain_chain(result: ChainResult) -> Iterator[ReasonLine]:
     """Explain a chain's bound: its terms in order."""
     yield ReasonLine(
-        0, f"{result.id}: {_format_figure(result.bound)} = S0 + R0 + sum of (link + S + R) along the chain"
+        0,
+        f"{result.id}: {_format_figure(result.bound)}, the sum of all that follows: what each step waits and takes, and links",
     )
     for term in result.terms:
         if term.link.value != 0:

@@ -14,10 +14,10 @@ from archgen.timing.chains.chain_bounds import (
     find_data_age,
     find_paths_between,
     find_unmet_chains,
-    judge_deadline,
     list_bounded_paths,
 )
 from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
+from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
 from archgen.timing.figures.timing_values import TimingValue
