@@ -5,7 +5,7 @@ F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -22,7 +22,6 @@ from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, Timi
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
-    largest_value,
     smallest_value,
     sum_bounds,
 )
@@ -162,6 +161,7 @@ def _build_result(
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
     best = _extreme_value(network, regions, "best")
+    event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
         id=asked_chain.id,
         through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
@@ -169,9 +169,7 @@ def _build_result(
         bound=bound,
         best=best,
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
-        reduced_age=_limit_reduced_age(
-            _extreme_value(network, regions, "reduced age"), _limit_age(network, chain_points[0].activities, bound)
-        ),
+        reduced_age=_limit_reduced_age(_extreme_value(network, regions, "reduced age"), bound, event_ages),
         deadline=deadline,
         verdict=judge_deadline(bound, best, deadline),
     )
@@ -179,9 +177,8 @@ def _build_result(
 
 def _unresolved_value(words: tuple[str, ...]) -> TimingValue:
     """Return the value of a chain with words that name nothing."""
-    return TimingValue(
-        None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words)
-    )
+    assumptions = tuple(f"`{word}` is not resolved" for word in words)
+    return TimingValue(None, complete=False, missing=words, assumptions=assumptions)
 
 
 def _unconnected_value(
@@ -226,21 +223,29 @@ def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:
     return sum_bounds((result.bound, network.steps.arrivals.activation_gap(result.through[0])))
 
 
-def _limit_age(network: CostNetwork, start_ids: Sequence[str], bound: TimingValue) -> TimingValue:
-    """Return the largest data age of a chain that any of some elements begins."""
-    activities = network.steps.analysis.system.activities
-    gaps = [
-        network.steps.arrivals.activation_gap(name) for name in start_ids if activities[name].behaviour != "periodic"
-    ]
-    return sum_bounds((bound, largest_value(gaps))) if gaps else bound
-
-
-def _limit_reduced_age(reduced_age: TimingValue, data_age: TimingValue) -> TimingValue:
+def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages: Iterable[TimingValue]) -> TimingValue:
     """Return the age of what is sent: never more than it may become before the next output replaces it."""
+    if is_known_bound(reduced_age) and reduced_age.value is not None and reduced_age.value <= (bound.value or 0):
+        return reduced_age
+    data_ages = [bound, *event_ages]
     # A data age that is not known yet limits nothing but what has no bound at all.
-    if is_known_bound(data_age) or is_boundless(reduced_age):
-        return smallest_value((reduced_age, data_age))
+    if all(map(is_known_bound, data_ages)) or is_boundless(reduced_age):
+        return smallest_value((reduced_age, max(data_ages, key=lambda value: value.value or 0)))
     return reduced_age
+
+
+def _ages_from_events(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Iterable[str]
+) -> Iterator[TimingValue]:
+    """Yield the largest data age from each event that may be a chain's stimulus: until the result of the next one."""
+    for name in start_ids:
+        start = replace(regions[0], members=frozenset({network.vertex_of[name]}), inside=False)
+        is_event = network.steps.analysis.system.activities[name].behaviour != "periodic"
+        path_set = _paths_for_aim(network, (start, *regions[1:]), "bound") if is_event else None
+        path = next(path_set.best_paths(), None) if path_set else None
+        if path_set is not None and path is not None:
+            bound = _bound_path_set(network, path_set, path, "bound")
+            yield sum_bounds((bound, network.steps.arrivals.activation_gap(name)))
 
 
 def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:

@@ -103,7 +103,7 @@ def test_every_kind_of_step() -> None:
 def test_why_every_kind_of_step() -> None:
     model, analysis = read_sketch(*EVERY_KIND_OF_STEP), analyse_sketch(*EVERY_KIND_OF_STEP)
     assert explain(analysis, model, "main") == [
-        "main: 203 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "main: 203 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  cam waits 42 ms: samples the world every 42 ms at the latest @22:52",
         "  cam takes 5 ms at most @0:0",
         "  link to thin: 3 ms @0:0",
@@ -118,7 +118,7 @@ def test_why_every_kind_of_step() -> None:
         "  assumes: the response of said is as declared @0:0",
     ]
     assert explain(analysis, model, "throttled") == [
-        "throttled: 61 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "throttled: 61 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  imu waits 10 ms: samples the world every 10 ms at the latest @23:52",
         "  imu takes 5 ms at most @0:0",
         "  link to slow: 3 ms @0:0",
@@ -209,7 +209,7 @@ def test_why_every_kind_of_step() -> None:
         "    g.cond.imu brings 100 Hz from imu, at most 16 ms apart @14:28",
     ]
     assert explain(analysis, model, "cond") == [
-        "cond: 2 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "cond: 2 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  cond waits 0 ms: its event is the stimulus @32:37",
         "  cond takes 1 ms at most @0:0",
         "  end waits 0 ms: triggered by /g/cond/out @34:53",
@@ -218,7 +218,7 @@ def test_why_every_kind_of_step() -> None:
         "  assumes: the reaction counts from the event that fires cond; data age is larger by its largest gap (16 ms) @0:0",
     ]
     assert explain(analysis, model, "once") == [
-        "once: unbounded = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "once: unbounded, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  said waits 0 ms: its event is the stimulus @29:37",
         "  said takes 6 ms at most @0:0",
         "  once waits unbounded: works once, at the start: nothing later reaches it @30:57",
@@ -227,7 +227,7 @@ def test_why_every_kind_of_step() -> None:
         "  assumes: the reaction counts from the event that fires said; data age is larger by its largest gap (26 ms) @0:0",
     ]
     assert explain(analysis, model, "dark") == [
-        "dark: >= 6 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "dark: >= 6 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  said waits 0 ms: its event is the stimulus @29:37",
         "  said takes 6 ms at most @0:0",
         "  link to dark: unknown (dark) @0:0",
@@ -296,14 +296,14 @@ def test_why_links_hosts_and_declared_responses() -> None:
         analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES),
     )
     assert explain(analysis, model, "two") == [
-        "two: 34 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "two: 34 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
         "  a takes 1 ms at most @0:0",
         "  b waits 20 ms: reads /g/a/out every 20 ms at the latest @14:48",
         "  b takes 3 ms at most @0:0",
     ]
     assert explain(analysis, model, "far") == [
-        "far: 128 ms = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "far: 128 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
         "  a takes 1 ms at most @0:0",
         "  b waits 20 ms: reads /g/a/out every 20 ms at the latest @14:48",
@@ -318,7 +318,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "  assumes: link wan keeps its written latency, though 10 ms of traffic can wait for it @0:0",
     ]
     assert explain(analysis, model, "hot") == [
-        "hot: overload = S0 + R0 + sum of (link + S + R) along the chain @0:0",
+        "hot: overload, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  hot waits 10 ms: samples the world every 10 ms at the latest @19:52",
         "  hot takes a time that is not bounded: overload @0:0",
         "  g waits 0 ms: triggered by /g/hot/out @20:31",
