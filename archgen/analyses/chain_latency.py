@@ -94,9 +94,8 @@ def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
         return f"it takes at least {figure_wording.format_duration(late_chain.best.value)}"
     if bound.value is None or (deadline is not None and bound.value <= deadline.value and is_unfound(bound)):
         places = find_unfound_places(analysis, late_chain.terms)
-        return "no bound was found" + join_words(
-            [f" on `{place.host}`{place.load_text}" for place in places if place.host]
-        )
+        hosts = join_words([f"`{place.host}`{place.load_text}" for place in places if place.host])
+        return f"no bound was found on {hosts}" if hosts else "no bound was found"
     suffix = "" if is_known_bound(bound) else " and more, for not all of its figures are known"
     return f"it may take {figure_wording.format_duration(bound.value)}{suffix}"
 

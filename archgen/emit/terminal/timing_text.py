@@ -15,7 +15,7 @@ from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import list_assumptions
+from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
 
 
 def format_timing(
@@ -64,7 +64,20 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
         missing_text = format_missing(load.utilisation)
         if load.cores is None:
             missing_text = f"how many cores it has is not written{f'; {missing_text}' if missing_text else ''}"
-        yield name, cores, load_text, load.verdict, missing_text or _format_bounds(load)
+        yield (
+            name,
+            cores,
+            load_text,
+            load.verdict,
+            missing_text or _count_unfound(analysis, load) or _format_bounds(load),
+        )
+
+
+def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
+    """Return for how many elements of a host no bound was found: a low load alone would look as if all were well."""
+    names = [name for name, _ in load.activity_shares]
+    unfound_count = sum(is_unfound(analysis.responses[name].worst) for name in names)
+    return f"no bound found for {unfound_count} of {len(names)} elements" if unfound_count else ""
 
 
 def _format_bounds(load: HostLoad) -> str:
