@@ -9,7 +9,7 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.load.event_models import UNLINKED_NOTE
+from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
 from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 

@@ -22,6 +22,7 @@ from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, Timi
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
+    largest_value,
     smallest_value,
     sum_bounds,
 )
@@ -79,8 +80,7 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
         regions = chain_regions.lay_out_chain(
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
-        # Only the bound: the three other aims would each cost a graph of their own, and of chains that are in time rules
-        # need none of them.
+        # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
         path_set = _paths_for_aim(network, regions, "bound") if regions else None
         path = next(path_set.best_paths(), None) if path_set else None
         if path_set is not None and path is not None:
@@ -228,10 +228,11 @@ def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages:
     if is_known_bound(reduced_age) and reduced_age.value is not None and reduced_age.value <= (bound.value or 0):
         return reduced_age
     data_ages = [bound, *event_ages]
-    # A data age that is not known yet limits nothing but what has no bound at all.
-    if all(map(is_known_bound, data_ages)) or is_boundless(reduced_age):
+    if all(map(is_known_bound, data_ages)):
         return smallest_value((reduced_age, max(data_ages, key=lambda value: value.value or 0)))
-    return reduced_age
+    # A data age that is not known yet limits nothing but what has no bound at all.
+    can_limit = is_boundless(reduced_age) and not any(map(is_boundless, data_ages))
+    return largest_value(data_ages) if can_limit else reduced_age
 
 
 def _ages_from_events(

@@ -14,7 +14,9 @@ NEVER_FIRES = TimingValue(Fraction(0), assumptions=("never fires",))
 """The rate of what never fires: a known zero, unlike a rate that nobody wrote."""
 BOUNDLESS_WORDS = ("overload", "unbounded")
 """Assumptions of values that grow beyond any bound. `diverged` is none of them: there the search was given up."""
-_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged")
+UNLINKED_NOTE = "no link joins their hosts"
+"""The note of what is unknown because the hosts of two elements are not joined."""
+_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE)
 
 
 def unknown_value(*missing: str) -> TimingValue:

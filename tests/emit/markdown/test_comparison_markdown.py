@@ -99,17 +99,17 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 #### Breaking changes
 
 - \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
-  - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+  - breaks `certh`: takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
 
 #### Latency of chains
 
 | chain | before | after | difference | deadline | verdict |
 | --- | --- | --- | --- | --- | --- |
-| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **missed (was met)** |
+| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **not proven (was met)** |
 
 #### New findings
 
-- warning `late-chain`: the chain `see` may take 167 ms, its deadline is 150 ms (`robot.yaml:22:10`)
+- warning `late-chain`: nothing proves that the chain `see` meets its deadline of 150 ms: it may take 167 ms (`robot.yaml:22:10`)
 
 ```mermaid
 flowchart LR

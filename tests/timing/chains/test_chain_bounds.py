@@ -77,6 +77,21 @@ def test_what_is_sent_is_never_older_than_the_data_age(wires: str, gap: int, bou
     assert (_ms(result.bound), _ms(result.reduced_age)) == (bound, age)
 
 
+def test_what_an_event_brought_may_be_used_until_the_next_which_may_never_come() -> None:
+    nodes = {
+        "clock": "period: 10 ms, wcet: 1 ms, outputs: {out: {conditional: true}}",
+        "alarm": "behaviour: event, wcet: 1 ms",
+        "stop": "period: 8 ms, wcet: 2 ms",
+    }
+    sketch = nodes, "clock>alarm alarm>stop", "chains: {c: {through: [alarm, stop]}}"
+    result = bound_all_chains(analyse_sketch(*sketch), read_sketch(*sketch))["c"]
+    assert (_ms(result.bound), result.reduced_age.value, "unbounded" in result.reduced_age.assumptions) == (
+        11,
+        None,
+        True,
+    )
+
+
 def test_reduced_age_of_a_periodic_chain_is_response_and_gap_of_each_producer() -> None:
     # R_a + (T_a + R_b): a's sample lies for at most a's gap.
     assert _ms(_one(_all_periodic(S1), "a", "b").reduced_age) == 1 + 10 + 3
