@@ -62,6 +62,9 @@ class _Propagation:
                     self.disturbed_resources.setdefault(name, []).append(key)
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
+        # Where a written jitter lets many come at once, that many may wait without anything having run away.
+        bursts = (each.jitter // each.period for each in state.system.activities.values() if each.period)
+        self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + max(bursts, default=0))
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
@@ -126,9 +129,9 @@ class _Propagation:
         state = self.state
         for name in self.resources[step].members if step in self.resources else ():
             response, event_model = state.responses[name], state.event_models[name]
-            if response.value and not isinstance(event_model, UnknownCause):
+            if response.value and response.tier != "declared" and not isinstance(event_model, UnknownCause):
                 numerator, denominator = sum_ratios([stream.max_rate_ratio for stream in event_model])
-                if response.value * numerator > _MAX_WAITING_ACTIVATIONS * denominator:
+                if response.value * numerator > self.max_waiting * denominator:
                     return True
         return False
 

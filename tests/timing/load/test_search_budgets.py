@@ -12,7 +12,7 @@ from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.system_builder import build_system
-from tests.timing.sketches import read_sketch
+from tests.timing.sketches import analyse_sketch, read_sketch
 
 Derived = Callable[[str], Architecture]
 
@@ -70,6 +70,15 @@ def test_a_group_is_what_depends_on_one_another(wires: str, fired: str, link: st
     for name, budget in GroupBudgets().assign_budgets(system, successors).items():
         members[id(budget)] = members.get(id(budget), "") + name
     assert sorted("".join(sorted(names)) for names in members.values()) == groups.split()
+
+
+@pytest.mark.parametrize(
+    "figures", ["wcet: 1 ms, bcet: 1 ms, response: 30 s", "wcet: 100 us, bcet: 100 us, jitter: 30 s"]
+)
+def test_what_is_written_to_take_long_or_come_in_bursts_has_not_run_away(figures: str) -> None:
+    nodes = {"a @p": "period: 100 ms, wcet: 1 ms, bcet: 1 ms", "b @q": figures, "c @p": "wcet: 100 us"}
+    rest = "hosts: {p: {cores: 2}, q: {cores: 2}}\nlinks: {lan: {connects: [p, q], latency: 1 ms}}"
+    assert analyse_sketch(nodes, "a>b b>c", rest).diverged == ()
 
 
 def test_a_group_keeps_its_budget_in_the_next_turn() -> None:
