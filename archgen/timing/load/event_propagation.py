@@ -63,8 +63,10 @@ class _Propagation:
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
-        bursts = (each.jitter // each.period for each in state.system.activities.values() if each.period)
-        self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + max(bursts, default=0))
+        activities = state.system.activities.values()
+        shortest_period = min((activity.period for activity in activities if activity.period), default=1)
+        largest_jitter = max((activity.jitter for activity in activities), default=0)
+        self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
