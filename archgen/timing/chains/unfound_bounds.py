@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis, ChainTerm, ResponseTier
+from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_unfound
@@ -74,25 +75,28 @@ def _share_of_cores(analysis: Analysis, host: str | None) -> TimingValue | None:
 
 
 def _is_fed(analysis: Analysis, place: UnfoundPlace, unfound_ids: set[str]) -> bool:
-    """Whether something without a bound on another host sends to a place: then the trouble may come from there."""
-    activities = analysis.system.activities
+    """Whether something without a bound on another host fires what is on a place: then the trouble may come from there."""
+    activities, arrivals = analysis.system.activities, TriggerArrivals(analysis)
     return any(
-        arc.source in unfound_ids and activities[arc.source].host != place.host
+        arc.source in unfound_ids and activities[arc.source].host != place.host and arrivals.fires_reader(arc)
         for name in place.activities
         for arc in analysis.system.arcs_into.get(name, ())
     )
 
 
 def describe_unfound_places(places: Iterable[UnfoundPlace]) -> str:
-    """Say where no bound was found: `on cpu at a load of 40 % (a, b: one thread in any order)`; empty for no place."""
+    """Say where no bound was found: `on cpu at a load of 40 % (one thread in any order)`; empty for no place."""
     return join_words([_describe_place(place) for place in places])
 
 
 def _describe_place(place: UnfoundPlace) -> str:
-    names = figure_wording.join_first_names(place.activities)
+    subject = (
+        f"on {place.host}{place.load_text}"
+        if place.host
+        else f"for {figure_wording.join_first_names(place.activities)}"
+    )
     phrases = join_words([phrase for tier in place.tiers if (phrase := _TIER_PHRASES.get(tier))])
-    names_and_phrases = f"{names}: {phrases}" if phrases else names
-    return f"on {place.host}{place.load_text} ({names_and_phrases})" if place.host else f"for {names_and_phrases}"
+    return f"{subject} ({phrases})" if phrases else subject
 
 
 def find_overloaded_hosts(analysis: Analysis, terms: Iterable[ChainTerm]) -> tuple[str, ...]:

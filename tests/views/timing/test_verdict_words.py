@@ -54,7 +54,7 @@ def _view(folder: Path, cost: str, cores: str, limit: str) -> tuple[Lookup, tupl
         (("40 ms", "cores: 1", "1 s"), "Missed: pc is overloaded.", None),
         (
             ("20 ms", "cores: 1", "1 s"),
-            "Not proven: no bound was found on pc at a load of 60 % (a, b, c: in any order), for the deadline of 1000 ms.",
+            "Not proven: no bound was found on pc at a load of 60 % (in any order), for the deadline of 1000 ms.",
             "unproven",
         ),
         (("1 ms", "tags: []", "200 ms"), "Open: >= 103 ms; no bound: cores of pc not written.", "open"),
