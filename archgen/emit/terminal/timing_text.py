@@ -76,8 +76,8 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
 def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
     """Return for how many elements of a host no bound was found: a low load alone would look as if all were well."""
     names = [name for name, _ in load.activity_shares]
-    unfound_count = sum(is_unfound(analysis.responses[name].worst) for name in names)
-    return f"no bound found for {unfound_count} of {len(names)} elements" if unfound_count else ""
+    unfound_ids = [name for name in names if is_unfound(analysis.responses[name].worst)]
+    return f"no bound found for {len(unfound_ids)} of {len(names)} elements" if unfound_ids else ""
 
 
 def _format_bounds(load: HostLoad) -> str:

@@ -47,8 +47,12 @@ def find_unfound_places(analysis: Analysis, terms: Iterable[ChainTerm]) -> tuple
     # Only a gap: what fires the elements of the chain stands elsewhere.
     places = group_by_host(analysis, names or analysis.diverged)
     unfound_ids = {name for name, response in analysis.responses.items() if is_unfound(response.worst)}
-    first_places = tuple(place for place in places if not _is_fed(analysis, place, unfound_ids))
-    return first_places or places
+    # Where each host of the chain is fed by another one without bounds, it begins off the chain.
+    for candidates in (places, group_by_host(analysis, analysis.diverged)):
+        first_places = tuple(place for place in candidates if not _is_fed(analysis, place, unfound_ids))
+        if first_places:
+            return first_places
+    return places
 
 
 def group_by_host(analysis: Analysis, names: Iterable[str]) -> tuple[UnfoundPlace, ...]:
