@@ -50,7 +50,7 @@ CROWDED = (
         "  gan: {implements: two, timing: {rate: 10 Hz, wcet: 0.1 ms}, host: pc}\n",
     )
 )
-LATE = "makes the chain `react` miss its deadline of 250 ms"
+LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
 ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
 EVERYBODY = ("certh", "sssa", "tum")
@@ -88,7 +88,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            f"{LATE} (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` miss its deadline of 250 ms (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
             "certh",
             "sssa",
         ),
@@ -98,7 +98,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "makes the chain `react` miss its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
             "certh",
             "sssa",
             "tum",
@@ -129,7 +129,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
                 "`mind` of sssa and `feet` of tum are on it",
                 "sssa",
                 "tum",
@@ -176,7 +176,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` exceed its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
             "certh",
             "sssa",
         ),
@@ -234,7 +234,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
                 "`mind` of sssa and `feet` of tum are on it",
                 "sssa",
                 "tum",
@@ -252,7 +252,7 @@ TABLE = {
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "makes the chain `react` miss its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
             "certh",
             "sssa",
             "tum",
