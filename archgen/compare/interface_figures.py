@@ -29,6 +29,8 @@ _NEGLIGIBLE_SHARE, _NEGLIGIBLE_AGE = Fraction(5, 1000), Fraction(5, 100)
 one more message on a link makes everything on it a little older; agreements do not have it.
 """
 _AGE_NAME = "age on arrival"
+RECEIVER_NAMES = frozenset({_AGE_NAME, "QoS asked", "hosts"})
+"""The figures that depend on who receives."""
 _SIZE_NAMES = {
     "service": {"request": "size of a request", "answer": "size of an answer"},
     "action": {"request": "size of a goal", "answer": "size of a result"},
@@ -60,6 +62,10 @@ class FigureReader:
         if interface.flow == "physical":
             return {}
         return dict((*self._read_paces(interface), *self._read_qos(interface), *self._read_path(interface)))
+
+    def is_written(self, endpoints: Iterable[Endpoint]) -> bool:
+        """Whether somebody wrote a node of these endpoints; figures of others are those of a plan."""
+        return any(self.architecture.nodes[endpoint.node].written for endpoint in endpoints)
 
     def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
         if self.analysis is None:

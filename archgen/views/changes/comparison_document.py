@@ -17,9 +17,10 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.model.review_settings import BreakCategory
 from archgen.views.changes import breaking_verdict
+from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
-from archgen.views.changes.figure_lines import FigureLine, write_boundary_lines, write_load_lines
+from archgen.views.changes.figure_lines import FigureLine, write_load_lines
 from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.changes.repeated_findings import find_repeated_findings

@@ -9,7 +9,7 @@ from archgen.compare import Change, Comparison
 from archgen.diagnostics.diagnostic import Diagnostic
 
 _BACKTICKED = re.compile(r"`([^`]*)`")
-_RULES = frozenset({"incompatible-qos", "unfed-input", "late-chain"})
+_RULES = frozenset({"incompatible-qos", "unfed-input", "late-chain", "overloaded-host", "saturated-link"})
 """The rules whose findings have a break that says the same. Others say more than that somebody loses something."""
 
 
@@ -44,3 +44,6 @@ def _name_subjects(finding: Diagnostic) -> Iterator[str]:
         yield f"{names[1]}.{names[0]}"
     elif finding.rule == "late-chain" and finding.element:
         yield finding.element
+    elif finding.rule in {"overloaded-host", "saturated-link"}:
+        # Of what follows behind the name, as the largest part of the traffic, breaks say nothing.
+        yield from names[:1]
