@@ -33,7 +33,9 @@ def find_late_chains(
             # Whoever is only on the way round had no part in the chain.
             indices = causes.find_cuts(lost_step[1:])[0]
             activities_of_owners = causes.old_activities_by_owner(old_result.through)
-            reason_text = f"cuts the chain `{new_result.id}`: `{lost_step[0]}` no longer reaches `{lost_step[1]}` directly"
+            reason_text = (
+                f"cuts the chain `{new_result.id}`: `{lost_step[0]}` no longer reaches `{lost_step[1]}` directly"
+            )
         elif new_result.terms:
             worse_activities = _grown_activities(causes, old_result.terms, new_result.terms)
             indices = causes.find_causes(worse_activities) + _link_causes(context, worse_activities, causes)
@@ -50,9 +52,7 @@ def find_late_chains(
         yield from context.shared_losses(dict.fromkeys(indices), activities_of_owners, reason_text, "is")
 
 
-def _find_lost_step(
-    causes: TimingCauses, old_result: ChainResult, new_result: ChainResult
-) -> tuple[str, str] | None:
+def _find_lost_step(causes: TimingCauses, old_result: ChainResult, new_result: ChainResult) -> tuple[str, str] | None:
     """Return two activities of the first version that followed each other on a chain, and are joined by a way round alone
     now that was there before: nobody meant the chain to take it. Something new between the two is meant.
     """

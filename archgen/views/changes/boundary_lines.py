@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.figure_changes import BoundaryChange, FigureChange
+from archgen.compare.figure_changes import BoundaryChange, FigureChange, TravelPath
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
@@ -82,7 +82,7 @@ def _describe_boundary(change: BoundaryChange, comparison: Comparison) -> _Bound
     # How old data without a bound is, nobody asks.
     lost_lead = next((lead for lead, names in names_by_lead.items() if names), "")
     remaining = [figure for figure in change.figures if not leads[figure]]
-    figures = [figure for figure in remaining if not _follows(figure, change.figures)]
+    figures = [figure for figure in remaining if not (_follows(figure, change.figures) or _has_same_hosts(figure))]
     return _Boundary(change, tuple(figures), lost_lead, names_by_lead.get(lost_lead, ()))
 
 
@@ -113,6 +113,12 @@ def _follows(figure: FigureChange, figures: Iterable[FigureChange]) -> bool:
         return "rate" in others and "size" not in others
     gap = others.get(_GAP)
     return figure.key.name == _AGE and gap is not None and _grows_within(_growth(figure), _growth(gap))
+
+
+def _has_same_hosts(figure: FigureChange) -> bool:
+    """Whether data only takes other links between the same hosts: that is the change of a link, told there."""
+    ends = [(path.senders, path.receivers) for path in (figure.before, figure.after) if isinstance(path, TravelPath)]
+    return len(ends) > 1 and ends[0] == ends[1]
 
 
 def _grows_within(growth: Fraction | None, limit: Fraction | None) -> bool:
@@ -148,9 +154,8 @@ def _list_by_names(boundaries: Iterable[_Boundary], partner_names: Mapping[str, 
     for boundary in boundaries:
         changes_by_names.setdefault(boundary.lost_names, []).append(boundary.change)
     for names, changes in changes_by_names.items():
-        shown_names = [_PHRASES.get(name, name) for name in names]
-        figures = join_words(shown_names) if len(names) <= _MAX_NAMES else "nearly all figures"
-        yield f"{figures} of {_name_interfaces(changes, partner_names)}"
+        figures = f"{join_words([_PHRASES.get(name, name) for name in names])} of " if len(names) <= _MAX_NAMES else ""
+        yield f"{figures}{_name_interfaces(changes, partner_names)}"
 
 
 def _write_singles(boundaries: Iterable[_Boundary], partner_names: Mapping[str, str]) -> Iterator[FigureLine]:
