@@ -15,7 +15,7 @@ from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.model.review_settings import BreakCategory
+from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
@@ -351,7 +351,7 @@ def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[Shar
 
 def _limit_losses(losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:
     """Yield the first losses of each category, with the number of those left out behind the last one."""
-    for category in dict.fromkeys(loss.category for loss in losses):
+    for category in BREAK_CATEGORIES:
         members = [loss for loss in losses if loss.category == category]
         surplus = members[_MAX_LOSSES:] if len(members) > _MAX_LOSSES + 1 else []
         yield from members[: len(members) - len(surplus)]
