@@ -22,6 +22,7 @@ from archgen.compare.version_pair import VersionPair
 from archgen.frozen import dataclass
 from archgen.model.node import Qos
 from archgen.model.partner_interfaces import PartnerPair, find_all_interfaces
+from archgen.timing.figures.timing_values import TimingValue
 
 _ASKED_QOS = "QoS asked"
 
@@ -144,7 +145,34 @@ def _compare_interfaces(
             figures = (FigureChange(FigureKey(new.wire.flow), old.wire, new.wire), *figures)
         if figures or kind != "changed":
             concerned = {giver, taker} if kind != "changed" else _find_concerned(figures, giver, taker, new)
-            yield BoundaryChange(kind, name, old_id, (giver,), (taker,), figures, frozenset(concerned))
+            missed_deadline = _find_missed_deadline(figures, new.figures) if new and kind == "changed" else None
+            yield BoundaryChange(
+                kind,
+                name,
+                old_id,
+                (giver,),
+                (taker,),
+                figures,
+                frozenset(concerned),
+                missed_deadline=missed_deadline,
+            )
+
+
+def _find_missed_deadline(changes: Iterable[FigureChange], figures: InterfaceFigures) -> TimingValue | None:
+    """Return the shortest deadline that a subscriber asks for, if the largest gap kept it before and does no longer."""
+    deadlines = [
+        figure.deadline.value
+        for key, figure in figures.items()
+        if key.name == _ASKED_QOS and isinstance(figure, Qos) and figure.deadline
+    ]
+    for change in changes if deadlines else ():
+        before, after = change.before, change.after
+        if change.key.name == "largest gap" and isinstance(before, TimingValue) and isinstance(after, TimingValue):
+            limit = min(deadlines)
+            was_kept = before.value is not None and before.value <= limit
+            if was_kept and after.value is not None and after.value > limit:
+                return TimingValue(limit)
+    return None
 
 
 def _known_figures(old: _InterfaceVersion | None, new: _InterfaceVersion) -> InterfaceFigures:
@@ -188,7 +216,14 @@ def _merge_pairs(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
     """Yield one change for all pairs of partners for whom the same of one interface changed."""
     merged: dict[object, BoundaryChange] = {}
     for change in changes:
-        key = change.kind, change.interface_id, change.old_givers, change.old_takers, change.figures
+        key = (
+            change.kind,
+            change.interface_id,
+            change.old_givers,
+            change.old_takers,
+            change.figures,
+            change.missed_deadline,
+        )
         known = merged.get(key)
         merged[key] = (
             replace(

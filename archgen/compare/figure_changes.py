@@ -65,6 +65,8 @@ class BoundaryChange:
     concerned_partners: frozenset[str]
     old_givers: tuple[str, ...] = ()
     old_takers: tuple[str, ...] = ()
+    missed_deadline: TimingValue | None = None
+    """The deadline that its subscribers ask for, where the largest gap keeps it no longer; in ns."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ _NEGLIGIBLE_SHARE, _NEGLIGIBLE_AGE = Fraction(5, 1000), Fraction(5, 100)
 one more message on a link makes everything on it a little older; agreements do not have it.
 """
 _AGE_NAME = "age on arrival"
+DELAY_NAMES = frozenset({"largest gap", _AGE_NAME, "answers within"})
 RECEIVER_NAMES = frozenset({_AGE_NAME, "QoS asked", "hosts"})
 """The figures that depend on who receives."""
 _SIZE_NAMES = {
@@ -170,9 +171,18 @@ def is_same_figure(name: str, before: Figure | None, after: Figure | None) -> bo
 
 
 def concerns_nobody(change: FigureChange) -> bool:
-    """Whether a figure changed so little that nobody has to look at it."""
+    """Whether a figure changed so little that nobody has to look at it, or something only comes sooner."""
     before, after = change.before, change.after
-    return isinstance(before, TimingValue) and isinstance(after, TimingValue) and is_close_value(before, after)
+    if not isinstance(before, TimingValue) or not isinstance(after, TimingValue):
+        return False
+    return is_close_value(before, after) or (change.key.name in DELAY_NAMES and is_smaller(before, after))
+
+
+def is_smaller(before: TimingValue, after: TimingValue) -> bool:
+    """Whether a bound is known in both versions, and smaller in the second one."""
+    if before.value is None or after.value is None or not (before.complete and after.complete):
+        return False
+    return after.value < before.value
 
 
 def is_close_value(before: TimingValue, after: TimingValue, negligible_share: Fraction = _NEGLIGIBLE_SHARE) -> bool:

@@ -26,6 +26,7 @@ def boundary_record(change: BoundaryChange) -> dict[str, Any]:
         "given_before_by": list(change.old_givers),
         "to": list(change.takers),
         "taken_before_by": list(change.old_takers),
+        "missed_deadline": duration_to_json(change.missed_deadline) if change.missed_deadline else None,
         "figures": [_figure_record(figure) for figure in change.figures],
     }
 

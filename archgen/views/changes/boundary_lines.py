@@ -13,6 +13,7 @@ from fractions import Fraction
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.figure_changes import BoundaryChange, FigureChange, TravelPath
+from archgen.compare.interface_figures import DELAY_NAMES
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
@@ -21,7 +22,6 @@ from archgen.views.changes.figure_lines import FigureLine, describe_figure, join
 from archgen.views.timing.value_format import UNKNOWN_FIGURE, display_duration
 
 _GAP, _AGE = "largest gap", "age on arrival"
-_DELAYS = frozenset({_GAP, _AGE, "answers within"})
 _UNKNOWN_LEAD, _UNBOUNDED_LEAD = "no figures any more", "no bound any more"
 _PHRASES = {"answers within": "the time of an answer"}
 _MAX_NAMES, _MAX_ENDS = 4, 4
@@ -134,7 +134,7 @@ def _growth(figure: FigureChange) -> Fraction | None:
 
 def _is_sooner(figure: FigureChange) -> bool:
     growth = _growth(figure)
-    return figure.key.name in _DELAYS and growth is not None and growth < 0
+    return figure.key.name in DELAY_NAMES and growth is not None and growth < 0
 
 
 def _write_sooner(boundaries: Sequence[_Boundary], partner_names: Mapping[str, str]) -> Iterator[FigureLine]:
@@ -163,13 +163,20 @@ def _write_singles(boundaries: Iterable[_Boundary], partner_names: Mapping[str, 
     changes_by_figures: dict[tuple[ChangeKind, str, bool], list[BoundaryChange]] = {}
     for boundary in boundaries:
         change = boundary.change
-        text = "; ".join(describe_figure(figure, change.kind) for figure in boundary.figures)
+        text = "; ".join(_describe_figures(boundary))
         text = "no longer" if change.kind == "removed" else text
         has_moved = change.old_givers or change.old_takers or change.kind == "added"
         if text or has_moved:
             changes_by_figures.setdefault((change.kind, text, bool(change.old_takers)), []).append(change)
     for (kind, text, _), changes in changes_by_figures.items():
         yield FigureLine(kind, _name_interfaces(changes, partner_names) + (f": {text}" if text else ""))
+
+
+def _describe_figures(boundary: _Boundary) -> Iterator[str]:
+    change, deadline = boundary.change, boundary.change.missed_deadline
+    for figure in boundary.figures:
+        limit = f", over the deadline of {display_duration(deadline)} asked for" if deadline else ""
+        yield describe_figure(figure, change.kind) + (limit if figure.key.name == _GAP else "")
 
 
 def _name_interfaces(changes: Iterable[BoundaryChange], partner_names: Mapping[str, str]) -> str:
