@@ -150,6 +150,8 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
 
 def _find_left_out_files(before: CheckedProject, after: CheckedProject) -> tuple[str, ...]:
     """Return the files that an earlier project read, and that a later one has and does not read."""
+    if before.loaded_project.first_file != after.loaded_project.first_file:
+        return ()  # two projects of one file each beside each other
     # A file that could not be parsed, or says nothing any more, was read.
     read_files = {*after.sources.file_names(), *after.loaded_project.interface_files}
     later_files = after.loaded_project.files
