@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from archgen.compare.activity_owners import find_activity_owners
 from archgen.compare.comparison import ChainChange
-from archgen.compare.interface_figures import is_close_value
+from archgen.compare.interface_figures import is_close_value, is_smaller
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.model.architecture import Architecture
@@ -57,8 +57,9 @@ def _results_differ(old_result: ChainResult | None, new_result: ChainResult | No
 
 
 def _is_negligible(old_result: ChainResult | None, new_result: ChainResult | None) -> bool:
-    """Whether two results of a chain say the same to people."""
+    """Whether two results of a chain say the same to people, or the chain is only quicker."""
     if old_result is None or new_result is None:
         return False
     verdicts = [(result.verdict, result.deadline) for result in (old_result, new_result)]
-    return verdicts[0] == verdicts[1] and is_close_value(old_result.bound, new_result.bound)
+    bounds = old_result.bound, new_result.bound
+    return verdicts[0] == verdicts[1] and (is_close_value(*bounds) or is_smaller(*bounds))

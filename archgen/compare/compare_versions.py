@@ -71,7 +71,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     boundaries: tuple[BoundaryChange, ...] = ()
     loads: tuple[LoadChange, ...] = ()
     if changes:
-        boundaries = find_boundary_changes(before, after, matched_ids, timing_pair)
+        boundaries = find_boundary_changes(before, after, matched_ids, timing_pair, version_pair)
         loads = find_load_changes(after.architecture, matched_ids, timing_pair)
     return Comparison(
         before,

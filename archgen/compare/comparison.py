@@ -124,6 +124,8 @@ class Comparison:
     """What changed at the interfaces between partners, by interface."""
     loads: tuple[LoadChange, ...] = ()
     """The hosts and links whose load changed noticeably."""
+    left_out_files: tuple[str, ...] = ()
+    """The files that the first version read, and the second one has and does not read."""
     only_breaking: bool = False
     """Whether only the changes that break a partner were kept."""
 

@@ -9,6 +9,7 @@ from archgen.compare.comparison import ChainChange, Change
 from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.kinds import Effect, find_effect
+from archgen.compare.meaning_sentences import find_outer_messages
 from archgen.compare.version_pair import VersionPair
 
 _MEANING_KEYS = frozenset({"", "type", "description"})
@@ -117,6 +118,9 @@ def _opposite_keys(
     if change.element_kind in {"chain", "host", "container", "link"} and _is_textual(change):
         return
     match change.element_kind:
+        case "input" if change.key == "optional":
+            # Whether somebody depends on it is for the source to know.
+            yield from (("output", name) for name in connections.sources_by_input.get(element.id, ()))
         case "connection":
             yield from (("output", name) for name in connections.sources_by_input.get(element.id, ()))
         case "output" | "port" | "component" | "node" | "group":
@@ -145,7 +149,8 @@ def _find_changed_outputs(change: Change, element: ComparedElement, connections:
         return (element.id,) if key in _MEANING_KEYS else ()
     if change.element_kind == "port":
         return element.component_refs
-    if key in _OWNER_KEYS or change.kind in {"renamed", "moved"}:
+    # Readers meet a node's topics: one that follows the node's name is a change of its own.
+    if key in _OWNER_KEYS or (change.kind in {"renamed", "moved"} and change.element_kind != "node"):
         # Another counterpart, or another name to write: whoever reads it has to know.
         holders = element.component_refs if element.kind == "node" else (element.id,)
         prefixes = tuple(f"{holder}." for holder in holders)
@@ -153,7 +158,7 @@ def _find_changed_outputs(change: Change, element: ComparedElement, connections:
     if key.startswith(_OUTPUT_TIMING):
         output_name = key.removeprefix(_OUTPUT_TIMING).partition(".")[0]
         return [f"{component}.{output_name}" for component in element.component_refs]
-    if key in _PACE_KEYS:
+    if key in _PACE_KEYS or key.startswith("performance."):
         return [name for name in connections.readers_by_output if name.rpartition(".")[0] in element.component_refs]
     return ()
 
@@ -175,9 +180,10 @@ def _owners_beside(node: ComparedElement, versions: VersionPair) -> Iterator[str
 def _carriers_of_message(
     message: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
 ) -> Iterator[ElementKey]:
-    """Yield the ports whose types are carried by a message, and who reads these."""
+    """Yield the ports whose types are carried by a message or by one that contains it, and who reads these."""
+    messages = {message.id, *find_outer_messages(message.id, elements)}
     for candidate in elements.values():
-        if candidate.kind == "type" and candidate.values.get("message") == message.id:
+        if candidate.kind == "type" and candidate.values.get("message") in messages:
             yield from _users_and_readers(candidate, elements, connections)
 
 

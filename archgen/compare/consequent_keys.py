@@ -22,6 +22,9 @@ def is_consequence(
     old_value, new_value = old_element.values.get(key), new_element.values.get(key)
     if isinstance(old_value, ElementTitle) and isinstance(new_value, ElementTitle):
         return _is_same_title(old_value, new_value, old_element, new_element)
+    if key == "timing.behaviour" and {old_value, new_value} == {None, "periodic"}:
+        # What has a rate is periodic, whether or not somebody writes it down.
+        return all(element.values.get("timing.rate") is not None for element in (old_element, new_element))
     if key in _OWNER_KEYS:
         return _component_came_or_went(old_element, new_element, before, after) or _owner_is_inherited(
             key, old_element, new_element, before, after

@@ -12,6 +12,7 @@ from typing import Literal
 from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.reshaping import Reshaping
 from archgen.compare.sentence_words import tick_names
@@ -73,6 +74,9 @@ def list_edits(comparison: Comparison) -> tuple[Edit, ...]:
 
 def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) -> Iterator[Edit]:
     """Yield the edits of several changes. `left_changes` are those of no edit so far: the caller takes them out."""
+    project_id = comparison.after.architecture.project.id
+    for left_out in find_left_out(comparison, left_changes):
+        yield Edit("removed", "project", project_id, left_out.text, left_out.removals)
     for reshaping in find_reshapings(comparison):
         members = tuple(change for change in left_changes if reshaping.brought_about(change))
         if members:

@@ -133,6 +133,9 @@ def _describe_sources(
         if ("output", name) in versions.elements_before and ("output", name) in versions.elements_after
     }
     told_anyway = {name for name in staying_sources if not other_connections.readers_by_output.get(name)}
+    if change_kind == "removed":
+        # What is gone as well is an item of its own.
+        told_anyway |= {name for name in source_ids if versions.is_removed("output", name)}
     shown_ids = [shown_id("output", name, versions) for name in source_ids if name not in told_anyway]
     outside_ids = [name for name in shown_ids if ("output", name) not in changed_keys]
     if outside_ids:

@@ -27,7 +27,15 @@ class TravelPath:
     links: tuple[str, ...]
 
 
-Figure = TimingValue | Qos | TravelPath
+@dataclass(frozen=True, slots=True)
+class WireNames:
+    """The topics, services or actions (`flow`) of an interface; compared only where it took the place of another one."""
+
+    flow: str
+    names: tuple[str, ...]
+
+
+Figure = TimingValue | Qos | TravelPath | WireNames
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +52,8 @@ class BoundaryChange:
     """What changed of one output (or of a topic that needs none) between givers and takers, by common ids.
 
     `interface_id` is its id in the second version, in the first one if it is gone; `old_id` is the earlier one where it
-    has another now. `kind` is `added`, `removed` or `changed`. `old_givers` are those who gave it before, if it changed hands.
+    has another now, or that of the output that its takers read before. `kind` is `added`, `removed` or `changed`.
+    `old_givers` are those who gave it before, and `old_takers` those who took it, if it changed hands.
     """
 
     kind: BoundaryKind
@@ -55,6 +64,9 @@ class BoundaryChange:
     figures: tuple[FigureChange, ...]
     concerned_partners: frozenset[str]
     old_givers: tuple[str, ...] = ()
+    old_takers: tuple[str, ...] = ()
+    missed_deadline: TimingValue | None = None
+    """The deadline that its subscribers ask for, where the largest gap keeps it no longer; in ns."""
 
 
 @dataclass(frozen=True, slots=True)

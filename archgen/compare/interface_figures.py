@@ -29,6 +29,9 @@ _NEGLIGIBLE_SHARE, _NEGLIGIBLE_AGE = Fraction(5, 1000), Fraction(5, 100)
 one more message on a link makes everything on it a little older; agreements do not have it.
 """
 _AGE_NAME = "age on arrival"
+DELAY_NAMES = frozenset({"largest gap", _AGE_NAME, "answers within"})
+RECEIVER_NAMES = frozenset({_AGE_NAME, "QoS asked", "hosts"})
+"""The figures that depend on who receives."""
 _SIZE_NAMES = {
     "service": {"request": "size of a request", "answer": "size of an answer"},
     "action": {"request": "size of a goal", "answer": "size of a result"},
@@ -60,6 +63,10 @@ class FigureReader:
         if interface.flow == "physical":
             return {}
         return dict((*self._read_paces(interface), *self._read_qos(interface), *self._read_path(interface)))
+
+    def is_written(self, endpoints: Iterable[Endpoint]) -> bool:
+        """Whether somebody wrote a node of these endpoints; figures of others are those of a plan."""
+        return any(self.architecture.nodes[endpoint.node].written for endpoint in endpoints)
 
     def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
         if self.analysis is None:
@@ -164,9 +171,18 @@ def is_same_figure(name: str, before: Figure | None, after: Figure | None) -> bo
 
 
 def concerns_nobody(change: FigureChange) -> bool:
-    """Whether a figure changed so little that nobody has to look at it."""
+    """Whether a figure changed so little that nobody has to look at it, or something only comes sooner."""
     before, after = change.before, change.after
-    return isinstance(before, TimingValue) and isinstance(after, TimingValue) and is_close_value(before, after)
+    if not isinstance(before, TimingValue) or not isinstance(after, TimingValue):
+        return False
+    return is_close_value(before, after) or (change.key.name in DELAY_NAMES and is_smaller(before, after))
+
+
+def is_smaller(before: TimingValue, after: TimingValue) -> bool:
+    """Whether a bound is known in both versions, and smaller in the second one."""
+    if before.value is None or after.value is None or not (before.complete and after.complete):
+        return False
+    return after.value < before.value
 
 
 def is_close_value(before: TimingValue, after: TimingValue, negligible_share: Fraction = _NEGLIGIBLE_SHARE) -> bool:

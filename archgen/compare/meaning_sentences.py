@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value, shorten_text
 from archgen.compare.normal_values import ElementTitle
@@ -140,11 +141,7 @@ def _types_by_field(lines: object) -> dict[str, str]:
 
 def describe_outer_messages(message: str, versions: VersionPair) -> str:
     """Describe through which outputs a message goes that others contain; empty if none does."""
-    containers: dict[str, list[str]] = defaultdict(list)
-    for (kind, name), element in versions.elements_after.items():
-        for field_type in _field_types(element.values.get("fields")) if kind == "message" else ():
-            containers[field_type].append(name)
-    outer_messages = [name for name in find_reachable(containers, [message]) if name != message]
+    outer_messages = find_outer_messages(message, versions.elements_after)
     types = [each for name in outer_messages for each in versions.find_elements_with("type", "message", name)]
     outputs = sorted({each for name in types for each in versions.find_elements_with("output", "type", name)})
     if not outer_messages:
@@ -155,6 +152,15 @@ def describe_outer_messages(message: str, versions: VersionPair) -> str:
         if outputs
         else inside_note
     )
+
+
+def find_outer_messages(message: str, elements: Mapping[ElementKey, ComparedElement]) -> list[str]:
+    """Return the messages of a version that contain another one, at any depth."""
+    containers: dict[str, list[str]] = defaultdict(list)
+    for (kind, name), element in elements.items():
+        for field_type in _field_types(element.values.get("fields")) if kind == "message" else ():
+            containers[field_type].append(name)
+    return [name for name in find_reachable(containers, [message]) if name != message]
 
 
 def _field_types(lines: object) -> Sequence[str]:

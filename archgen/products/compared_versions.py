@@ -144,7 +144,19 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
     comparison = compare_versions(
         make_comparison_input(before.checked_project), make_comparison_input(after.checked_project)
     )
+    comparison = replace(comparison, left_out_files=_find_left_out_files(before.checked_project, after.checked_project))
     return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
+
+
+def _find_left_out_files(before: CheckedProject, after: CheckedProject) -> tuple[str, ...]:
+    """Return the files that an earlier project read, and that a later one has and does not read."""
+    if before.loaded_project.first_file != after.loaded_project.first_file:
+        return ()  # two projects of one file each beside each other
+    # A file that could not be parsed, or says nothing any more, was read.
+    read_files = {*after.sources.file_names(), *after.loaded_project.interface_files}
+    later_files = after.loaded_project.files
+    old_files = (*before.yaml_files, *before.loaded_project.interface_files)
+    return tuple(file for file in old_files if file not in read_files and later_files.has_path(file))
 
 
 def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:

@@ -83,7 +83,7 @@ CASES = (
         (("      weather: {outputs: {report: Weather}}\n", ""), (", weather: weather.report", "")),
         (
             "component `seeing.weather` is removed with 1 output",
-            "input `arm.planner.weather` is removed; it read `seeing.weather.report`",
+            "input `arm.planner.weather` is removed",
         ),
         ("agri", "bor", "cnr"),
     ),

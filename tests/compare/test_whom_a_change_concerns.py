@@ -110,7 +110,21 @@ CASES = {
     "a topic has another name": ([("limiter_node: {", "limiter_node: {publishes: {speed: /slow}, ")], "kite orsa"),
     "a component is shared": ([("ekf: {", "ekf: {owner: [orsa, palma], ")], "orsa palma vega"),
     "a partner is called otherwise": ([("palma: Palma", "palma: Palma Arms")], "palma"),
+    "an input is optional now": ([("speed: limiter.speed}", "speed: {from: limiter.speed, optional: true}}")], "kite orsa"),
+    "a promised accuracy": (
+        [("finder: {", "finder: {performance: {rows: {accuracy: 90 % of rows}}, ")],
+        "orsa vega",
+    ),
+    # The reader's agreement calls it by another name, though its files need not.
+    "a group has another id": ([("supervision:\n", "supervising:\n")], "kite"),
+    "a group that others read has another id": ([("  sensing:\n", "  seeing:\n")], "kite orsa vega"),
     # And nobody else.
+    "a node has another id, and its topics none": (
+        [("limiter_node: {", "governor_node: {")],
+        "orsa",
+    ),
+    "something is quicker": ([("lidar: {timing: {rate: 10 Hz, wcet: 5 ms}", "lidar: {timing: {rate: 10 Hz, wcet: 1 ms}")], "vega"),
+    "what has a rate is called periodic": ([("ekf: {timing: {rate: 50 Hz", "ekf: {timing: {behaviour: periodic, rate: 50 Hz")], ""),
     "a title": ([("limiter: {", "limiter: {title: Speed limiter, ")], "orsa"),
     "what a component is for": ([("limiter: {", "limiter: {functionality: Keeps it slow near people., ")], "orsa"),
     "a shorter execution time on a host of one's own": ([("driver: {timing: {trigger: [grasp], wcet: 1 ms", "driver: {timing: {trigger: [grasp], wcet: 2 ms")], "palma"),

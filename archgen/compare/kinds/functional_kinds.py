@@ -133,7 +133,7 @@ COMPONENT = KindSpec(
         KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
         URLS,
-        KeySpec("performance.", _read_performance, Effect.TEXT),
+        KeySpec("performance.", _read_performance, Effect.SYSTEM),
         timing_key(_read_timing),
         KeySpec(MAPPED_KEY, _is_mapped, Effect.SYSTEM),
     ),

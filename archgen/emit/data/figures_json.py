@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from archgen.compare.figure_changes import BoundaryChange, Figure, FigureChange, LoadChange, TravelPath
+from archgen.compare.figure_changes import BoundaryChange, Figure, FigureChange, LoadChange, TravelPath, WireNames
 from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos
 from archgen.views.inline_text import list_qos_settings
@@ -25,6 +25,8 @@ def boundary_record(change: BoundaryChange) -> dict[str, Any]:
         "from": list(change.givers),
         "given_before_by": list(change.old_givers),
         "to": list(change.takers),
+        "taken_before_by": list(change.old_takers),
+        "missed_deadline": duration_to_json(change.missed_deadline) if change.missed_deadline else None,
         "figures": [_figure_record(figure) for figure in change.figures],
     }
 
@@ -46,6 +48,8 @@ def _figure_value(name: str, figure: Figure | None) -> object:
         return list_qos_settings(figure)
     if isinstance(figure, TravelPath):
         return {"from": list(figure.senders), "to": list(figure.receivers), "over": list(figure.links)}
+    if isinstance(figure, WireNames):
+        return list(figure.names)
     return duration_to_json(figure) if name in _DURATIONS else quantity_to_json(figure)
 
 

@@ -15,11 +15,12 @@ from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.model.review_settings import BreakCategory
+from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
+from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
-from archgen.views.changes.figure_lines import FigureLine, write_boundary_lines, write_load_lines
+from archgen.views.changes.figure_lines import FigureLine, write_load_lines
 from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.changes.repeated_findings import find_repeated_findings
@@ -38,6 +39,9 @@ _FINDING_HEADINGS = {
     "cured": ("Cured findings", "What archgen found before, and does not any more"),
 }
 """Heading and caption of each kind of findings, in the order of the document."""
+_MAX_PLACES = 4
+_MAX_LOSSES = 4
+"""How many places of one rule, and how many losses of each category by what is not read any more, are written out."""
 _SEVERITY_ORDER = {severity: position for position, severity in enumerate(reversed(Severity))}
 
 
@@ -236,7 +240,8 @@ def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -
         if change in edit.changes:
             places.setdefault(finding.rule, []).append(f"`{finding.span}`")
     for rule, spans in places.items():
-        yield f"found as `{rule}` at {join_words(spans)}"
+        surplus = [f"{len(spans) - _MAX_PLACES} more places"] if len(spans) > _MAX_PLACES + 1 else []
+        yield f"found as `{rule}` at {join_words([*spans[: _MAX_PLACES if surplus else None], *surplus])}"
 
 
 def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
@@ -336,8 +341,23 @@ def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[Shar
     partners: dict[tuple[str, BreakCategory], set[str]] = {}
     for partner_break in edit.breaks:
         partners.setdefault((partner_break.reason, partner_break.category), set()).add(partner_break.partner)
-    for (reason, category), names in partners.items():
-        yield SharedLoss(reason, category, name_each(sorted(names), partner_names))
+    shared = [
+        SharedLoss(reason, category, name_each(sorted(names), partner_names))
+        for (reason, category), names in partners.items()
+    ]
+    # With a file that is not read any more goes all that it held: one cause, and not one more reason for each element.
+    yield from _limit_losses(shared) if edit.element_kind == "project" else shared
+
+
+def _limit_losses(losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:
+    """Yield the first losses of each category, with the number of those left out behind the last one."""
+    for category in BREAK_CATEGORIES:
+        members = [loss for loss in losses if loss.category == category]
+        surplus = members[_MAX_LOSSES:] if len(members) > _MAX_LOSSES + 1 else []
+        yield from members[: len(members) - len(surplus)]
+        if surplus:
+            partners = tuple(sorted({partner for loss in surplus for partner in loss.partners}))
+            yield SharedLoss(f"{len(surplus)} more such losses", category, partners)
 
 
 def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.figure_changes import BoundaryChange, Figure, FigureChange, FigureKey, LoadChange, TravelPath
+from archgen.compare.figure_changes import Figure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
@@ -33,29 +33,6 @@ class FigureLine:
     text: str
 
 
-def write_boundary_lines(comparison: Comparison, partner_names: Mapping[str, str]) -> tuple[FigureLine, ...]:
-    """Return a line for each interface between partners whose figures changed."""
-    return tuple(FigureLine(change.kind, _describe_boundary(change, partner_names)) for change in comparison.boundaries)
-
-
-def _describe_boundary(change: BoundaryChange, partner_names: Mapping[str, str]) -> str:
-    old_name = f" (was `{change.old_id}`)" if change.old_id else ""
-    old_giver = f" (before: {_join_partners(change.old_givers, partner_names)})" if change.old_givers else ""
-    ends = f"from {_join_partners(change.givers, partner_names)}{old_giver} to {_join_partners(change.takers, partner_names)}"
-    figures = "; ".join(describe_figure(figure, change.kind) for figure in change.figures if _is_told(figure, change))
-    if change.kind == "removed":
-        figures = "no longer"
-    return f"{tick_names([change.interface_id])}{old_name} {ends}" + (f": {figures}" if figures else "")
-
-
-def _is_told(figure: FigureChange, change: BoundaryChange) -> bool:
-    """Whether a figure is told: of a new interface those that are known, in numbers; no traffic that follows from rates."""
-    changed_names = {each.key.name for each in change.figures}
-    if figure.key.name == "traffic" and ("rate" in changed_names and "size" not in changed_names):
-        return False
-    return change.kind == "changed" or (isinstance(figure.after, TimingValue) and figure.after.value is not None)
-
-
 def describe_figure(figure: FigureChange, kind: str) -> str:
     """Describe a figure before and after; of a new interface as it is."""
     name = f"{figure.key.name} of `{figure.key.node}`" if figure.key.node else figure.key.name
@@ -76,6 +53,8 @@ def _format_figure(key: FigureKey, figure: Figure | None) -> str:
         return ", ".join(list_qos_settings(figure))
     if isinstance(figure, TravelPath):
         return _format_path(figure)
+    if isinstance(figure, WireNames):
+        return tick_names(figure.names)
     return _FIGURE_WORDS.get(key.name, value_format.display_bytes)(figure) if figure else _NO_FIGURE
 
 
@@ -94,11 +73,12 @@ def write_load_lines(comparison: Comparison, partner_names: Mapping[str, str]) -
 
 def _describe_load(change: LoadChange, partner_names: Mapping[str, str]) -> str:
     before = value_format.display_share(change.before) if change.before else _NO_FIGURE
-    users = _join_partners(sorted(change.users), partner_names)
+    users = join_partners(sorted(change.users), partner_names)
     what = "bandwidth" if change.kind == "link" else "cores"
     user_note = f"; used by {users}" if users else ""
     return f"{change.kind} {tick_names([change.id])}: {before} → {value_format.display_share(change.after)} of its {what}{user_note}"
 
 
-def _join_partners(partners: Iterable[str], partner_names: Mapping[str, str]) -> str:
+def join_partners(partners: Iterable[str], partner_names: Mapping[str, str]) -> str:
+    """Return partners by what people call them, joined for a sentence."""
     return join_words(name_each(partners, partner_names))

@@ -361,3 +361,23 @@ def test_bounds_in_sentences() -> None:
         "no bound",
         "no bound",
     ]
+
+
+DIRECT = SHORT_CUT.replace("[camera, tracker, planner], deadline: 250 ms", "[camera, planner], deadline: 240 ms")
+
+
+def test_a_way_round_that_nobody_meant_is_no_chain(compared: Compared) -> None:
+    edits = [("tracks: tracker.tracks, image: camera.image", "tracks: tracker.tracks")]
+    said = broken(compared, DIRECT.replace("240 ms", "140 ms"), edits)
+    # `mind` is on the way round alone: its partner had no part in the chain.
+    assert said == [
+        "moving.planner.image certh: cuts the chain `react`: `eye` no longer reaches `feet` directly; `eye` of certh is on it"
+    ]
+
+
+def test_what_is_put_between_two_parts_makes_the_chain_later(compared: Compared) -> None:
+    edits = [
+        ("image: camera.image}}", "image: filter.image}}\n      filter: {inputs: {image: camera.image}, outputs: {image: Colour image}}"),
+        ("hosts:", "  sieve: {implements: filter, timing: {behaviour: event, wcet: 90 ms}, host: base}\nhosts:"),
+    ]  # fmt: skip
+    assert "cuts" not in " ".join(broken(compared, DIRECT.replace("240 ms", "140 ms"), edits))

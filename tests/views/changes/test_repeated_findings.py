@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from archgen import pipeline
 from archgen.compare import Comparison, compare_versions
 from archgen.products.compared_versions import make_comparison_input
@@ -23,11 +25,11 @@ nodes:
 """
 
 
-def compare(folder: Path, after: str) -> Comparison:
-    """Compare ROBOT with another text."""
+def compare(folder: Path, after: str, before: str = ROBOT) -> Comparison:
+    """Compare a robot with another text."""
     file = folder / "robot.yaml"
     sides = []
-    for text in (ROBOT, after):
+    for text in (before, after):
         file.write_text(text, encoding="utf-8")
         sides.append(make_comparison_input(pipeline.check_project(file)))
     return compare_versions(*sides)
@@ -63,3 +65,31 @@ def test_a_finding_of_something_else_stays(tmp_path: Path) -> None:
     after = after.replace("brake: {inputs", "brake: {outputs: {dust: Dust}, inputs")
     groups = describe_comparison(compare(tmp_path, after), "a", "b").finding_groups
     assert "unread-output" in [finding.rule for group in groups for finding in group.findings]
+
+
+BUSY = """\
+partners: {vega: Vega, orsa: Orsa}
+types: {People: {message: geometry_msgs/msg/PoseArray, size: 1 kB}}
+groups:
+  eyes: {owner: vega, components: {finder: {outputs: {people: People}}}}
+  legs: {owner: orsa, components: {driver: {inputs: {people: finder.people}}, brake: {}}}
+hosts: {pc: {cores: 1}, base: {cores: 1}}
+links: {lan: {connects: [pc, base], bandwidth: 1 Mbit/s}}
+nodes:
+  finder: {implements: finder, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}}
+  brake: {implements: brake, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}}
+  driver: {implements: driver, host: base, timing: {rate: 10 Hz, wcet: 5 ms}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "rule"),
+    [
+        ("finder, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}", "finder, host: pc, timing: {rate: 10 Hz, wcet: 99 ms}", "overloaded-host"),
+        ("size: 1 kB", "size: 50 kB", "saturated-link"),
+    ],
+)  # fmt: skip
+def test_what_has_too_much_to_do_is_found_once(tmp_path: Path, old: str, new: str, rule: str) -> None:
+    comparison = compare(tmp_path, BUSY.replace(old, new), BUSY)
+    assert rule in [finding.rule for finding in comparison.new_findings]
+    assert [finding.rule for finding in find_repeated_findings(comparison)] == [rule]
