@@ -57,7 +57,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
     assert ran.out == (
         "Breaking changes\n"
         "  ~ breaks sssa (promise): `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
-        "      promises for `sensing.camera.image` 5 Hz instead of 10 Hz; `display.screen.image` of sssa reads it\n"
+        "      promises for `sensing.camera.image` 5 Hz instead of 10 Hz; `display.screen.image` of SSSA reads it\n"
         "\n"
         "Between partners\n"
         "  ~ `sensing.camera.image` from CERTH to SSSA: rate 10 Hz → 5 Hz; largest gap 107 ms → 207 ms\n"

@@ -33,12 +33,12 @@ nodes:
 """
 BROKEN = ROBOT.replace("msg/Image", "msg/CompressedImage")
 MESSAGE = (
-    "breaks south (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; "
-    "it is read by `display.screen.image`; this gives south, who reads `sensing.camera.image` as `display.screen.image`, "
-    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+    "breaks South (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; "
+    "it is read by `display.screen.image`; this gives "
+    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; `display.screen.image` of South reads it"
 )
 ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}"
-HELP = f"mend it, or south says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
+HELP = f"mend it, or South says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
 UNUSED = "types: {Old: {message: std_msgs/msg/Empty}}\n"
 """Makes an `unused-type`."""
 
@@ -104,7 +104,7 @@ def test_sarif_and_junit_hold_a_break_with_the_severity_of_the_policy(
     assert (region["startLine"], region["startColumn"]) == (11, 26)
     tree = ET.parse(folder / "archgen-out/review/findings.xml")  # noqa: S314 - archgen wrote it
     assert len(tree.findall(".//failure")) == (1 if policy == "error" else 0)
-    assert next(case.get("name", "")[:37] for case in tree.iter("testcase")) == "breaking-change: breaks south (wire):"
+    assert next(case.get("name", "")[:37] for case in tree.iter("testcase")) == "breaking-change: breaks South (wire):"
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ def write_comparison_lines(
         yield from map(make_visible, document.verdict[:1])
         if document.refusal_help:
             yield make_visible(f"  = help: {document.refusal_help}")
+            yield from _entry_lines(document)
         yield from map(make_visible, document.verdict[1:])
         return
     if document.is_empty:
@@ -81,7 +82,13 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
         yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
         yield make_visible(f"  {document.refusal_lead}{document.refusal_help}")
+        yield from _entry_lines(document)
     yield ""
+
+
+def _entry_lines(document: ComparisonDocument) -> Iterator[str]:
+    for entries in document.missing_entries:
+        yield from (make_visible(f"      {line}") for line in entries.splitlines())
 
 
 def _breaks_note(item: BreakingChange, *, colour: bool) -> str:

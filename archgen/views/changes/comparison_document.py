@@ -20,6 +20,7 @@ from archgen.views.changes import breaking_verdict
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.figure_lines import FigureLine, write_boundary_lines, write_load_lines
+from archgen.views.changes.owned_edits import name_owner
 from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.changes.repeated_findings import find_repeated_findings
@@ -121,6 +122,8 @@ class ComparisonDocument:
     """Which policy refuses the changes, as the beginning of a sentence that `refusal_help` ends."""
     refusal_help: str
     """What to do if the project's policy refuses the changes, empty if it does not."""
+    missing_entries: tuple[str, ...]
+    """What to write for that, as YAML, with the files that it belongs into in the first line of each."""
     verdict: tuple[str, ...]
     """Where only breaking changes are shown: how many and what the policy says, then which accepted entries are idle."""
     changes_heading: str
@@ -193,7 +196,7 @@ def describe_comparison(
         ),
         breaking_changes=tuple(
             BreakingChange(
-                edit,
+                name_owner(edit, comparison, partner_names),
                 name_each(edit.broken_partners, partner_names),
                 tuple(_share_losses(edit, partner_names)),
                 tuple(
@@ -204,13 +207,18 @@ def describe_comparison(
         ),
         refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
         refusal_help=breaking_verdict.describe_refusal(comparison),
+        missing_entries=breaking_verdict.write_missing_entries(comparison),
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
-        change_groups=tuple(group_changes(other_edits, comparison)),
+        change_groups=tuple(group_changes(other_edits, comparison, partner_names)),
         weighty_groups=tuple(
-            group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
+            group_changes(
+                [edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison, partner_names
+            )
         ),
-        textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
+        textual_changes=tuple(
+            name_owner(edit, comparison, partner_names) for edit in other_edits if _is_textual_edit(edit, comparison)
+        ),
         boundary_lines=write_boundary_lines(comparison, partner_names),
         load_lines=write_load_lines(comparison, partner_names),
         chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
@@ -284,8 +292,8 @@ def _write_headline(
 ) -> str:
     obstacle = breaking_verdict.describe_obstacle(comparison)
     if obstacle:
-        count = f"; certain: {count_noun(len(edits), 'change')} of the architecture"
-        return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
+        count = f" ({count_noun(len(edits), 'certain change')})" if comparison.changes else ""
+        return f"{obstacle[:1].upper()}{obstacle[1:]}{count}"
     if comparison.changes:
         return f"{count_noun(len(edits), 'change')} of the architecture{caveat}"
     if verdict:

@@ -52,8 +52,8 @@ CROWDED = (
 )
 LATE = "makes the chain `react` miss its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
-SLOWER = "sensing.camera/timing.rate sssa: promises for `sensing.camera.image` 4 Hz instead of 10 Hz; `tracking.tracker.image` of sssa reads it"
-ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
+SLOWER = "sensing.camera/timing.rate sssa: promises for `sensing.camera.image` 4 Hz instead of 10 Hz; `tracking.tracker.image` of SSSA reads it"
+ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
 EVERYBODY = ("certh", "sssa", "tum")
 SHORT_CUT = BASE.replace("inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}")
 
@@ -71,7 +71,7 @@ TABLE = {
             SLOWER,
             *both(
                 "sensing.camera/timing.rate",
-                LATE + " (151 ms → 301 ms); `mind` of sssa and `feet` of tum are on it",
+                LATE + " (151 ms → 301 ms); `mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -90,7 +90,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            f"{LATE} (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            f"{LATE} (151 ms → no bound); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -100,7 +100,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "makes the chain `react` miss its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "makes the chain `react` miss its deadline of 100 ms (it takes 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -121,7 +121,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of certh are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of CERTH are on it",
             "certh",
         ),
     ),
@@ -133,7 +133,7 @@ TABLE = {
             *both(
                 "sensing.camera/timing.rate",
                 "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -147,8 +147,8 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of certh, "
-            "`tracking.tracker` of sssa and `moving.planner` of tum are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of CERTH, "
+            "`tracking.tracker` of SSSA and `moving.planner` of TUM are on it",
             *EVERYBODY,
         ),
     ),
@@ -171,7 +171,7 @@ TABLE = {
             ("  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}\n", ""),
         ],
         [
-            "tracking.tracker tum: takes `tracking.tracker.tracks` from tum, who read it as `moving.planner.tracks`; the same change takes the reader away"
+            "tracking.tracker tum: takes `tracking.tracker.tracks` from TUM (`moving.planner.tracks`); the same change takes the reader away"
         ],
     ),
     "a chain that was late already": (
@@ -179,7 +179,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` miss its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -191,7 +191,7 @@ TABLE = {
         both(
             "tracking.tracker/timing.wcet",
             "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
-            "`eye` of certh and `feet` of tum are on it",
+            "`eye` of CERTH and `feet` of TUM are on it",
             "certh",
             "tum",
         ),
@@ -200,7 +200,7 @@ TABLE = {
         BASE,
         [("inputs: {image: camera.image}, ", "")],
         [
-            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of tum is on it"
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of TUM is on it"
         ],
     ),
     "a step more on the way": (
@@ -215,7 +215,7 @@ TABLE = {
         ],
         both(
             "sensing.mend",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it",
             "sssa",
             "tum",
         ),
@@ -239,7 +239,7 @@ TABLE = {
             *both(
                 "sensing.camera/timing.rate",
                 "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -256,7 +256,7 @@ TABLE = {
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "makes the chain `react` miss its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "makes the chain `react` miss its deadline of 150 ms (144 ms → 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -270,7 +270,7 @@ TABLE = {
             for fan in ("one", "two")
             for line in both(
                 f"tracking.{fan}/timing.core",
-                f"{LATE} (~223.467 ms → 292 ms); `eye` of certh and `feet` of tum are on it",
+                f"{LATE} (~223.467 ms → 292 ms); `eye` of CERTH and `feet` of TUM are on it",
                 "certh",
                 "tum",
             )
@@ -279,14 +279,14 @@ TABLE = {
     "a host that shares its core": (
         BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
         [("wcet: 20 ms", "wcet: 120 ms")],
-        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of certh runs"],
+        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of CERTH runs"],
     ),
     "a host with a core less": (
         BASE[: BASE.index("chains:")].replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 99 ms"),
         [("pc: {cores: 2}", "pc: {cores: 1}")],
         both(
             "pc/cores",
-            "overloads the host `pc` (101 % of its core), where `eye` of certh and `mind` of sssa run",
+            "overloads the host `pc` (101 % of its core), where `eye` of CERTH and `mind` of SSSA run",
             "certh",
             "sssa",
         ),
@@ -294,7 +294,7 @@ TABLE = {
     "a rate that overloads who is fired by it": (
         BASE[: BASE.index("chains:")],
         [("rate: 10 Hz", "rate: 46 Hz")],
-        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of sssa runs"],
+        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of SSSA runs"],
     ),
     "a host that was overloaded before": (
         BASE[: BASE.index("chains:")].replace("20 ms", "99 ms"),
@@ -307,7 +307,7 @@ TABLE = {
         [("10 Mbit/s", "500 kbit/s")],
         both(
             "lan/bandwidth",
-            "asks the link `lan` for 160 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+            "asks the link `lan` for 160 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
             "sssa",
             "tum",
         ),
@@ -316,10 +316,10 @@ TABLE = {
         BASE[: BASE.index("chains:")],
         [("size: 10 kB", "size: 130 kB")],
         [
-            "Tracks/size tum: promises for `Tracks` 130 kB instead of 10 kB; tum uses it",
+            "Tracks/size tum: promises for `Tracks` 130 kB instead of 10 kB; TUM uses it",
             *both(
                 "Tracks/size",
-                "asks the link `lan` for 104 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+                "asks the link `lan` for 104 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
                 "sssa",
                 "tum",
             ),
