@@ -28,7 +28,11 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
         change for change in comparison.changes if not wanted_keys.isdisjoint(_touched_keys(change, comparison))
     )
     wanted_ids = {element_id for _, element_id in wanted_keys}
-    chains = tuple(chain for chain in comparison.chains if not wanted_ids.isdisjoint(_activities_and_nodes(chain)))
+    chains = tuple(
+        _keep_causes(chain, wanted_keys, comparison)
+        for chain in comparison.chains
+        if not wanted_ids.isdisjoint(_activities_and_nodes(chain))
+    )
     boundaries = tuple(boundary for boundary in comparison.boundaries if _touches(boundary, wanted_keys, comparison))
     return replace(
         comparison,
@@ -53,6 +57,12 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
         loads=(),
         concerned_owners=find_concerned_owners(changes, comparison.versions, (*boundaries, *chains)),
     )
+
+
+def _keep_causes(chain: ChainChange, wanted_keys: set[ElementKey], comparison: Comparison) -> ChainChange:
+    """Return a chain with those of its causes that touch what is selected."""
+    causes = tuple(cause for cause in chain.causes if not wanted_keys.isdisjoint(_touched_keys(cause, comparison)))
+    return replace(chain, causes=causes)
 
 
 def _touches(boundary: BoundaryChange, wanted_keys: set[ElementKey], comparison: Comparison) -> bool:

@@ -88,11 +88,13 @@ class AcceptedChange:
 class ReviewSettings:
     """The section `review`. `main` is the branch that changes are compared with, None to ask git.
 
-    `breaking` is the severity of a change that breaks another partner's part, by category, None if not written. `backends`
-    are the project's own backends that may run in the review of a pull request.
+    `breaking` is the severity of a change that breaks another partner's part, by category, None if not written.
+    `guards_margins`: promises have a severity of their own, so that a promise breaks as soon as it is weaker. `backends` are
+    the project's own backends that may run in the review of a pull request.
     """
 
     main: str | None = None
     breaking: BreakPolicy | None = None
+    guards_margins: bool = False
     accepted: tuple[AcceptedChange, ...] = ()
     backends: tuple[str, ...] = ()

@@ -47,4 +47,4 @@ def bound_utilisation(analysis: Analysis, host: str) -> Fraction | None:
     """Return the bound on a host's load as a share of all its cores, None where it is unknown."""
     load = analysis.hosts.get(host)
     all_cores = upper_bound(load.utilisation) if load else None
-    return None if load is None or all_cores is None else all_cores / load.cores
+    return None if load is None or all_cores is None or load.cores is None else all_cores / load.cores

@@ -21,6 +21,12 @@ single-threaded; `cores`, several.
 """
 
 
+ChainVerdict = Literal["met", "missed", "not proven", "open"]
+"""What is known of a chain's deadline: it is `met` at all times; it can be `missed` (an overload, a best case above it);
+it is `not proven`, since the bound is above it, or none was found; it is `open`, since figures are missing.
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Reason:
     """One step of the reasoning behind a figure: a sentence, and where in the files it rests on.
@@ -81,13 +87,17 @@ class HostLoad:
     """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
     utilisation: TimingValue
-    cores: int
+    cores: int | None
+    """None where nobody wrote how many there are, and it matters."""
     rate_monotonic_bound: TimingValue
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
     activity_shares: tuple[tuple[str, TimingValue], ...]
     """What each activity adds."""
     core_loads: tuple[tuple[str, int, TimingValue], ...] = ()
-    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation."""
+    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation.
+
+    Cores that nobody wrote the number of are left out.
+    """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
 
 
@@ -165,15 +175,6 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     notes: tuple[Reason, ...] = ()
 
-    @property
-    def boundless_on_cores(self) -> tuple[str, ...]:
-        """The activities that share several cores and for which no bound was found there."""
-        return tuple(
-            name
-            for name, response in self.responses.items()
-            if response.tier == "cores" and "unbounded" in response.worst.assumptions
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class ChainTerm:
@@ -199,4 +200,4 @@ class ChainResult:
     reduced_reaction: TimingValue
     reduced_age: TimingValue
     deadline: TimingValue | None
-    verdict: Literal["met", "missed", "open"]
+    verdict: ChainVerdict

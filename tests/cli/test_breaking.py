@@ -380,14 +380,14 @@ def test_other_ids_alone_stand_among_the_other_changes_unless_they_matter(run: R
     assert diff(run)[1] == (
         "sensing: Sensing\n"
         "  > component `sensing.camera` is called `eye` now; "
-        "for sssa only ids change (source)\n"
+        "for SSSA only ids change (source)\n"
         "\n"
-        "1 change (1 renamed); concerns certh, sssa\n"
+        "1 change (1 renamed); concerns CERTH, SSSA\n"
     )
     assert "breaks" not in diff(run, "--format", "markdown")[1]
     loud = policy("{source: warning}")
     write(both, TYPED + loud, RENAMED + loud)
-    assert diff(run)[1].startswith("Breaking changes\n  > breaks sssa (source): component `sensing.camera`")
+    assert diff(run)[1].startswith("Breaking changes\n  > breaks SSSA (source): component `sensing.camera`")
 
 
 def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run, both: Path) -> None:
@@ -400,7 +400,7 @@ def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run,
     assert status == 1
     assert [line.split(":")[0] for line in out.splitlines() if line.startswith("  ")][::2] == [
         "  ~ breaks SSSA (meaning)",
-        "  - breaks sssa (wire)",
+        "  - breaks SSSA (wire)",
         "  = help",
     ]
 

@@ -55,9 +55,8 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
     ran = run("diff")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (
-        "Breaking changes\n"
-        "  ~ breaks sssa (promise): `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
-        "      promises for `sensing.camera.image` 5 Hz instead of 10 Hz; `display.screen.image` of SSSA reads it\n"
+        "sensing: Sensing\n"
+        "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
         "\n"
         "Between partners\n"
         "  ~ `sensing.camera.image` from CERTH to SSSA: rate 10 Hz → 5 Hz; largest gap 107 ms → 207 ms\n"
@@ -65,7 +64,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "Latency of chains\n"
         "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
-        "1 change (1 changed); concerns certh, sssa; breaks sssa\n"
+        "1 change (1 changed); concerns CERTH, SSSA\n"
     )
     assert run("diff", "main", "-C", robot).out == ran.out
     assert run("diff", "main..slow").out == ran.out
@@ -200,12 +199,9 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("form", "start"),
     [
-        ("text", "Breaking changes\n  ~ breaks sssa (promise): `sensing.camera`: rate"),
+        ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
         ("json", '{\n  "version": 1,'),
-        (
-            "markdown",
-            "### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n\n`where this branch left main (",
-        ),
+        ("markdown", "### 1 change of the architecture: concerns CERTH and SSSA\n\n`where this branch left main ("),
         ("html", "<!DOCTYPE html>\n"),
         ("svg", '<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"'),
     ],

@@ -157,7 +157,7 @@ def since_head(run: Run, folder: Path, text: str, *edits: tuple[str, str]) -> tu
 @pytest.mark.parametrize("nodes", ["", NODES])
 def test_a_renamed_component_is_renamed_in_the_agreement_as_in_the_diff(run: Run, tmp_path: Path, nodes: str) -> None:
     diff, agreement = since_head(run, tmp_path / "pair", PAIR + nodes, *RENAMES)
-    assert "component `sensing.camera` is called `colour_camera` now; for sssa only ids change (source)\n" in diff
+    assert "component `sensing.camera` is called `colour_camera` now; for Sssa only ids change (source)\n" in diff
     assert "1 change (1 renamed)" in diff
     assert "): 1 renamed.\n" in agreement
     assert "| → renamed (was `sensing.camera.image`)" in agreement

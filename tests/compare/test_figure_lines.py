@@ -44,8 +44,8 @@ TOLD = {
         "host `rear`: 6.1 % → 11.1 % of its cores; used by Kite, Orsa and Palma",
     ],
     "an output comes only now and then": [
-        f"{SPEED}: rate 10 Hz → <= 10 Hz; largest gap 155.325 ms → no bound",
-        f"{PERSONS}: rate 10 Hz → <= 10 Hz; largest gap 150 ms → no bound",
+        f"{SPEED}: rate 10 Hz → <= 10 Hz; largest gap 155.325 ms → unbounded",
+        f"{PERSONS}: rate 10 Hz → <= 10 Hz; largest gap 150 ms → unbounded",
     ],
     "a reader asks for what is not offered": [f"{ROWS}: QoS asked best effort → reliable"],
     "a message is larger": [

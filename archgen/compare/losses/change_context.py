@@ -252,6 +252,11 @@ class ChangeContext:
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
 
+    @property
+    def guards_margins(self) -> bool:
+        """Whether a promise breaks as soon as it is weaker, though all that is asked of it is still kept."""
+        return self.before.review.guards_margins or self.after.review.guards_margins
+
     @cached_property
     def output_heirs(self) -> Mapping[str, str]:
         """Return the removed outputs that live on as new ones on the same wire, with the ids of these."""

@@ -9,7 +9,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.overloaded_resources import find_link_causes
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.timing.analysis import ChainResult, ChainTerm
-from archgen.timing.chains.chain_bounds import judge_deadline
+from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -17,7 +17,7 @@ from archgen.timing.figures.timing_values import TimingValue
 def find_late_chains(
     context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
 ) -> Iterator[PartnerLoss]:
-    """Find chains that met their deadline and may no longer do so, or that were late and are later now.
+    """Find chains that met their deadline and need not do so any more, or that were late and are later now.
 
     The deadline of the first version counts, and that of the second one where it is stricter.
     """
@@ -60,26 +60,34 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
     limit = f"its deadline of {_format_bound(deadline)}"
     if new_result.deadline != deadline:
         # A chain without steps is cut, which is told in words of its own.
-        new_verdict = judge_deadline(new_result.bound, deadline) if new_result.terms else "open"
+        new_verdict = judge_deadline(new_result.bound, new_result.best, deadline) if new_result.terms else "open"
         limit = f"the deadline of {_format_bound(deadline)} that it had before"
-    if old_result.verdict == "met" and new_verdict == "missed":
-        growth = (
-            f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
-            if old_result.bound != new_result.bound
-            else f"it takes {_format_bound(new_result.bound)}"
-        )
-        return f"makes {chain_name} miss {limit} ({growth})"
-    if old_result.verdict == "met" and new_verdict == "open":
+    limit_value, bound_value = deadline.value if deadline else None, new_result.bound.value
+    is_above = limit_value is not None and bound_value is not None and bound_value > limit_value
+    # What is no longer proven is as much of a loss as what is missed: nobody can rely on it any more.
+    if old_result.verdict in {"met", "not proven"} and new_verdict == "missed":
+        return f"makes {chain_name} miss {limit} ({_format_growth(old_result, new_result)})"
+    if old_result.verdict == "met" and new_verdict == "not proven" and is_above:
+        growth = _format_growth(old_result, new_result)
+        return f"takes away the proof that {chain_name} meets {limit} ({growth})"
+    if old_result.verdict == "met" and new_verdict in {"open", "not proven"}:
         met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
         return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
     old_bound, new_bound = old_result.bound.value, new_result.bound.value
-    if (
-        old_result.verdict == new_verdict == "missed"
-        and old_bound is not None
-        and (new_bound is None or new_bound > old_bound)
-    ):
-        return f"makes {chain_name} miss {limit} by still more ({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
+    is_longer = old_bound is not None and (new_bound is None or new_bound > old_bound)
+    if is_longer and old_result.verdict == new_verdict and new_verdict in {"missed", "not proven"}:
+        consequence = "miss" if new_verdict == "missed" else "exceed"
+        return (
+            f"makes {chain_name} {consequence} {limit} by still more "
+            f"({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
+        )
     return ""
+
+
+def _format_growth(old_result: ChainResult, new_result: ChainResult) -> str:
+    if old_result.bound == new_result.bound:
+        return f"it takes {_format_bound(new_result.bound)}"
+    return f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
 
 
 def _format_bound(value: TimingValue | None) -> str:

@@ -1,6 +1,8 @@
 """Outputs whose owner promises less than before: slower, with longer gaps, only on condition.
 
-Only what is written is a promise. A rate that follows from other components concerns its readers, and breaks nobody.
+Only what is written is a promise. A rate that follows from other components concerns its readers, and breaks nobody. What
+takes only from the margin (a lower rate, more jitter), while all that is asked of it is still kept, breaks where the
+project gives promises a severity of their own.
 """
 
 from __future__ import annotations
@@ -35,10 +37,15 @@ class OutputPromise(NamedTuple):
 
 
 class Weakening(NamedTuple):
-    """What is promised less: in words, and the ends of the keys that may say it, most likely first."""
+    """What is promised less: in words, and the ends of the keys that may say it, most likely first.
+
+    `is_margin`: nothing that is asked of it need suffer. `period` (ns) is the new one, where a lower rate is what is less.
+    """
 
     words: str
     keys: tuple[str, ...]
+    is_margin: bool = False
+    period: Fraction | None = None
 
 
 _SharedWeakening = tuple[tuple[int, ...], str]
@@ -56,8 +63,13 @@ def find_weakened_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         if old_promise == new_promise or (new_promise.rate is None and context.after.unread_keys):
             continue
         for weakening in _compare_promises(old_promise, new_promise):
-            indices = tuple(_find_causes(context, output, new_output, weakening.keys))
-            outputs[indices, weakening.words][old_id] = inputs_by_partner
+            losers = inputs_by_partner
+            if weakening.is_margin and not context.guards_margins:
+                askers = _find_askers(context, old_id, old_promise.rate, weakening.period)
+                losers = {partner: inputs for partner, inputs in inputs_by_partner.items() if partner in askers}
+            if losers:
+                indices = tuple(_find_causes(context, output, new_output, weakening.keys))
+                outputs[indices, weakening.words][old_id] = losers
     for (indices, words), readers_by_output in outputs.items():
         parts: dict[str, list[str]] = defaultdict(list)
         for inputs_by_partner in readers_by_output.values():
@@ -66,6 +78,22 @@ def find_weakened_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         pronoun = "it" if len(readers_by_output) == 1 else "them"
         reason_text = f"promises for {tick_sorted_names(readers_by_output)} {words}; {{}} {pronoun}"
         yield from context.shared_losses(indices, parts, reason_text, "reads")
+
+
+def _find_askers(
+    context: ChangeContext, output_id: str, old_rate: Fraction | None, new_period: Fraction | None
+) -> frozenset[str]:
+    """Return the partners whose subscriptions ask for a message more often than it comes now, and got it before."""
+    if not old_rate or new_period is None:
+        return frozenset()
+    old_period = Fraction(_NS_PER_SECOND) / old_rate
+    return frozenset(
+        context.matched_ids.common_id("partner", owner)
+        for endpoint in context.before.endpoints
+        if endpoint.use == "subscribes" and output_id in endpoint.sources
+        if endpoint.qos.deadline is not None and old_period <= endpoint.qos.deadline.value < new_period
+        if (owner := context.before.nodes[endpoint.node].owner) is not None
+    )
 
 
 class _PromisedOutputs:
@@ -121,7 +149,8 @@ def _compare_promises(old: OutputPromise, new: OutputPromise) -> Iterator[Weaken
             if new.rate
             else f"no rate any more (it was {format_rate(old.rate)})"
         )
-        yield Weakening(words, (".rate", ".behaviour"))
+        period = Fraction(_NS_PER_SECOND) / new.rate if new.rate else None
+        yield Weakening(words, (".rate", ".behaviour"), new.rate is not None, period)
     if old.rate and old.is_steady and new.rate and not new.is_steady:
         yield Weakening("no steady rate any more, but messages when something makes it run", (".behaviour",))
     if new.is_conditional and not old.is_conditional:
@@ -137,9 +166,9 @@ def _compare_promises(old: OutputPromise, new: OutputPromise) -> Iterator[Weaken
     if old.gap and new.gap is None and (new.is_conditional or not new.rate):
         yield Weakening(f"no longest gap any more (it was {format_duration(old.gap)})", (".max_gap",))
     if new.every > old.every:
-        yield Weakening(f"a message for {new.every} arrivals instead of {old.every}", (".every",))
+        yield Weakening(f"a message for {new.every} arrivals instead of {old.every}", (".every",), is_margin=True)
     if new.throttle > old.throttle:
-        yield Weakening(f"at most a message in {format_duration(new.throttle)}", (".throttle",))
+        yield Weakening(f"at most a message in {format_duration(new.throttle)}", (".throttle",), is_margin=True)
     yield from _compare_durations("jitter", old.jitter, new.jitter)
     yield from _compare_durations("response", old.response, new.response)
 
@@ -148,7 +177,8 @@ def _compare_durations(name: str, before: Fraction | None, after: Fraction | Non
     """Yield a duration that grew. One that was not written, or is not any more, is only unknown."""
     if before is not None and after is not None and after > before:
         noun = {"jitter": "a jitter", "response": "a response time"}[name]
-        yield Weakening(f"{noun} of {format_duration(after)} instead of {format_duration(before)}", (f".{name}",))
+        words = f"{noun} of {format_duration(after)} instead of {format_duration(before)}"
+        yield Weakening(words, (f".{name}",), is_margin=True)
 
 
 def _find_causes(context: ChangeContext, old_output: str, new_output: str, keys: tuple[str, ...]) -> list[int]:

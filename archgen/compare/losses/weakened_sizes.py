@@ -12,7 +12,9 @@ from archgen.model.quantity import Quantity
 
 
 def find_weakened_sizes(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find types whose written size grew, or is no longer written."""
+    """Find types whose written size grew, or is no longer written: where promises have a severity of their own."""
+    if not context.guards_margins:
+        return
     changes = [
         (index, change)
         for index, change in enumerate(context.changes)

@@ -185,6 +185,7 @@ def declare_review(root: MappingNode) -> ReviewSettings:
     return ReviewSettings(
         main=mapping_values.get_text(body, "main"),
         breaking=_read_policy(body),
+        guards_margins=mapping_values.get_mapping(body, "breaking").get("promise") is not None,
         accepted=tuple(
             AcceptedChange(entry.key, reason, mapping_values.get_text(item, "key"), item.span)
             for entry in mapping_values.get_mapping(body, "accepted")

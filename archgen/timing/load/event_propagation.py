@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
-from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
 from archgen.timing.load.event_models import PropagationState, activation_model
 from archgen.timing.load.event_streams import (
     EventStreams,
 )
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
+from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
@@ -24,17 +24,19 @@ from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
+_MAX_WAITING_ACTIVATIONS = 200
+"""Activations of one activity that may come within its response, in a loop, before the loop is given up."""
 
 
 def propagate_events(
-    system: TimingSystem, triggers: TriggerGraph, budget: SearchBudget | None = None
+    system: TimingSystem, triggers: TriggerGraph, group_budgets: GroupBudgets | None = None
 ) -> PropagationState:
     """Find the event model and the worst response of every activity.
 
-    A caller that propagates several times passes one budget for all runs.
+    A caller that propagates several times passes the same budgets to all runs.
     """
     return _Propagation(
-        PropagationState(system, triggers), find_resources(system), budget or SearchBudget()
+        PropagationState(system, triggers), find_resources(system), group_budgets or GroupBudgets()
     ).run_to_fixed_point()
 
 
@@ -42,10 +44,9 @@ class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
     def __init__(
-        self, state: PropagationState, resource_list: Iterable[ProcessingResource], budget: SearchBudget
+        self, state: PropagationState, resource_list: Iterable[ProcessingResource], group_budgets: GroupBudgets
     ) -> None:
         self.state = state
-        self.budget = budget
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
@@ -61,7 +62,13 @@ class _Propagation:
                     self.disturbed_resources.setdefault(name, []).append(key)
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
+        # Where a written jitter lets many come at once, that many may wait without anything having run away.
+        activities = state.system.activities.values()
+        shortest_period = min((activity.period for activity in activities if activity.period), default=1)
+        largest_jitter = max((activity.jitter for activity in activities), default=0)
+        self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
         self.successors = self._find_successors()
+        self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -109,10 +116,26 @@ class _Propagation:
                     pending.discard(step)
                     if self._update_step(step):
                         pending.update(self.successors[step])
+                        if self._has_run_away(step):
+                            self._give_up_steps(steps)
+                            return
             pending.intersection_update(steps)
             if not pending:
                 return
         self._give_up_steps(steps)
+
+    def _has_run_away(self, step: str) -> bool:
+        """Whether a response has grown so long that it is of no use to anybody, if it ends at all."""
+        # Loops without a fixed point grow by a factor with each sweep: without this the budget of their whole group
+        # is spent on them, though nothing will come of it.
+        state = self.state
+        for name in self.resources[step].members if step in self.resources else ():
+            response, event_model = state.responses[name], state.event_models[name]
+            if response.value and response.tier != "declared" and not isinstance(event_model, UnknownCause):
+                numerator, denominator = sum_ratios([stream.max_rate_ratio for stream in event_model])
+                if response.value * numerator > self.max_waiting * denominator:
+                    return True
+        return False
 
     def _start_from_below(self, steps: tuple[str, ...]) -> None:
         """Set the least response (the execution time) and no events for all activities of a loop."""
@@ -146,7 +169,7 @@ class _Propagation:
                 self.resources[step],
                 state.event_models,
                 state.responses,
-                AnalysisEffort(self.budget, self._stale_activities(step), self.previous_threads.get(step)),
+                AnalysisEffort(self.budget_of[step], self._stale_activities(step), self.previous_threads.get(step)),
             )
             changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
             state.responses.update(new_responses)
@@ -157,7 +180,9 @@ class _Propagation:
         state.event_models[step] = event_model
         # On no resource: a core of its own, so that its response rests on nothing but its own events.
         if step not in self.resources_of:
-            state.responses[step] = find_dedicated_response(state.system, step, state.event_models, self.budget)
+            state.responses[step] = find_dedicated_response(
+                state.system, step, state.event_models, self.budget_of[step]
+            )
         return True
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:

@@ -19,7 +19,7 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
     worst_response,
 )
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, UNBOUNDED_CAUSE, ThreadWork, WorstResponse
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -108,10 +108,10 @@ def _bound_global(
     if len(all_threads) <= resource.cores and len(siblings) < (thread_count or resource.cores):
         return _bound_undisturbed(thread, budget)
     if _is_core_full(thread, siblings, thread_limit, (total_share, resource.cores)):
-        return WorstResponse(None, "cores", UNBOUNDED_CAUSE)
+        return WorstResponse(None, "cores", DIVERGED_CAUSE)
     if any(neighbour.boundless for neighbour in all_threads if neighbour is not thread):
         return WorstResponse(
-            None, "cores", UNBOUNDED_CAUSE
+            None, "cores", DIVERGED_CAUSE
         )  # what waits of it may be any amount, and comes in the way at last
     own_demand = _find_carried_demand((thread,))
     if siblings:

@@ -56,9 +56,9 @@ def find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface
 
 
 def find_late_chains(lookup: Lookup, chains: Iterable[ChainResult]) -> Iterator[str]:
-    """Yield a sentence for each chain that misses its deadline."""
+    """Yield a sentence for each chain that misses its deadline, or that nothing proves to meet it."""
     for chain in chains:
-        if chain.verdict == "missed" and chain.deadline:
+        if chain.verdict in {"missed", "not proven"} and chain.deadline:
             bound, deadline = value_format.display_duration(chain.bound), value_format.display_duration(chain.deadline)
             title = lookup.architecture.chains[chain.id].title
             yield f"{title} has to be done within {deadline}; expected at the latest: {bound}."

@@ -8,8 +8,7 @@ from archgen.compare import ChainChange
 from archgen.compare.key_phrases import name_key
 from archgen.diagnostics.common_wording import join_words
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.figures.figure_wording import format_duration, name_unknown_reason
 
 _MAX_CAUSES = 3
 MINUS_SIGN = "\u2212"
@@ -58,10 +57,8 @@ def _format_bound(result: ChainResult | None) -> str:
     """Format how long a chain takes at most."""
     if result is None:
         return "not there"
-    if is_boundless(result.bound):
-        return "no bound"
     if result.bound.value is None:
-        return "unknown"
+        return name_unknown_reason(result.bound)
     return ("" if result.bound.complete else "at least ") + format_duration(result.bound.value)
 
 

@@ -8,6 +8,7 @@ from tests.compare.conftest import Compared
 
 ROBOT = """\
 project: {id: robot}
+review: {breaking: {promise: warning}}
 partners: {vega: Vega, kite: Kite, orsa: Orsa}
 ros:
   distro: jazzy
@@ -296,6 +297,45 @@ def test_what_was_weak_before_is_no_weaker(compared: Compared) -> None:
     assert losses(compared, undocumented, [("{type: Rows}", "{type: Rows, description: in mm}")]) == []
     plain = ROBOT.replace("  distro: jazzy\n", "")
     assert losses(compared, plain, [("ros:\n", "ros:\n  distro: jazzy\n")]) == []
+
+
+UNGUARDED = ROBOT.replace("review: {breaking: {promise: warning}}", "review: {breaking: error}")
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        ("rate: 10 Hz", "rate: 5 Hz"),
+        ("jitter: 1 ms", "jitter: 90 ms"),
+        ("jitter: 1 ms", "throttle: 1 s"),
+        ("jitter: 1 ms", "every: 3"),
+        ("10 kB", "1 MB"),
+    ],
+)
+def test_a_margin_is_guarded_where_promises_have_a_severity_of_their_own(
+    compared: Compared, edit: tuple[str, str]
+) -> None:
+    """All that is asked is still kept: a policy that is one word does not say that less of it is a loss."""
+    assert losses(compared, UNGUARDED, [edit]) == []
+    assert losses(compared, UNGUARDED, [edit, ("breaking: error", "breaking: {promise: note}")]) != []
+
+
+@pytest.mark.parametrize(("asked", "breaks"), [("50 ms", False), ("100 ms", True), ("199 ms", True), ("200 ms", False)])
+def test_a_rate_below_what_a_subscription_asks_for_breaks_under_every_policy(
+    compared: Compared, asked: str, breaks: object
+) -> None:
+    """From 10 Hz to 5 Hz: what was asked for more often than that was not kept before either."""
+    asking = UNGUARDED.replace(
+        "plan: {implements: plan}",
+        f"plan: {{implements: plan, subscribes: {{rows: {{topic: /rows, qos: {{deadline: {asked}}}}}}}}}",
+    )
+    lost = f"promise orsa: promises for `sense.eye.rows` 5 Hz instead of 10 Hz; {ROWS_READ}"
+    assert losses(compared, asking, [("rate: 10 Hz", "rate: 5 Hz")]) == ([lost] if breaks else [])
+
+
+def test_what_is_no_margin_breaks_under_every_policy(compared: Compared) -> None:
+    for edit in (("jitter: 1 ms", "outputs: {rows: {conditional: true}}"), ("behaviour: periodic, rate: 10 Hz, ", "")):
+        assert losses(compared, UNGUARDED, [edit]) != []
 
 
 def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:

@@ -123,8 +123,6 @@ LINKS = {
         MAP,
         [("size: 1 kB", "size: 4 kB"), ("size: 10 kB", "size: 9.9 kB"), ("size: 1 MB", "size: 2 MB")],
         [
-            "Colour image/size sssa: promises for `Colour image` 2 MB instead of 1 MB; SSSA uses it",
-            "Map/size tum: promises for `Map` 4 kB instead of 1 kB; TUM uses it",
             *both("Map/size", ASKS.format("111.2"), "sssa", "tum"),
         ],
     ),

@@ -43,7 +43,7 @@ NODE_OWNED = ("owner: sssa", "title: T"), ("mind: {", "mind: {owner: sssa, ")
 
 MET = "chain `react`, which met its deadline of 250 ms with"
 ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
-LATE = "makes the chain `react` miss its deadline of 250 ms"
+LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 CASES = {
     "who is fired by another host": (
         UNCHAINED.replace("wcet: 2 ms}, host: pc", "wcet: 2 ms}, host: base"),

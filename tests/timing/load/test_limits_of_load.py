@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import link_queueing, response_times
+from archgen.timing.load import link_queueing, response_times, search_budgets
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import written_streams
@@ -45,11 +45,11 @@ def test_the_exact_bound_needs_no_root() -> None:
     ("cores", "shares", "responses"),
     [
         # 0.8 + 0.4 / 2 = 1. The others have no bound beside what has none.
-        (2, (8, 2, 2), ["none [unbounded]"] * 3),
+        (2, (8, 2, 2), ["none [diverged]"] * 3),
         # 7 + 3 (2 + 2) / 2: two jobs of each come within 13, and one is carried in. The others: 2 + (3 x 7 + 4 x 2) / 2.
         (2, (7, 2, 2), ["13", "33/2", "33/2"]),
         # 0.8 + 0.6 / 3 = 1.
-        (3, (8, 2, 2, 2), ["none [unbounded]"] * 4),
+        (3, (8, 2, 2, 2), ["none [diverged]"] * 4),
         # 6 + 2 (2 + 2 + 2) / 3; 2 + (2 x 6 + 2 x 2 + 2 x 2) / 3.
         (3, (6, 2, 2, 2), ["10", "26/3", "26/3", "26/3"]),
     ],
@@ -69,9 +69,9 @@ def test_a_thread_and_its_part_of_the_others_fill_a_core(
         # 211/3, so many came within 89 and the response before it.
         ((5, 5, 2), 3, ["89", "89", "138", "211/3"]),
         # 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
-        ((5, 5, 3), 3, ["none [unbounded]"] * 4),
+        ((5, 5, 3), 3, ["none [diverged]"] * 4),
         # 0.5 + (0.5 + 0.2) / 2 + 0.6 / 3 = 1.05.
-        ((5, 5, 2), 6, ["none [unbounded]"] * 4),
+        ((5, 5, 2), 6, ["none [diverged]"] * 4),
     ],
 )
 def test_threads_of_one_container_share_its_threads(shares: tuple[int, ...], others: int, responses: list[str]) -> None:
@@ -127,12 +127,14 @@ def test_what_has_not_settled_in_so_many_turns_is_given_up_and_the_rest_kept(mon
         assert [show_ms(pace.jitter) for pace in paces] == jitters
 
 
-def test_one_budget_bounds_all_searches() -> None:
+def test_one_budget_bounds_all_searches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing may be looked at: no response is found, though 1 + 2 would do."""
     nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "period: 10 ms, wcet: 2 ms"}
     system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 1}}"))
-    for budget, causes in ((SearchBudget(0), ["diverged", "diverged"]), (None, [3, 3])):
-        state = propagate_events(system, find_triggers(system), budget)
+    for term_count, causes in ((0, ["diverged", "diverged"]), (1000, [3, 3])):
+        monkeypatch.setattr(search_budgets, "_TERMS_PER_GROUP", term_count)
+        monkeypatch.setattr(search_budgets, "_TERMS_PER_MEMBER", 0)
+        state = propagate_events(system, find_triggers(system))
         found = [time.cause.notes[0] if time.value is None else time.value for time in state.responses.values()]
         assert found == [cause if isinstance(cause, str) else cause * MS / system.tick for cause in causes]
 
@@ -141,13 +143,13 @@ def test_one_budget_bounds_all_searches() -> None:
     ("cores", "shares", "others", "causes"),
     [
         # In percent of a core. 80 + (20 + 20) / 2 fills one: no search is needed to know it; 19 and 20 + (80 + 19) / 2 do not.
-        (2, (80, 20, 20), 0, "unbounded diverged diverged"),
+        (2, (80, 20, 20), 0, "diverged diverged diverged"),
         (2, (80, 20, 19), 0, "diverged diverged diverged"),
         # 80 + (20 + 20 + 20) / 3; without 1 of it there is room left.
-        (3, (80, 20, 20, 20), 0, "unbounded diverged diverged diverged"),
+        (3, (80, 20, 20, 20), 0, "diverged diverged diverged diverged"),
         (3, (79, 20, 20, 20), 0, "diverged diverged diverged diverged"),
         # Two threads of a container on three cores: 50 + (50 + 30) / 2 + 30 / 3; one less, and there is room left.
-        (3, (50, 50, 30), 30, "unbounded unbounded diverged diverged"),
+        (3, (50, 50, 30), 30, "diverged diverged diverged diverged"),
         (3, (50, 50, 29), 30, "diverged diverged diverged diverged"),
         (3, (50, 50, 30), 29, "diverged diverged diverged diverged"),
     ],
