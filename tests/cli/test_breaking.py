@@ -29,7 +29,7 @@ groups:
 RETYPED = ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage").replace("Lamp", "Torch")
 SHOWN = """\
 Breaking changes
-  ~ breaks SSSA (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
+  ~ breaks SSSA (wire): `sensing.camera.image` of CERTH now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; \
 it is read by `display.screen.image`
       gives `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; \
 `display.screen.image` of SSSA reads it
@@ -187,6 +187,56 @@ def test_everybody_who_loses_something_has_to_agree(run: Run, both: Path) -> Non
     assert "mend it, or TUM says why it is right:\n      # review/tum.yaml\n" in out
     write(both, before, after, agreement, agreement.replace("sssa", "tum"))
     assert diff(run, "--breaking")[0] == 0
+
+
+def test_all_that_is_refused_is_accepted_by_the_entries_of_the_help_line(run: Run, both: Path) -> None:
+    three = (
+        "  show: {owner: tum, components: {wall: {title: Wall, inputs: {image: camera.image, more: camera.depth}}}}\n"
+    )
+    before = ROBOT.replace("SSSA}", "SSSA, tum: TUM}").replace("outputs: {image:", "outputs: {depth: Depth, image:")
+    before += three + STRICT
+    after = before.replace("msg/Image", "msg/CompressedImage").replace("depth: Depth, ", "")
+    write(both, before, after)
+    status, out = diff(run, "--breaking")
+    assert status == 1
+    _, _, entries = out.partition("each say why it is right:\n")
+    assert (
+        entries
+        == """\
+      # review/sssa.yaml
+      review:
+        accepted:
+          sensing.camera.image: {key: type, reason: THE REASON}
+      # review/tum.yaml
+      review:
+        accepted:
+          sensing.camera.depth: {key: removed, reason: THE REASON}
+          sensing.camera.image: {key: type, reason: THE REASON}
+"""
+    )
+    for block in entries.split("      # ")[1:]:
+        file, _, text = block.partition("\n")
+        (both / "b" / file).write_text(text, encoding="utf-8")
+    assert diff(run, "--breaking")[0] == 0
+
+
+def test_an_entry_of_this_element_with_another_key_is_told_with_the_change(run: Run, both: Path) -> None:
+    entry = f"review/sssa.yaml: {ENTRY}: {{key: qos, reason: best effort will do}}"
+    write(both, ROBOT + STRICT, RETYPED + STRICT, entry)
+    told = "      what `review/sssa.yaml` accepts is `qos`, and breaks nobody here; what breaks is `type`\n"
+    assert told in diff(run)[1]
+    # What was said of an earlier change is history.
+    write(both, ROBOT + STRICT, RETYPED + STRICT, entry, old_agreements=(entry,))
+    assert "what breaks is" not in diff(run)[1]
+
+
+def test_an_edit_of_what_belongs_to_somebody_else_says_so(run: Run, both: Path) -> None:
+    nodes = "nodes:\n  eye: {implements: camera}\n  mind: {implements: screen, subscribes: {image: {qos: reliable}}}\n"
+    write(both, ROBOT + nodes.replace("reliable", "{depth: 5}"), ROBOT + nodes.replace("reliable", "{depth: 9}"))
+    assert "Nodes\n  ~ `mind.subscribes.image` of SSSA: QoS depth 5 → 9\n" in diff(run)[1]
+    alone = ROBOT.replace(", sssa: SSSA", "").replace("owner: sssa", "owner: certh") + nodes
+    write(both, alone.replace("reliable", "{depth: 5}"), alone.replace("reliable", "{depth: 9}"))
+    assert "Nodes\n  ~ `mind.subscribes.image`: QoS depth 5 → 9\n" in diff(run)[1]
 
 
 def test_one_element_may_have_several_changes_that_are_accepted(run: Run, both: Path) -> None:
@@ -378,7 +428,7 @@ def test_an_acceptance_counts_for_every_category_of_the_change(run: Run, both: P
 def test_other_ids_alone_stand_among_the_other_changes_unless_they_matter(run: Run, both: Path) -> None:
     write(both, TYPED, RENAMED)
     assert diff(run)[1] == (
-        "sensing: Sensing\n"
+        "sensing: Sensing (CERTH)\n"
         "  > component `sensing.camera` is called `eye` now; "
         "for SSSA only ids change (source)\n"
         "\n"
@@ -398,7 +448,7 @@ def test_the_gravest_stands_first_and_of_one_change_the_gravest_counts(run: Run,
     write(both, text + mixed, after + mixed)
     status, out = diff(run, "--breaking")
     assert status == 1
-    assert [line.split(":")[0] for line in out.splitlines() if line.startswith("  ")][::2] == [
+    assert [line.split(":")[0] for line in out.splitlines() if line[:2] == "  " != line[2:4]] == [
         "  ~ breaks SSSA (meaning)",
         "  - breaks SSSA (wire)",
         "  = help",

@@ -194,13 +194,13 @@ def test_nobody_agrees_through_a_link(run: Run, tmp_path: Path, link: str, *, li
     in_tree, in_commit = (run("diff", *words, "--breaking", "-C", top) for words in (["HEAD~2"], ["HEAD~2", "HEAD"]))
     for ran in (in_tree, in_commit):
         assert ran.status == 1
-        assert "accepted by b" not in ran.out
+        assert "accepted by B" not in ran.out
     (top / link).unlink()
     repositories.commit(
         top, {"review/b.yaml": AGREED, "b.yaml": base["b.yaml"].replace("{stop: sense.eye.stop}", "{}")}
     )
     agreed = run("diff", "HEAD~3", "--breaking", "-C", top)
-    assert (agreed.status, "accepted by b: fine" in agreed.out) == (0, True)
+    assert (agreed.status, "accepted by B: fine" in agreed.out) == (0, True)
 
 
 def test_which_of_several_gone_projects_it_was_is_not_guessed_whatever_the_policy(run: Run, tmp_path: Path) -> None:
