@@ -138,6 +138,14 @@ def test_what_a_branch_does(
     assert (comment.splitlines()[0], found) == (heading, status)
 
 
+@pytest.mark.parametrize(("unread_key", "asks"), [("", True), ("x\n", False)])
+def test_nobody_is_asked_to_accept_what_cannot_be_judged(
+    review: Callable[..., tuple[int, str]], unread_key: str, *, asks: bool
+) -> None:
+    status, comment = review(NO_STOP, ("b.yaml", "300 ms}}\n", f"300 ms}}}}\n{unread_key}"))
+    assert (status, "accepted:" in comment, "review/b.yaml" in comment) == (1, asks, asks)
+
+
 def test_a_folder_that_is_renamed_hides_nothing(review: Callable[..., tuple[int, str]]) -> None:
     status, comment = review(SLOW, folder="arch/harvester")
     assert (comment.splitlines()[0], status) == ("### 1 change of the architecture: breaks B, also concerns A", 1)

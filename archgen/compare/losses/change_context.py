@@ -11,18 +11,15 @@ from typing import NamedTuple
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
+from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
 from archgen.compare.losses.output_heirs import find_heirs
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.partner_titles import title_partners
-from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
-
-_MAX_NAMES = 4
-"""Maximal number of elements named in one sentence; the rest is counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +137,7 @@ class ChangeContext:
                 for partner in partners
             ]
             has_many = sum(len(parts_by_partner[partner]) for partner in partners) != 1
-            return f"{lead}{join_words(phrases)} {_plural_verb(verb, plural=has_many)}{rest}"
+            return f"{lead}{join_words(phrases)} {decline_verb(verb, plural=has_many)}{rest}"
 
         yield from self._losses_of_others(indices, parts_by_partner, write_reason, category)
 
@@ -174,7 +171,7 @@ class ChangeContext:
 
         def write_reason(users: Sequence[str]) -> str:
             names = join_words([self.name_partner(user) for user in users])
-            return f"{lead}{f'{names} {_plural_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
+            return f"{lead}{f'{names} {decline_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
 
         yield from self._losses_of_others(indices, partners, write_reason, category)
 
@@ -300,19 +297,3 @@ class ChangeContext:
             if is_asked_port and (not keys or change.key in keys or change.kind != "changed"):
                 indices.append(index)
         return list(dict.fromkeys(indices))
-
-
-def tick_name(name: object) -> str:
-    """Return a name in backticks, whatever it contains."""
-    return f"`{shorten_text(str(name))}`"
-
-
-def tick_sorted_names(names: Iterable[str]) -> str:
-    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
-    return tick_names(sorted(names), _MAX_NAMES)
-
-
-def _plural_verb(verb: str, *, plural: bool) -> str:
-    if not plural:
-        return verb
-    return "are" if verb == "is" else verb.removesuffix("s")

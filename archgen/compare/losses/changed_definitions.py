@@ -6,7 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures, quote_difference

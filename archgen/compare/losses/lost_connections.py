@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_sorted_names
 
 _MAX_RENAMES = 2
 """Maximal number of ids in one sentence; the rest is counted."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.renamed_topics import group_users, list_topic_readers
 
 

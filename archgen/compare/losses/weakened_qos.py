@@ -9,7 +9,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.compare.compared_elements import ComparedElement
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.model.quantity import Quantity
 

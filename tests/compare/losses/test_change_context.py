@@ -9,7 +9,8 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
 from archgen.compare.losses.overloaded_resources import _has_grown as has_grown
 from archgen.compare.losses.timing_causes import TimingCauses

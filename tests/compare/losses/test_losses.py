@@ -249,3 +249,20 @@ def test_hostile_types_stay_inside_their_ticks(compared: Compared) -> None:
             "`sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
         )
     ]
+
+
+def test_partners_who_lose_the_same_are_named_in_one_reason(compared: Compared) -> None:
+    third = "  moving: {owner: tum, components: {planner: {inputs: {image: camera.image, more: camera.image}}}}\n"
+    reason = (
+        "takes `sensing.camera.image` from SSSA (`tracking.tracker.image`) and TUM (`moving.planner.image` and "
+        "`moving.planner.more`)"
+    )
+    assert broken(compared, BASE + third, [OUTPUT]) == [
+        f"sensing.camera.image {partner}: {reason}" for partner in ("sssa", "tum")
+    ]
+
+
+def test_partners_with_the_same_title_are_told_apart_by_their_ids(compared: Compared) -> None:
+    twins = BASE.replace("sssa: SSSA, tum: TUM", "sssa: Twin, tum: Twin")
+    taken = "takes `sensing.camera.image` from Twin (`sssa`) (`tracking.tracker.image`)"
+    assert broken(compared, twins, [OUTPUT]) == [f"sensing.camera.image sssa: {taken}"]
