@@ -234,6 +234,10 @@ def test_an_edit_of_what_belongs_to_somebody_else_says_so(run: Run, both: Path) 
     nodes = "nodes:\n  eye: {implements: camera}\n  mind: {implements: screen, subscribes: {image: {qos: reliable}}}\n"
     write(both, ROBOT + nodes.replace("reliable", "{depth: 5}"), ROBOT + nodes.replace("reliable", "{depth: 9}"))
     assert "Nodes\n  ~ `mind.subscribes.image` of SSSA: QoS depth 5 → 9\n" in diff(run)[1]
+    eye = "      camera: {title: Eye, outputs: {image: sensor_msgs/msg/Image}}\n"
+    titled = ROBOT.replace("      camera: {outputs: {image: sensor_msgs/msg/Image}}\n", eye)
+    write(both, titled, titled.replace(eye, ""))
+    assert "component `sensing.camera` (Eye) of CERTH is removed with 1 output" in diff(run)[1]
     alone = ROBOT.replace(", sssa: SSSA", "").replace("owner: sssa", "owner: certh") + nodes
     write(both, alone.replace("reliable", "{depth: 5}"), alone.replace("reliable", "{depth: 9}"))
     assert "Nodes\n  ~ `mind.subscribes.image`: QoS depth 5 → 9\n" in diff(run)[1]

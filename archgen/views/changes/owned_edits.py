@@ -11,6 +11,8 @@ from archgen.compare.edits import Edit
 from archgen.compare.key_phrases import shorten_text
 from archgen.views.changes.partner_names import name_each
 
+_TITLE = re.compile(r" \([^()`]*\)")
+"""What stands behind an id whose element has another title."""
 _LIST_OF_NAMES = re.compile(r",? (?:and )?`")
 
 
@@ -25,7 +27,9 @@ def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, s
     names = {edit.element_id, *(change.old_id for change in edit.changes if change.old_id)}
     places = [(edit.text.find(ticked), len(ticked)) for ticked in (f"`{shorten_text(name)}`" for name in names)]
     start, length = min(((place, size) for place, size in places if place >= 0), default=(0, 0))
-    head, tail = edit.text[: start + length], edit.text[start + length :]
+    title = _TITLE.match(edit.text, start + length)
+    end = title.end() if title else start + length
+    head, tail = edit.text[:end], edit.text[end:]
     if not length or _LIST_OF_NAMES.match(tail):
         return edit
     return replace(edit, text=f"{head} of {name_each([owner], partner_names)[0]}{tail}")
