@@ -24,7 +24,7 @@ def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, s
     owner = owners.pop() if len(owners) == 1 else None
     if not owner or len(partner_names) < 2 or owner == known_owner:  # noqa: PLR2004 - with one partner nothing is foreign
         return edit
-    names = {edit.element_id, *(change.old_id for change in edit.changes if change.old_id)}
+    names = dict.fromkeys([edit.element_id, *(change.old_id for change in edit.changes if change.old_id)])
     places = [(edit.text.find(ticked), len(ticked)) for ticked in (f"`{shorten_text(name)}`" for name in names)]
     start, length = min(((place, size) for place, size in places if place >= 0), default=(0, 0))
     title = _TITLE.match(edit.text, start + length)
