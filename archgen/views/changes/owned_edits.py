@@ -20,8 +20,8 @@ def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, s
     """Return an edit that says whose element it changes, unless that is known from its heading, or there is only one
     partner.
     """
-    owners = {_find_owner(change, comparison) for change in edit.changes}
-    owner = owners.pop() if len(owners) == 1 else None
+    owners = [_find_owner(change, comparison) for change in edit.changes]
+    owner = owners[0] if len(set(owners)) == 1 else None
     if not owner or len(partner_names) < 2 or owner == known_owner:  # noqa: PLR2004 - with one partner nothing is foreign
         return edit
     names = dict.fromkeys([edit.element_id, *(change.old_id for change in edit.changes if change.old_id)])
