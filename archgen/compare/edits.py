@@ -5,12 +5,13 @@ The changes themselves stay as they are: programs read them, and what is accepte
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
+from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
@@ -204,11 +205,9 @@ def _new_fields(changes: Iterable[Change]) -> Iterator[Edit]:
     """Yield the messages that got or lost fields, with what is said of these: units, frames, defaults."""
     for change in list(changes):
         if change.element_kind == "message" and change.key == "fields":
-            old_names, new_names = (
-                {str(line).rpartition(" ")[2] for line in value} if isinstance(value, list) else set[str]()
-                for value in (change.before, change.after)
-            )
-            other_names = old_names ^ new_names
+            fields = compare_field_lines(change.before, change.after)
+            other_names = {line.rpartition(" ")[2] for line in (*fields.added, *fields.removed)}
+            other_names |= {*fields.renamed, *fields.renamed.values()}
             members = [
                 each
                 for each in changes
@@ -220,9 +219,21 @@ def _new_fields(changes: Iterable[Change]) -> Iterator[Edit]:
             ]
             if members:
                 sentence, separator, effects = change.text.partition("; ")
-                notes = join_words([each.text.partition("; ")[0].partition(": ")[2] for each in members])
-                text = f"{sentence}; {notes}{separator}{effects}"
+                told_members = [each for each in members if not _follows_rename(each, members, fields.renamed)]
+                notes = join_words([each.text.partition("; ")[0].partition(": ")[2] for each in told_members])
+                text = "; ".join(filter(None, (sentence, notes))) + separator + effects
                 yield Edit("changed", "message", change.element_id, text, (change, *members))
+
+
+def _follows_rename(change: Change, others: Sequence[Change], new_names: Mapping[str, str]) -> bool:
+    """Whether a text only went with its field to another name."""
+    lead, _, name = (change.key or "").rpartition(".")
+    for old_name, new_name in new_names.items():
+        if name in {old_name, new_name}:
+            keys = f"{lead}.{old_name}", f"{lead}.{new_name}"
+            ends = {each.key: each for each in others}
+            return all(key in ends for key in keys) and ends[keys[0]].before == ends[keys[1]].after
+    return False
 
 
 def _keys_of_one_element(changes: Iterable[Change]) -> Iterator[Edit]:

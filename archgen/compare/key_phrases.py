@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from archgen.compare.comparison import Change
+from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.compare.text_differences import cut_text, describe_text_difference
 from archgen.diagnostics.common_wording import join_words
@@ -46,7 +47,8 @@ def describe_key_change(change: Change) -> str:
     else:
         noun = spec.noun or _key_noun(key)
     if isinstance(before, list) or isinstance(after, list):
-        return f"{subject}{_list_phrase(noun, spec.list_verbs, before, after)}"
+        fields_phrase = _fields_phrase(before, after) if (change.element_kind, key) == ("message", "fields") else ""
+        return subject + (fields_phrase or _list_phrase(noun, spec.list_verbs, before, after))
     return f"{subject}: {_value_phrase(noun, before, after)}"
 
 
@@ -157,6 +159,20 @@ def _list_phrase(noun: str, verbs: tuple[str, str] | None, before: object, after
         f" {join_words(_limit_items(items))} {verb}" for verb, items in (("added", gained), ("removed", lost)) if items
     ]
     return name + ",".join(words)
+
+
+def _fields_phrase(before: object, after: object) -> str:
+    """Describe which fields are other than before; empty if these are the same ones in another order."""
+    changes = compare_field_lines(before, after)
+    phrases = [
+        f"{format_value(name)} is {format_value(new_type)} instead of {format_value(old_type)}"
+        for name, (old_type, new_type) in changes.retyped.items()
+    ]
+    phrases += [f"{format_value(name)} is called {format_value(new)} now" for name, new in changes.renamed.items()]
+    phrases = _limit_items(phrases)
+    if changes.added or changes.removed:
+        phrases.append(_list_phrase("fields", None, changes.removed, changes.added).removeprefix(": "))
+    return f": {', '.join(phrases)}" if phrases else ""
 
 
 def _limit_items(items: Sequence[str]) -> list[str]:

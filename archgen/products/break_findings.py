@@ -34,7 +34,7 @@ def _describe_break(change: Change, comparison: Comparison, checked_project: Che
         f"breaks {join_words(partners)} ({categories}): {change.text}; this {join_words(list(reasons))}",
         _find_span(change, comparison, checked_project),
         comparison.break_severity(change),
-        help=describe_remedy(change, change.unheard_partners, comparison.matched_ids),
+        help=describe_remedy(change, comparison),
         element=change.element_id,
     )
 

@@ -55,7 +55,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
     ran = run("diff")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (
-        "sensing: Sensing\n"
+        "sensing: Sensing (CERTH)\n"
         "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
         "\n"
         "Between partners\n"
@@ -199,7 +199,7 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("form", "start"),
     [
-        ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
+        ("text", "sensing: Sensing (CERTH)\n  ~ `sensing.camera`: rate"),
         ("json", '{\n  "version": 1,'),
         ("markdown", "### 1 change of the architecture: concerns CERTH and SSSA\n\n`where this branch left main ("),
         ("html", "<!DOCTYPE html>\n"),

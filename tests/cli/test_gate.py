@@ -109,7 +109,7 @@ BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
     "a file cannot be read, and another one loses an output": (
         [NO_STOP, ("b.yaml", "300 ms}}\n", "300 ms}}\nx\n")],
         1,
-        "### Cannot be judged: `b.yaml` cannot be read; certain: 1 change of the architecture: breaks B, also concerns A",
+        "### Cannot be judged: `b.yaml` cannot be read (1 certain change), breaks B, also concerns A",
     ),
     "a file cannot be read": (
         [("b.yaml", "300 ms}}\n", "300 ms}}\nx\n")],
@@ -136,6 +136,14 @@ def test_what_a_branch_does(
 ) -> None:
     found, comment = review(*edits)
     assert (comment.splitlines()[0], found) == (heading, status)
+
+
+@pytest.mark.parametrize(("unread_key", "asks"), [("", True), ("x\n", False)])
+def test_nobody_is_asked_to_accept_what_cannot_be_judged(
+    review: Callable[..., tuple[int, str]], unread_key: str, *, asks: bool
+) -> None:
+    status, comment = review(NO_STOP, ("b.yaml", "300 ms}}\n", f"300 ms}}}}\n{unread_key}"))
+    assert (status, "accepted:" in comment, "review/b.yaml" in comment) == (1, asks, asks)
 
 
 def test_a_folder_that_is_renamed_hides_nothing(review: Callable[..., tuple[int, str]]) -> None:
@@ -194,13 +202,13 @@ def test_nobody_agrees_through_a_link(run: Run, tmp_path: Path, link: str, *, li
     in_tree, in_commit = (run("diff", *words, "--breaking", "-C", top) for words in (["HEAD~2"], ["HEAD~2", "HEAD"]))
     for ran in (in_tree, in_commit):
         assert ran.status == 1
-        assert "accepted by b" not in ran.out
+        assert "accepted by B" not in ran.out
     (top / link).unlink()
     repositories.commit(
         top, {"review/b.yaml": AGREED, "b.yaml": base["b.yaml"].replace("{stop: sense.eye.stop}", "{}")}
     )
     agreed = run("diff", "HEAD~3", "--breaking", "-C", top)
-    assert (agreed.status, "accepted by b: fine" in agreed.out) == (0, True)
+    assert (agreed.status, "accepted by B: fine" in agreed.out) == (0, True)
 
 
 def test_which_of_several_gone_projects_it_was_is_not_guessed_whatever_the_policy(run: Run, tmp_path: Path) -> None:

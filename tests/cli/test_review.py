@@ -34,11 +34,11 @@ nodes:
 BROKEN = ROBOT.replace("msg/Image", "msg/CompressedImage")
 MESSAGE = (
     "breaks South (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; "
-    "it is read by `display.screen.image`; this gives south, who reads `sensing.camera.image` as `display.screen.image`, "
-    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+    "it is read by `display.screen.image`; this gives "
+    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; `display.screen.image` of South reads it"
 )
 ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}"
-HELP = f"mend it, or south says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
+HELP = f"mend it, or South says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
 UNUSED = "types: {Old: {message: std_msgs/msg/Empty}}\n"
 """Makes an `unused-type`."""
 

@@ -99,7 +99,7 @@ def test_the_fields_of_a_message_concern_who_carries_it(compared: Compared) -> N
     (change,) = found.changes
     assert (change.element_kind, change.element_id, change.key) == ("message", "own_msgs/msg/Image", "fields")
     assert (change.before, change.after) == (["int32 a", "int32 b"], ["int32 a", "int64 b"])
-    assert change.text == "message `own_msgs/msg/Image`: fields `int64 b` added, `int32 b` removed; it carries `T`"
+    assert change.text == "message `own_msgs/msg/Image`: `b` is `int64` instead of `int32`; it carries `T`"
     assert found.concerned_owners == ("certh",)
     (change,) = compared(text, text.replace("int32 x\\n---", "---\\nint32 x")).changes
     assert (change.before, change.after) == (["int32 x", "---", "int32 y"], ["---", "int32 x", "int32 y"])

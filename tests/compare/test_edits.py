@@ -230,6 +230,25 @@ def test_a_field_with_its_unit_is_one_item(compared: Compared) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("new_line", "text"),
+    [
+        ("int8 a\\nfloat32 height # m, upwards", "`altitude` is called `height` now"),
+        (
+            "int8 a\\nfloat32 height # mm, upwards",
+            (
+                "`altitude` is called `height` now; what is said of `altitude` no longer given (it was `m, upwards`) and "
+                "what is said of `height` set to `mm, upwards`"
+            ),
+        ),
+    ],
+)
+def test_what_is_said_of_a_renamed_field_is_told_if_it_changed(compared: Compared, new_line: str, text: str) -> None:
+    before = 'ros: {definitions: {m_msgs/msg/M: "int8 a\\nfloat32 altitude # m, upwards"}}\ntypes: {T: m_msgs/msg/M}\n'
+    after = edited(before, ("int8 a\\nfloat32 altitude # m, upwards", new_line))
+    assert told_edits(compared, before, after) == [f"changed message `m_msgs/msg/M`: {text}; it carries `T`"]
+
+
 def test_figures_of_one_element_are_one_item(compared: Compared) -> None:
     after = edited(ROBOT, ("timing: {rate: 50 Hz,", "timing: {behaviour: periodic, rate: 5 Hz, jitter: 2 ms,"))
     (edit,) = list_edits(compared(ROBOT, after))

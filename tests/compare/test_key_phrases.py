@@ -21,7 +21,7 @@ LONG = "x" * 81
         ("component g.a", "role", None, "source", "`g.a`: role set to `source`"),
         ("component g.a", "role", "sink", None, "`g.a`: role no longer given (it was `sink`)"),
         ("use_case UC.1", "title", "a", "b", "use case `UC.1`: title `a` → `b`"),
-        ("message a/msg/B", "fields", ["x"], ["y"], "message `a/msg/B`: fields `x` → `y`"),
+        ("message a/msg/B", "fields", ["x"], ["y"], "message `a/msg/B`: `x` is called `y` now"),
         ("node n", "container", None, "box", "node `n` now runs in the container `box`"),
         ("node n", "container", "box", None, "node `n` no longer runs in the container `box`"),
         ("node n", "container", "box", "bin", "node `n` now runs in the container `bin` instead of `box`"),

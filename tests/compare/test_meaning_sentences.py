@@ -50,7 +50,7 @@ requirements: {R-1: Stops}
         (
             "float32 x",
             "float64 x",
-            "message `m_msgs/msg/Person`: fields `float32 x` → `float64 x`; it is inside of `m_msgs/msg/Crowd` and `m_msgs/msg/People`, which `eyes.finder.people` carries",
+            "message `m_msgs/msg/Person`: `x` is `float64` instead of `float32`; it is inside of `m_msgs/msg/Crowd` and `m_msgs/msg/People`, which `eyes.finder.people` carries",
         ),
         (
             "{People: m_msgs/msg/People",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -11,17 +11,15 @@ from typing import NamedTuple
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
+from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
 from archgen.compare.losses.output_heirs import find_heirs
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.partner_titles import title_partners
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
-
-_MAX_NAMES = 4
-"""Maximal number of elements named in one sentence; the rest is counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +118,7 @@ class ChangeContext:
     def shared_losses(
         self,
         indices: Iterable[int],
-        parts_by_partner: Mapping[str, Sequence[str]],
+        parts_by_partner: Mapping[str, Collection[str]],
         reason_template: str,
         verb: str,
         category: BreakCategory = "promise",
@@ -130,30 +128,75 @@ class ChangeContext:
 
         Most of what partners share are promises: deadlines, hosts, links.
         """
-        for change_index in indices:
-            other_parts = {
-                partner: parts_by_partner[partner]
-                for partner in sorted(parts_by_partner)
-                if partner not in self.owners_of_change(change_index)
-            }
-            part_phrases = [
-                f"{tick_sorted_names(part_names)} of {partner}" for partner, part_names in other_parts.items()
-            ]
-            has_many = sum(map(len, other_parts.values())) != 1
-            # The last one: what is quoted in front of it may have braces of its own.
-            lead, _, rest = reason_template.rpartition("{}")
-            reason_text = f"{lead}{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}{rest}"
-            yield from (PartnerLoss(change_index, partner, reason_text, category) for partner in other_parts)
+        # The last braces: what is quoted in front of them may have some of its own.
+        lead, _, rest = reason_template.rpartition("{}")
 
-    def losses_of_partner(
-        self, indices: Iterable[int], partner: str, reason_text: str, category: BreakCategory = "wire"
+        def write_reason(partners: Sequence[str]) -> str:
+            phrases = [
+                f"{tick_sorted_names(parts_by_partner[partner])} of {self.name_partner(partner)}"
+                for partner in partners
+            ]
+            has_many = sum(len(parts_by_partner[partner]) for partner in partners) != 1
+            return f"{lead}{join_words(phrases)} {decline_verb(verb, plural=has_many)}{rest}"
+
+        yield from self._losses_of_others(indices, parts_by_partner, write_reason, category)
+
+    def losses_of_readers(
+        self, indices: Iterable[int], parts_by_partner: Mapping[str, Collection[str]], lead: str, rest: str
     ) -> Iterator[PartnerLoss]:
-        """Yield a loss of a partner for each change that is not its own."""
-        yield from (
-            PartnerLoss(change_index, partner, reason_text, category)
-            for change_index in indices
-            if partner not in self.owners_of_change(change_index)
-        )
+        """Yield one loss for each partner who does not own a change: between `lead` and `rest` stand all of them with
+        their parts, as those from whom something is taken.
+        """
+
+        def write_reason(partners: Sequence[str]) -> str:
+            readers = [
+                f"{self.name_partner(partner)} ({tick_sorted_names(parts_by_partner[partner])})" for partner in partners
+            ]
+            return f"{lead} {join_words(readers)}{rest}"
+
+        yield from self._losses_of_others(indices, parts_by_partner, write_reason, "wire")
+
+    def losses_of_users(
+        self,
+        indices: Iterable[int],
+        partners: Iterable[str],
+        reason_template: str,
+        verb: str,
+        category: BreakCategory = "wire",
+    ) -> Iterator[PartnerLoss]:
+        """Yield one loss for each partner who does not own a change; the last `{}` of the template becomes all of them
+        and `verb`, if any.
+        """
+        lead, _, rest = reason_template.rpartition("{}")
+
+        def write_reason(users: Sequence[str]) -> str:
+            names = join_words([self.name_partner(user) for user in users])
+            return f"{lead}{f'{names} {decline_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
+
+        yield from self._losses_of_others(indices, partners, write_reason, category)
+
+    def _losses_of_others(
+        self,
+        indices: Iterable[int],
+        partners: Iterable[str],
+        write_reason: Callable[[Sequence[str]], str],
+        category: BreakCategory,
+    ) -> Iterator[PartnerLoss]:
+        """Yield the losses by each change of the partners who do not own it, all with the same reason."""
+        sorted_partners = sorted(partners)
+        for change_index in indices:
+            owners = self.owners_of_change(change_index)
+            others = [partner for partner in sorted_partners if partner not in owners]
+            reason_text = write_reason(others)
+            yield from (PartnerLoss(change_index, partner, reason_text, category) for partner in others)
+
+    def name_partner(self, partner: str) -> str:
+        """Return what people call a partner."""
+        return self._partner_titles.get(partner) or shorten_text(partner)
+
+    @cached_property
+    def _partner_titles(self) -> Mapping[str, str]:
+        return title_partners(self.before, self.after)
 
     def owner_before(self, kind: str, name: str) -> str | None:
         """Return the partner who owned an element before the change; for a new element, who owns it."""
@@ -254,19 +297,3 @@ class ChangeContext:
             if is_asked_port and (not keys or change.key in keys or change.kind != "changed"):
                 indices.append(index)
         return list(dict.fromkeys(indices))
-
-
-def tick_name(name: object) -> str:
-    """Return a name in backticks, whatever it contains."""
-    return f"`{shorten_text(str(name))}`"
-
-
-def tick_sorted_names(names: Iterable[str]) -> str:
-    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
-    return tick_names(sorted(names), _MAX_NAMES)
-
-
-def _plural_verb(verb: str, *, plural: bool) -> str:
-    if not plural:
-        return verb
-    return "are" if verb == "is" else verb.removesuffix("s")

@@ -6,7 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
@@ -35,10 +36,10 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         if new_element.values.get("medium") and not old_element.values.get("medium"):
             indices = context.change_indices("output", output, "medium")
             change = "a physical quantity instead of a message"
-        for partner, inputs in context.foreign_readers(output, readers).items() if change else ():
-            name = context.old_id("output", output)
-            reason_text = f"gives {partner}, who reads `{name}` as {tick_sorted_names(inputs)}, {change}"
-            yield from context.losses_of_partner(indices, partner, reason_text)
+        if change:
+            reason_text = f"gives {change} as {tick_name(context.old_id('output', output))}; {{}} it"
+            readers_by_partner = context.foreign_readers(output, readers)
+            yield from context.shared_losses(indices, readers_by_partner, reason_text, "reads", "wire")
 
 
 def _type_change(
@@ -80,7 +81,7 @@ def _renamed_messages(context: ChangeContext, message_names: frozenset[str]) -> 
     renamed = sorted(name for name in message_names if old_names.get(name, name) != name)
     indices = [index for name in renamed for index in context.indices_by_change_kind("message", name, "renamed")]
     old_text = tick_sorted_names(old_names[name] for name in renamed)
-    return indices, f"{tick_sorted_names(renamed)} instead of {old_text}: by another name it is another message to ROS"
+    return indices, f"{tick_sorted_names(renamed)} instead of {old_text} (by another name it is another message to ROS)"
 
 
 def _messages_by_output(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[str, frozenset[str]]:
@@ -109,50 +110,49 @@ def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
             continue
         if change.element_kind == "message":
             common_id = context.common_id(change)
-            for partner in users.partners_using_message(common_id):
-                reason_text = _redefinition_reason(context, change, common_id, partner)
-                if reason_text:
-                    yield from context.losses_of_partner([index], partner, reason_text)
+            partners = users.partners_using_message(common_id)
+            if partners and (reason_text := _redefinition_reason(context, change, common_id)):
+                yield from context.losses_of_users([index], partners, reason_text, "uses")
         elif change.element_kind == "type" and change.key in _INNER_TYPE_KEYS and change.before is not None:
-            for partner in users.partners_using_type(change.element_id):
-                reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {partner} uses"
-                yield from context.losses_of_partner([index], partner, reason_text)
+            partners = users.partners_using_type(change.element_id)
+            reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {{}}"
+            yield from context.losses_of_users([index], partners, reason_text, "uses")
 
 
-def _redefinition_reason(context: ChangeContext, change: Change, message_name: str, partner: str) -> str:
-    """Return what a partner loses by a changed key of a definition; empty if nothing: what comments mean is
-    judged elsewhere, constants that are new break nobody.
+def _redefinition_reason(context: ChangeContext, change: Change, message_name: str) -> str:
+    """Return what the users lose by a changed key of a definition, `{}` for who uses it; empty if nothing: what comments
+    mean is judged elsewhere, constants that are new break nobody.
     """
     section, _, name = (change.key or "fields").partition(".")
     if section == "fields":
-        return _rebuild_reason(context, message_name, partner)
+        return _rebuild_reason(context, message_name)
     ticked_name = tick_name(message_name)
     # ROS 1 takes constants into the checksum that two programs compare before they talk.
     if section == "constants" and is_ros_1(context.after.distro):
         return (
-            f"changes the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before "
+            f"changes the constant {tick_name(name)} of {ticked_name}, which {{}}; what was built before "
             "cannot talk to what is built after"
         )
     verb = "takes away" if change.after is None else "changes"
     if section == "constants" and change.before is not None:
         return (
-            f"{verb} the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before means "
+            f"{verb} the constant {tick_name(name)} of {ticked_name}, which {{}}; what was built before means "
             "something else by the same bytes"
         )
     if section == "defaults" and change.before is not None:
-        return f"{verb} the default of {tick_name(name)} in {ticked_name}, which {partner} uses: what does not set it sends something else"
+        return f"{verb} the default of {tick_name(name)} in {ticked_name}, which {{}}: what does not set it sends something else"
     return ""
 
 
-def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> str:
-    """Describe what is different for a partner that was built against a message definition."""
+def _rebuild_reason(context: ChangeContext, message_name: str) -> str:
+    """Describe what is different for partners that were built against a message definition."""
     old_definition = context.before.interfaces.definitions.get(
         context.matched_ids.old_ids.get("message", {}).get(message_name, message_name)
     )
     new_definition = context.after.interfaces.definitions.get(message_name)
     ticked_name = tick_name(message_name)
     if new_definition is None or old_definition is None:
-        return f"takes the definition of {ticked_name} from {partner}, who uses it"
+        return f"takes away the definition of {ticked_name}, which {{}}"
     removed, added, retyped_fields = _compare_fields(old_definition, new_definition)
     clauses = [f"removes {tick_sorted_names(removed)}"] if removed else []
     clauses += [f"changes the type of {tick_sorted_names(retyped_fields)}"] if retyped_fields else []
@@ -163,7 +163,7 @@ def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> 
     addition_note = (
         "even a field more makes another message to ROS: " if added and not (removed or retyped_fields) else ""
     )
-    return f"{difference} in {ticked_name}, which {partner} uses; {addition_note}what was built before cannot talk to what is built after"
+    return f"{difference} in {ticked_name}, which {{}}; {addition_note}what was built before cannot talk to what is built after"
 
 
 def _compare_fields(old_definition: Interface, new_definition: Interface) -> tuple[set[str], set[str], set[str]]:

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures, quote_difference
-from archgen.diagnostics.common_wording import join_words
 
 _MEASURE_PARAMETER = re.compile(r"^parameters\.(?:.*[._])?(?:frame|frame_id|units?)$")
 _COMPONENT_TEXTS = ("functionality", "description")
@@ -97,10 +97,7 @@ def _find_rewritten_definitions(context: ChangeContext) -> Iterator[PartnerLoss]
             if change.element_kind == "type"
             else users.partners_using_message(change.element_id)
         )
-        verb = "uses" if len(partners) == 1 else "use"
-        for partner in partners:
-            reason_text = f"{words}; {join_words(partners)} {verb} it"
-            yield from context.losses_of_partner([index], partner, reason_text, "meaning")
+        yield from context.losses_of_users([index], partners, f"{words}; {{}} it", "uses", "meaning")
 
 
 def _describe_rewriting(context: ChangeContext, change: Change) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.model.node import Endpoint, FlowKind
 
 TopicKey = tuple[str, FlowKind]
@@ -39,10 +40,14 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
                 for endpoint in readers.get((name, flow), ())
                 if not port or not endpoint.sources or _reads_output(context, endpoint, port)
             ]
-            for partner, nodes in group_users(context, users).items():
-                yield from context.losses_of_partner(
-                    indices, partner, _loss_reason((name, flow), partner, nodes, replacements)
-                )
+            new_name_note = (
+                f"it is {tick_sorted_names(replacements)} now"
+                if replacements
+                else "nobody offers it under that name any more"
+            )
+            yield from context.losses_of_readers(
+                indices, group_users(context, users), f"takes the {flow} {tick_name(name)} from", f"; {new_name_note}"
+            )
 
 
 def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
@@ -94,12 +99,3 @@ def _find_causes(context: ChangeContext, node_id: str, port_id: str) -> list[int
         context.change_indices("output", port_id),
     )
     return next((indices for indices in candidate_indices if indices), [])
-
-
-def _loss_reason(topic_key: TopicKey, partner: str, node_ids: Iterable[str], replacements: list[str]) -> str:
-    name, flow = topic_key
-    verb = "subscribes to" if flow == "topic" else "calls"
-    new_name_note = (
-        f"it is {tick_sorted_names(replacements)} now" if replacements else "nobody offers it under that name any more"
-    )
-    return f"takes the {flow} {tick_name(name)} from {partner}, whose {tick_sorted_names(node_ids)} {verb} it; {new_name_note}"

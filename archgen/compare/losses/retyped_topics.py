@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.renamed_topics import group_users, list_topic_readers
 
 
@@ -27,9 +28,8 @@ def find_retyped_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
                 if change.element_kind == "message" and change.old_id == old_message
             ]
             users = [reader for reader in readers.get((endpoint.name, endpoint.flow), ()) if not reader.port]
-            for partner, nodes in group_users(context, users).items():
-                reason_text = (
-                    f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.name)}, "
-                    f"to which {tick_sorted_names(nodes)} of {partner} subscribes"
-                )
-                yield from context.losses_of_partner(indices, partner, reason_text)
+            reason_text = (
+                f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.name)}, "
+                "to which {}"
+            )
+            yield from context.shared_losses(indices, group_users(context, users), reason_text, "subscribes", "wire")

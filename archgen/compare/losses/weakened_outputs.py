@@ -13,7 +13,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_sorted_names
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import OutputTiming, Timing

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.compare.compared_elements import ComparedElement
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.message_users import MessageUsers
-from archgen.diagnostics.common_wording import join_words
 from archgen.model.quantity import Quantity
 
 
@@ -34,10 +34,8 @@ def find_weakened_sizes(context: ChangeContext) -> Iterator[PartnerLoss]:
                 else f"no size any more (it was {change.before})"
             )
             partners = users.partners_using_type(change.element_id) if users else []
-            verb = "uses" if len(partners) == 1 else "use"
-            reason_text = f"promises for {tick_name(change.element_id)} {promise}; {join_words(partners)} {verb} it"
-            for partner in partners:
-                yield from context.losses_of_partner([index], partner, reason_text, "promise")
+            reason_text = f"promises for {tick_name(change.element_id)} {promise}; {{}} it"
+            yield from context.losses_of_users([index], partners, reason_text, "uses", "promise")
 
 
 def _read_size(element: ComparedElement | None) -> Fraction | None:

@@ -16,9 +16,10 @@ from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
@@ -28,6 +29,8 @@ _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
 """How many changes of one group, and of all of them, are not folded."""
 _MAX_ERRORS = 5
+_MAX_OPEN_LINES = 9
+"""How many lines of what partners write are not folded."""
 _MAX_COMMAND = 250
 _PLAIN_COMMAND = "archgen diff"
 # Escaped: at the beginning of an item "+" would start a list, and "~" a strike-through.
@@ -67,7 +70,9 @@ def _heading_line(document: ComparisonDocument) -> str:
     broken, further = document.broken_partners, document.further_partners
     notes = [f"breaks {_join_partners(broken)}"] if broken else []
     notes += [f"{'also ' if broken else ''}concerns {_join_partners(further)}"] if further else []
-    return f"### {write_sentence(document.headline)}" + (f": {', '.join(notes)}" if notes else "")
+    # The obstacle has a colon of its own.
+    lead = ": " if not document.obstacle else ", "
+    return f"### {write_sentence(document.headline)}" + (f"{lead}{', '.join(notes)}" if notes else "")
 
 
 def _join_partners(partners: Sequence[str]) -> str:
@@ -94,12 +99,23 @@ def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
 def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
+        comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
         if document.refusal_help:
             comment.add_block(write_sentence(document.refusal_lead + document.refusal_help))
-        comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
+        for entries in document.missing_entries:
+            comment.add_block(_entries_block(entries))
     # Without any change the verdict is the headline.
     for line in document.verdict[1 if document.is_empty else 0 :]:
         comment.add_block(write_sentence(line))
+
+
+def _entries_block(entries: str) -> str:
+    """Return what partners write: a block to copy, folded where it is long. No line of it can end the block."""
+    block = f"```yaml\n{entries}\n```"
+    line_count = entries.count("\n") + 1
+    if line_count <= _MAX_OPEN_LINES:
+        return block
+    return f"<details><summary>{line_count} lines to copy</summary>\n\n{block}\n\n</details>"
 
 
 def _breaking_item(item: BreakingChange) -> str:
@@ -141,7 +157,8 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
 def _group_heading(change_group: ChangeGroup) -> str:
     title = write_title(change_group.title) if change_group.title else ""
     group_code = write_code(change_group.group_id) if change_group.group_id else ""
-    return " · ".join(word for word in (title, group_code) if word)
+    heading = " · ".join(word for word in (title, group_code) if word)
+    return f"{heading} ({write_sentence(change_group.owner)})" if change_group.owner else heading
 
 
 def _change_item(change: Edit) -> str:

@@ -10,8 +10,9 @@ from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.changes.figure_lines import FigureLine
 
 # Plain ASCII, as terminals of build servers show it.
@@ -38,6 +39,7 @@ def write_comparison_lines(
         yield from map(make_visible, document.verdict[:1])
         if document.refusal_help:
             yield make_visible(f"  = help: {document.refusal_help}")
+            yield from _entry_lines(document)
         yield from map(make_visible, document.verdict[1:])
         return
     if document.is_empty:
@@ -81,7 +83,13 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
         yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
         yield make_visible(f"  {document.refusal_lead}{document.refusal_help}")
+        yield from _entry_lines(document)
     yield ""
+
+
+def _entry_lines(document: ComparisonDocument) -> Iterator[str]:
+    for entries in document.missing_entries:
+        yield from (make_visible(f"      {line}") for line in entries.splitlines())
 
 
 def _breaks_note(item: BreakingChange, *, colour: bool) -> str:

@@ -142,7 +142,10 @@ def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tup
     if chain.deadline and chain.deadline.value is not None:
         limit = value_format.display_duration(chain.deadline)
         text = f"{limit}, {chain.verdict}" if chain.verdict in {"missed", "not proven"} else limit
-        strength: PromiseStrength = {"deadline": -chain.deadline.value, "in time": int(chain.verdict not in {"missed", "not proven"})}
+        strength: PromiseStrength = {
+            "deadline": -chain.deadline.value,
+            "in time": int(chain.verdict not in {"missed", "not proven"}),
+        }
         yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, limit, strength=strength)
     text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
     yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)

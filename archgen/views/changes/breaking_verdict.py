@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
 from archgen.compare.agreements import agreement_key, find_partner_id
-from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
@@ -21,6 +20,7 @@ from archgen.model.review_settings import (
     BreakPolicy,
     agreement_file,
 )
+from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
@@ -50,23 +50,52 @@ def describe_obstacle(comparison: Comparison) -> str:
 
 
 def describe_refusal(comparison: Comparison) -> str:
-    """Describe which policy refuses a comparison, and what to do about the first change; empty if none is refused."""
-    for change in comparison.changes:
-        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
-        if refused_breaks:
-            partners = sorted({each.partner for each in refused_breaks})
-            return describe_remedy(change, partners, comparison.matched_ids)
-    return ""
+    """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
+    or nobody can judge that.
+    """
+    partners = sorted(_find_refused_changes(comparison))
+    return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
 
 
-def describe_remedy(change: Change, partners: Sequence[str], matched_ids: MatchedIds) -> str:
-    """Describe what to do about a change that breaks partners who did not agree."""
-    partner_ids = [find_partner_id(partner, matched_ids) for partner in partners]
-    files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
-    say = "says" if len(partner_ids) == 1 else "each say"
-    return (
-        f"mend it, or {join_words(partner_ids)} {say} why it is right, in {files}: {_write_entry(change, 'THE REASON')}"
+def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
+    """Return what partners write to accept all that is refused: YAML, with the files that it belongs into in its first
+    line.
+    """
+    files_by_entries: dict[str, list[str]] = {}
+    for partner, changes in sorted(_find_refused_changes(comparison).items()):
+        file = agreement_file(find_partner_id(partner, comparison.matched_ids))
+        files_by_entries.setdefault(_write_entries(changes), []).append(file)
+    return tuple(
+        f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
+        for entries, files in files_by_entries.items()
     )
+
+
+def _find_refused_changes(comparison: Comparison) -> Mapping[str, Sequence[Change]]:
+    """Return the changes that the policy refuses, by the partner who did not agree. What cannot be judged is nothing that
+    anybody could agree on.
+    """
+    changes: dict[str, list[Change]] = {}
+    for change in comparison.changes if comparison.is_judged else ():
+        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        for partner in dict.fromkeys(each.partner for each in refused_breaks):
+            changes.setdefault(partner, []).append(change)
+    return changes
+
+
+def describe_remedy(change: Change, comparison: Comparison) -> str:
+    """Describe what to do about a change that breaks partners who did not agree, in one line."""
+    if not comparison.is_judged:
+        return "mend what cannot be read first: only what is judged can be accepted"
+    partners = change.unheard_partners
+    partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
+    files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_entry(change, 'THE REASON')}"
+
+
+def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
+    names = join_words(name_each(partners, name_partners(comparison)))
+    return f"{names} {'says' if len(partners) == 1 else 'each say'} why it is right"
 
 
 def join_categories(categories: Iterable[BreakCategory]) -> str:
@@ -91,33 +120,60 @@ def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
     """Yield which partners agreed on a breaking change and why, then the entries about it that excuse nothing."""
     agreements = {each.partner: each.agreement for each in change.breaks if each.agreement is not None}
+    partner_names = name_partners(comparison)
     for partner, reason in sorted(agreements.items()):
-        yield f"accepted by {partner}: {reason}"
+        yield f"accepted by {join_words(name_each([partner], partner_names))}: {reason}"
     for entry in change.claims:
         yield _describe_claim(entry, change, comparison)
+    # Where only breaking changes are shown, the verdict lists all idle entries.
+    for entry in () if comparison.only_breaking else comparison.idle_acceptances:
+        if entry.element == change.element_id and entry not in comparison.before.architecture.review.accepted:
+            yield f"what {_describe_place(entry)} accepts is `{entry.key}`, and breaks nobody here; what breaks is `{agreement_key(change)}`"
 
 
 def _describe_claim(entry: AcceptedChange, change: Change, comparison: Comparison) -> str:
     """Describe an entry that excuses nothing: why not, and what to write where."""
     partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
-    place = f"`{entry.at.file}`" if entry.at.file else "the project"
+    place = _describe_place(entry)
     if entry.partner not in partners:
-        return f"said in {place}, not by {join_words(partners)}: {entry.reason}"
+        names = join_words(name_each(change.broken_partners, name_partners(comparison)))
+        return f"said in {place}, not by {names}: {entry.reason}"
     if entry.key is None:
         needed_entry = _write_entry(change, entry.reason)
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
     return f"said in {place} before this change, of another one: {entry.reason}"
 
 
+def _describe_place(entry: AcceptedChange) -> str:
+    return f"`{entry.at.file}`" if entry.at.file else "the project"
+
+
 def _write_entry(change: Change, reason: str) -> str:
     """Return the entry that accepts a change, as it has to stand in a file."""
-    body = f"{{key: {_quote_text(agreement_key(change))}, reason: {_quote_text(reason)}}}"
-    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {body}}}}}`"
+    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(agreement_key(change), reason)}}}}}`"
+
+
+def _write_entries(changes: Iterable[Change]) -> str:
+    """Return the section that accepts changes, a line for each element."""
+    keys_by_element: dict[str, dict[str, None]] = {}
+    for change in changes:
+        keys_by_element.setdefault(change.element_id, {})[agreement_key(change)] = None
+    lines = ["review:", "  accepted:"]
+    for element_id, keys in keys_by_element.items():
+        bodies = ", ".join(_write_body(key, "THE REASON") for key in keys)
+        lines.append(f"    {_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}")
+    return "\n".join(lines)
+
+
+def _write_body(key: str, reason: str) -> str:
+    return f"{{key: {_quote_text(key)}, reason: {_quote_text(reason)}}}"
 
 
 def _quote_text(text: str) -> str:
-    """Return a text as it may stand in a mapping in one line: JSON's strings are YAML's."""
-    return text if _PLAIN_TEXT.fullmatch(text) else json.dumps(text, ensure_ascii=False)
+    """Return a text as it may stand in a mapping in one line: JSON's strings are YAML's. Signs that nobody sees are
+    escaped.
+    """
+    return text if _PLAIN_TEXT.fullmatch(text) else json.dumps(text, ensure_ascii=not text.isprintable())
 
 
 class _Verdict(NamedTuple):
@@ -135,7 +191,8 @@ def _judge_changes(comparison: Comparison) -> _Verdict:
         return _Verdict(None, "no change breaks another partner")
     partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
     categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
-    sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {', '.join(partners)} ({categories})"
+    names = ", ".join(name_each(partners, name_partners(comparison)))
+    sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {names} ({categories})"
     accepted_count = sum(change.acceptance_reason is not None for change in breaking_changes)
     if accepted_count == len(breaking_changes):
         return _Verdict(None, f"{sentence}, accepted")

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, EditKind
 from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
+from archgen.views.changes.owned_edits import find_group_owner, name_owner
+from archgen.views.changes.partner_names import name_each
 from archgen.views.shapes import Inlines, Text
 
 CHANGE_SIGNS = {
@@ -29,19 +31,25 @@ _CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {
 
 @dataclass(frozen=True, slots=True)
 class ChangeGroup:
-    """The changes below one heading. `group_id` is empty for changes outside of all groups."""
+    """The changes below one heading. `group_id` is empty for changes outside of all groups, `owner` where nobody owns
+    the group, or all belongs to one partner.
+    """
 
     group_id: str
     title: str
     changes: tuple[Edit, ...]
+    owner: str = ""
 
     @property
     def heading(self) -> str:
         """Return the heading as one line of text."""
-        return f"{self.group_id}: {self.title}" if self.group_id and self.title else self.title or self.group_id
+        name = f"{self.group_id}: {self.title}" if self.group_id and self.title else self.title or self.group_id
+        return f"{name} ({self.owner})" if self.owner else name
 
 
-def group_changes(changes: Iterable[Edit], comparison: Comparison) -> Iterator[ChangeGroup]:
+def group_changes(
+    changes: Iterable[Edit], comparison: Comparison, partner_names: Mapping[str, str]
+) -> Iterator[ChangeGroup]:
     """Group changes by the group of their element, then those outside of all groups by kind."""
     groups = {**comparison.before.architecture.groups, **comparison.after.architecture.groups}
     changes_by_heading: dict[tuple[bool, str], list[Edit]] = {}
@@ -52,14 +60,21 @@ def group_changes(changes: Iterable[Edit], comparison: Comparison) -> Iterator[C
             (heading_name is not None, heading_name or change.element_id.partition(".")[0]), []
         ).append(change)
     for is_ungrouped, heading_name in sorted(key for key in changes_by_heading if not key[0]):
+        group_owner = find_group_owner(heading_name, comparison)
         yield ChangeGroup(
             heading_name,
             groups[heading_name].title if heading_name in groups else "",
-            tuple(changes_by_heading[is_ungrouped, heading_name]),
+            tuple(
+                name_owner(edit, comparison, partner_names, group_owner)
+                for edit in changes_by_heading[is_ungrouped, heading_name]
+            ),
+            # With one partner nobody asks.
+            name_each([group_owner], partner_names)[0] if group_owner and len(partner_names) > 1 else "",
         )
     for heading_name in dict.fromkeys(kind.heading for kind in ELEMENT_KINDS.values() if kind.heading):
         if (True, heading_name) in changes_by_heading:
-            yield ChangeGroup("", heading_name, tuple(changes_by_heading[True, heading_name]))
+            edits = changes_by_heading[True, heading_name]
+            yield ChangeGroup("", heading_name, tuple(name_owner(edit, comparison, partner_names) for edit in edits))
 
 
 def is_textual(change: Change) -> bool:

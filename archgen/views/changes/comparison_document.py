@@ -7,20 +7,25 @@ escaping, folding, limits, colours. JSON is written from the comparison itself, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
-from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
+from archgen.views.changes.breaking_items import (
+    BreakingChange,
+    describe_breaking_edit,
+    is_shown_as_break,
+    note_source,
+)
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.figure_lines import FigureLine, write_load_lines
+from archgen.views.changes.owned_edits import name_owner
 from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.changes.repeated_findings import find_repeated_findings
@@ -39,9 +44,6 @@ _FINDING_HEADINGS = {
     "cured": ("Cured findings", "What archgen found before, and does not any more"),
 }
 """Heading and caption of each kind of findings, in the order of the document."""
-_MAX_PLACES = 4
-_MAX_LOSSES = 4
-"""How many places of one rule, and how many losses of each category by what is not read any more, are written out."""
 _SEVERITY_ORDER = {severity: position for position, severity in enumerate(reversed(Severity))}
 
 
@@ -56,32 +58,6 @@ class NamedVersion:
     def error_count(self) -> str:
         """Return how many errors there are: `2 errors`."""
         return count_noun(len(self.errors), "error")
-
-
-@dataclass(frozen=True, slots=True)
-class SharedLoss:
-    """What some partners lose by a change, in the words and the category of `PartnerBreak`."""
-
-    reason: str
-    category: BreakCategory
-    partners: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class BreakingChange:
-    """An edit that breaks partners: what which of them lose; then what entries of `review.accepted` say about it, and as
-    which findings it is found.
-    """
-
-    change: Edit
-    partners: tuple[str, ...]
-    losses: tuple[SharedLoss, ...]
-    agreements: tuple[str, ...]
-
-    @property
-    def categories(self) -> str:
-        """Return the categories of what is lost: `wire, promise`."""
-        return ", ".join(self.change.break_categories)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +101,8 @@ class ComparisonDocument:
     """Which policy refuses the changes, as the beginning of a sentence that `refusal_help` ends."""
     refusal_help: str
     """What to do if the project's policy refuses the changes, empty if it does not."""
+    missing_entries: tuple[str, ...]
+    """What to write for that, as YAML, with the files that it belongs into in the first line of each."""
     verdict: tuple[str, ...]
     """Where only breaking changes are shown: how many and what the policy says, then which accepted entries are idle."""
     changes_heading: str
@@ -172,9 +150,9 @@ def describe_comparison(
 ) -> ComparisonDocument:
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
     edits = list_edits(comparison)
-    breaking_edits = [edit for edit in edits if _is_shown_as_break(edit, comparison)]
+    breaking_edits = [edit for edit in edits if is_shown_as_break(edit, comparison)]
     partner_names = name_partners(comparison)
-    other_edits = [_note_source(edit, partner_names) for edit in edits if not _is_shown_as_break(edit, comparison)]
+    other_edits = [note_source(edit, partner_names) for edit in edits if not is_shown_as_break(edit, comparison)]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors))
@@ -196,25 +174,22 @@ def describe_comparison(
             sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)}), partner_names
         ),
         breaking_changes=tuple(
-            BreakingChange(
-                edit,
-                name_each(edit.broken_partners, partner_names),
-                tuple(_share_losses(edit, partner_names)),
-                tuple(
-                    dict.fromkeys((*_describe_agreements(edit, comparison), *_name_findings(edit, repeated_findings)))
-                ),
-            )
-            for edit in breaking_edits
+            describe_breaking_edit(edit, comparison, partner_names, repeated_findings) for edit in breaking_edits
         ),
         refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
         refusal_help=breaking_verdict.describe_refusal(comparison),
+        missing_entries=breaking_verdict.write_missing_entries(comparison),
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
-        change_groups=tuple(group_changes(other_edits, comparison)),
+        change_groups=tuple(group_changes(other_edits, comparison, partner_names)),
         weighty_groups=tuple(
-            group_changes([edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison)
+            group_changes(
+                [edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison, partner_names
+            )
         ),
-        textual_changes=tuple(edit for edit in other_edits if _is_textual_edit(edit, comparison)),
+        textual_changes=tuple(
+            name_owner(edit, comparison, partner_names) for edit in other_edits if _is_textual_edit(edit, comparison)
+        ),
         boundary_lines=write_boundary_lines(comparison, partner_names),
         load_lines=write_load_lines(comparison, partner_names),
         chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
@@ -231,17 +206,6 @@ def sort_by_severity(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 def severity_of(finding: Diagnostic) -> Severity:
     """Return the severity of a finding; one that is not settled is an error."""
     return finding.severity or Severity.ERROR
-
-
-def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -> Iterator[str]:
-    """Yield as which findings an edit is found, and where."""
-    places: dict[str, list[str]] = {}
-    for finding, change in repeated_findings.items():
-        if change in edit.changes:
-            places.setdefault(finding.rule, []).append(f"`{finding.span}`")
-    for rule, spans in places.items():
-        surplus = [f"{len(spans) - _MAX_PLACES} more places"] if len(spans) > _MAX_PLACES + 1 else []
-        yield f"found as `{rule}` at {join_words([*spans[: _MAX_PLACES if surplus else None], *surplus])}"
 
 
 def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
@@ -274,12 +238,6 @@ def _changes_meaning(change: Change, comparison: Comparison) -> bool:
     return False
 
 
-def _describe_agreements(edit: Edit, comparison: Comparison) -> Iterator[str]:
-    for change in edit.changes:
-        if change.breaks:
-            yield from breaking_verdict.describe_agreements(change, comparison)
-
-
 def _write_headline(
     comparison: Comparison,
     edits: Sequence[Edit],
@@ -289,8 +247,8 @@ def _write_headline(
 ) -> str:
     obstacle = breaking_verdict.describe_obstacle(comparison)
     if obstacle:
-        count = f"; certain: {count_noun(len(edits), 'change')} of the architecture"
-        return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
+        count = f" ({count_noun(len(edits), 'certain change')})" if comparison.changes else ""
+        return f"{obstacle[:1].upper()}{obstacle[1:]}{count}"
     if comparison.changes:
         return f"{count_noun(len(edits), 'change')} of the architecture{caveat}"
     if verdict:
@@ -315,49 +273,6 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
             yield f"new: {', '.join(counts)}"
         else:
             yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
-
-
-def _is_shown_as_break(edit: Edit, comparison: Comparison) -> bool:
-    """Whether an edit stands among the breaking ones. Other ids alone do not, unless they matter or are asked for: they
-    break nobody's program.
-    """
-    if comparison.only_breaking or comparison.policy.source > Severity.NOTE:
-        return bool(edit.breaks)
-    return any(category != "source" for category in edit.break_categories)
-
-
-def _note_source(edit: Edit, partner_names: Mapping[str, str]) -> Edit:
-    """Return an edit with a note on the partners for whom only ids change."""
-    if not edit.breaks:
-        return edit
-    return replace(
-        edit,
-        text=f"{edit.text}; for {join_words(name_each(edit.broken_partners, partner_names))} only ids change (source)",
-    )
-
-
-def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[SharedLoss]:
-    """Yield each loss once, with the partners who have it."""
-    partners: dict[tuple[str, BreakCategory], set[str]] = {}
-    for partner_break in edit.breaks:
-        partners.setdefault((partner_break.reason, partner_break.category), set()).add(partner_break.partner)
-    shared = [
-        SharedLoss(reason, category, name_each(sorted(names), partner_names))
-        for (reason, category), names in partners.items()
-    ]
-    # With a file that is not read any more goes all that it held: one cause, and not one more reason for each element.
-    yield from _limit_losses(shared) if edit.element_kind == "project" else shared
-
-
-def _limit_losses(losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:
-    """Yield the first losses of each category, with the number of those left out behind the last one."""
-    for category in BREAK_CATEGORIES:
-        members = [loss for loss in losses if loss.category == category]
-        surplus = members[_MAX_LOSSES:] if len(members) > _MAX_LOSSES + 1 else []
-        yield from members[: len(members) - len(surplus)]
-        if surplus:
-            partners = tuple(sorted({partner for loss in surplus for partner in loss.partners}))
-            yield SharedLoss(f"{len(surplus)} more such losses", category, partners)
 
 
 def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:

@@ -7,11 +7,24 @@ from collections.abc import Iterator, Sequence
 from archgen.compare.edits import Edit, EditKind
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.changes.figure_lines import FigureLine
-from archgen.views.shapes import Block, Bullets, Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Figure,
+    Inlines,
+    Markdown,
+    Outline,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+)
 
 _MAX_ERRORS = 8
 
@@ -69,10 +82,10 @@ def _unsound_notice(version: NamedVersion) -> Paragraph:
 def _breaking_section(document: ComparisonDocument) -> Section | None:
     if not document.breaking_changes:
         return None
-    blocks: list[Block] = []
+    blocks: list[Block] = [Bullets(tuple(map(_breaking_item, document.breaking_changes)))]
     if document.refusal_help:
         blocks.append(Paragraph(text_runs(document.refusal_lead + document.refusal_help), "error"))
-    blocks.append(Bullets(tuple(map(_breaking_item, document.breaking_changes))))
+        blocks += [Markdown(f"```yaml\n{entries}\n```") for entries in document.missing_entries]
     return Section("changes:breaking", comparison_document.BREAKING_HEADING, tuple(blocks))
 
 
@@ -95,7 +108,7 @@ def _change_section(document: ComparisonDocument) -> Section | None:
     sections = tuple(
         Section(
             f"changes:{change_group.group_id or change_group.title}",
-            change_group.title or change_group.group_id,
+            (change_group.title or change_group.group_id) + (f" ({change_group.owner})" if change_group.owner else ""),
             (Bullets(tuple(_change_runs(change) for change in change_group.changes)),),
         )
         for change_group in document.change_groups

@@ -58,12 +58,12 @@ SPLIT = [
 ]
 FOLLOWED = ("rows: eye.rows", "rows: row_eye.rows")
 TIMED, ROWS_TIMED = "behaviour: periodic, rate: 10 Hz", "      row_eye:\n        timing: {"
-ROWS_READ = "`nav.plan.rows` of orsa reads it"
-BOTH_READ = "`drive.guard.persons` of kite and `nav.plan.rows` of orsa read them"
+ROWS_READ = "`nav.plan.rows` of Orsa reads it"
+BOTH_READ = "`drive.guard.persons` of Kite and `nav.plan.rows` of Orsa read them"
 PROMISE = "promises for `sense.eye.persons` and `sense.eye.rows` "
-SOURCE = "source orsa: renames what orsa reads: `sense.eye.rows` is `sense.row_eye.rows` now; "
-HEIR = SOURCE + "its files follow in this change"
-TAKEN = "wire orsa: takes `sense.eye.rows` from orsa, who reads it as `nav.plan.rows` (and is to read `sense.row_eye.rows` instead)"
+SOURCE = "source orsa: renames what Orsa reads: `sense.eye.rows` is `sense.row_eye.rows` now; "
+HEIR = SOURCE + "files follow in this change"
+TAKEN = "wire orsa: takes `sense.eye.rows` from Orsa (`nav.plan.rows`); it is to read `sense.row_eye.rows` instead"
 
 
 def everybody(why: str, category: str = "promise") -> list[str]:
@@ -107,7 +107,7 @@ SPLITS = {
     "a split with another type": ([*SPLIT, FOLLOWED, ("{rows: {type: Rows", "{rows: {type: Lines")], [TAKEN]),
     "an output that moves to a topic which another one had": (
         [*SPLIT[::2], ("implements: row_eye, publishes: {rows: {topic: /rows}}", "implements: guard"), ("rows: eye.rows", "rows: eye.persons")],
-        ["wire orsa: takes `sense.eye.rows` from orsa, who reads it as `nav.plan.rows` (and is to read `sense.eye.persons` instead)"],
+        ["wire orsa: takes `sense.eye.rows` from Orsa (`nav.plan.rows`); it is to read `sense.eye.persons` instead"],
     ),
 }  # fmt: skip
 PROMISES = {
@@ -138,7 +138,7 @@ PROMISES = {
     ),
     "an output on condition while its component changes hands": (
         [("owner: vega", "owner: kite"), ("jitter: 1 ms", "outputs: {persons: {conditional: true}}")],
-        ["promise kite: promises for `sense.eye.persons` messages only on condition, no longer at each run; `drive.guard.persons` of kite reads it"],
+        ["promise kite: promises for `sense.eye.persons` messages only on condition, no longer at each run; `drive.guard.persons` of Kite reads it"],
     ),
     "a gap that leaves runs out": (
         [("jitter: 1 ms", "outputs: {rows: {max_gap: 10 s}}")],
@@ -150,10 +150,10 @@ PROMISES = {
         [("jitter: 1 ms", "jitter: 90 ms")],
         everybody(f"{PROMISE}a jitter of 90 ms instead of 1 ms; {BOTH_READ}"),
     ),
-    "larger messages": ([("10 kB", "1 MB")], ["promise kite: promises for `Persons` 1 MB instead of 10 kB; kite uses it"]),
+    "larger messages": ([("10 kB", "1 MB")], ["promise kite: promises for `Persons` 1 MB instead of 10 kB; Kite uses it"]),
     "messages of no known size": (
         [("size: 10 kB, ", "")],
-        ["promise kite: promises for `Persons` no size any more (it was 10 kB); kite uses it"],
+        ["promise kite: promises for `Persons` no size any more (it was 10 kB); Kite uses it"],
     ),
 }  # fmt: skip
 OFFSET = "meaning kite: says of `offset` in `m_msgs/msg/Persons` "
@@ -170,36 +170,36 @@ MEANINGS = {
         [("in metres from", "in feet from")],
         everybody(
             "says of `sense.eye` `… and rows, in feet from the robot.` instead of `… and rows, in metres from the robot.`; "
-            "`drive.guard.persons` of kite and `nav.plan.rows` of orsa read it",
+            "`drive.guard.persons` of Kite and `nav.plan.rows` of Orsa read it",
             "meaning",
         ),
     ),
     "the comment of a type": (
         [("at most 20 persons, in metres", "at most 5 persons")],
-        ["meaning kite: says of `Persons` `at most 5 persons` instead of `at most 20 persons, in metres`; kite uses it"],
+        ["meaning kite: says of `Persons` `at most 5 persons` instead of `at most 20 persons, in metres`; Kite uses it"],
     ),
     "the unit of a field": (
         [("# m,", "# mm,")],
-        [f"{OFFSET}`mm, +x to the left, steps of 1.0` instead of `m, +x to the left, steps of 1.0`; kite uses it"],
+        [f"{OFFSET}`mm, +x to the left, steps of 1.0` instead of `m, +x to the left, steps of 1.0`; Kite uses it"],
     ),
     "the sign of a field": (
         [("+x", "-x")],
-        [f"{OFFSET}`m, -x to the left, steps of 1.0` instead of `m, +x to the left, steps of 1.0`; kite uses it"],
+        [f"{OFFSET}`m, -x to the left, steps of 1.0` instead of `m, +x to the left, steps of 1.0`; Kite uses it"],
     ),
     "a decimal point": (
         [("1.0", "10")],
-        [f"{OFFSET}`… left, steps of 10` instead of `… left, steps of 1.0`; kite uses it"],
+        [f"{OFFSET}`… left, steps of 10` instead of `… left, steps of 1.0`; Kite uses it"],
     ),
     "a comment that moves to another field": (
         [("  # m, +x to the left, steps of 1.0\n      uint8 count", "\n      uint8 count  # m, +x to the left, steps of 1.0")],
-        [f"{OFFSET}no longer `m, +x to the left, steps of 1.0`; kite uses it"],
+        [f"{OFFSET}no longer `m, +x to the left, steps of 1.0`; Kite uses it"],
     ),
     "a type with a unit in its name": (
         [("Rows: m_msgs", "Rows in mm: m_msgs"), ("type: Rows", "type: Rows in mm")],
-        ["meaning orsa: calls `Rows in mm` what was `Rows`; orsa uses it"],
+        ["meaning orsa: calls `Rows in mm` what was `Rows`; Orsa uses it"],
     ),
 }  # fmt: skip
-NODES_BUILT = "asks for {} instead of jazzy, for which `guard` of kite, `plan` of orsa and `eye` of vega are built"
+NODES_BUILT = "asks for {} instead of jazzy, for which `guard` of Kite, `plan` of Orsa and `eye` of Vega are built"
 WIRES = {
     "another distribution": (
         [("jazzy", "humble")],
@@ -211,27 +211,27 @@ WIRES = {
     ),
     "a message of another name": (
         [("m_msgs/msg/Rows", "m_msgs/msg/Lines")],
-        ["wire orsa: gives orsa, who reads `sense.eye.rows` as `nav.plan.rows`, `m_msgs/msg/Lines` instead of `m_msgs/msg/Rows`: by another name it is another message to ROS"],
+        ["wire orsa: gives `m_msgs/msg/Lines` instead of `m_msgs/msg/Rows` (by another name it is another message to ROS) as `sense.eye.rows`; `nav.plan.rows` of Orsa reads it"],
     ),
     "a publisher that is only planned now": (
         [("eye: {impl", "eye: {status: planned, impl")],
         [
-            "wire kite: takes the topic `/persons` from kite, whose `guard` subscribes to it; nobody offers it under that name any more",
-            "wire orsa: takes the topic `/rows` from orsa, whose `plan` subscribes to it; nobody offers it under that name any more",
+            "wire kite: takes the topic `/persons` from Kite (`guard`); nobody offers it under that name any more",
+            "wire orsa: takes the topic `/rows` from Orsa (`plan`); nobody offers it under that name any more",
         ],
     ),
     "a planned publisher in the place of one that is there": (
         [("  eye: {impl", "  fresh: {status: planned, package: other, executable: one, impl")],
         [
-            "wire kite: takes the topic `/persons` from kite, whose `guard` subscribes to it; nobody offers it under that name any more",
-            "wire orsa: takes the topic `/rows` from orsa, whose `plan` subscribes to it; nobody offers it under that name any more",
+            "wire kite: takes the topic `/persons` from Kite (`guard`); nobody offers it under that name any more",
+            "wire orsa: takes the topic `/rows` from Orsa (`plan`); nobody offers it under that name any more",
         ],
     ),
     "topics that change places": (
         [("{persons: {topic: /persons}, rows: {topic: /rows}}", "{persons: {topic: /rows}, rows: {topic: /persons}}")],
         [
-            "wire kite: takes the topic `/persons` from kite, whose `guard` subscribes to it; it is `/rows` now",
-            "wire orsa: takes the topic `/rows` from orsa, whose `plan` subscribes to it; it is `/persons` now",
+            "wire kite: takes the topic `/persons` from Kite (`guard`); it is `/rows` now",
+            "wire orsa: takes the topic `/rows` from Orsa (`plan`); it is `/persons` now",
         ],
     ),
 }  # fmt: skip
@@ -280,7 +280,7 @@ def test_without_nodes_the_name_says_what_is_on_the_same_wire(compared: Compared
     assert losses(compared, NO_NODES, lines) == [TAKEN.replace("row_eye.rows", "row_eye.lines")]
     physical = [("{type: Rows, d", "{type: Rows, medium: physical, external: Field, d")]
     assert losses(compared, NO_NODES, physical) == [
-        "wire orsa: gives orsa, who reads `sense.eye.rows` as `nav.plan.rows`, a physical quantity instead of a message"
+        "wire orsa: gives a physical quantity instead of a message as `sense.eye.rows`; `nav.plan.rows` of Orsa reads it"
     ]
 
 
@@ -346,7 +346,7 @@ def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:
 
 def test_a_frame_that_a_node_is_told_counts_as_meaning(compared: Compared) -> None:
     told = ROBOT.replace("eye: {impl", "eye: {parameters: {camera_frame: base_link, gain: 3}, impl")
-    read = "`drive.guard.persons` of kite and `nav.plan.rows` of orsa read what it sends"
+    read = "`drive.guard.persons` of Kite and `nav.plan.rows` of Orsa read what it sends"
     assert losses(compared, told, [("base_link, gain", "map, gain")]) == everybody(
         f"sets `camera_frame` of `eye` to `map` instead of `base_link`; {read}", "meaning"
     )

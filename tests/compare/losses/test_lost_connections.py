@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -27,8 +28,8 @@ groups:
   tracking: {owner: sssa, components: {tracker: {inputs: {image: sensing.camera.image}}}}
 """
 )
-RENAMED = "renames what sssa reads: `sensing.camera.image` is `{}` now; "
-LEFT, FOLLOWED = "`tracking.tracker.image` has to follow", "its files follow in this change"
+RENAMED = "renames what SSSA reads: `sensing.camera.image` is `{}` now; "
+LEFT, FOLLOWED = "`tracking.tracker.image` has to follow", "files follow in this change"
 
 
 @pytest.mark.parametrize(
@@ -64,8 +65,8 @@ def test_the_output_itself_is_the_cause_before_its_component_and_its_group() -> 
 @pytest.mark.parametrize(
     ("lost", "said"),
     [
-        ("", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
-        ("other", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
+        ("", ["sssa takes `g.a.x` from SSSA (`g.b.i`)"]),
+        ("other", ["sssa takes `g.a.x` from SSSA (`g.b.i`)"]),
         ("a", []),
     ],
 )
@@ -75,6 +76,6 @@ def test_an_output_that_may_be_in_what_could_not_be_read_is_not_taken_away(lost:
         by_key(element("output g.a.x", owner="certh"), reader), by_key(reader), ("g.b.i <- g.a.x", ""), ("", lost)
     )
     removal = Change("removed", "output", "g.a.x")
-    nothing = cast("Any", None)
-    found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), versions, [removal]))
+    titled = cast("Any", SimpleNamespace(partners={"sssa": SimpleNamespace(title="SSSA")}))
+    found = find_lost_connections(ChangeContext(titled, titled, MatchedIds(), versions, [removal]))
     assert [f"{loss.partner} {loss.reason}" for loss in found] == said

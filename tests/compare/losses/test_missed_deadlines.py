@@ -52,7 +52,7 @@ CROWDED = (
 )
 LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
-ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
+ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
 EVERYBODY = ("certh", "sssa", "tum")
 SHORT_CUT = BASE.replace("inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}")
 
@@ -69,7 +69,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                LATE + " (151 ms → 301 ms); `mind` of sssa and `feet` of tum are on it",
+                LATE + " (151 ms → 301 ms); `mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -88,7 +88,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 250 ms (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` miss its deadline of 250 ms (151 ms → no bound); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -98,7 +98,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -119,7 +119,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of certh are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of CERTH are on it",
             "certh",
         ),
     ),
@@ -130,7 +130,7 @@ TABLE = {
             *both(
                 "sensing.camera/timing.rate",
                 "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -144,8 +144,8 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of certh, "
-            "`tracking.tracker` of sssa and `moving.planner` of tum are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of CERTH, "
+            "`tracking.tracker` of SSSA and `moving.planner` of TUM are on it",
             *EVERYBODY,
         ),
     ),
@@ -168,7 +168,7 @@ TABLE = {
             ("  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}\n", ""),
         ],
         [
-            "tracking.tracker tum: takes `tracking.tracker.tracks` from tum, who read it as `moving.planner.tracks`; the same change takes the reader away"
+            "tracking.tracker tum: takes `tracking.tracker.tracks` from TUM (`moving.planner.tracks`); the same change takes the reader away"
         ],
     ),
     "a chain that was late already": (
@@ -176,7 +176,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` exceed its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` exceed its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -188,7 +188,7 @@ TABLE = {
         both(
             "tracking.tracker/timing.wcet",
             "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
-            "`eye` of certh and `feet` of tum are on it",
+            "`eye` of CERTH and `feet` of TUM are on it",
             "certh",
             "tum",
         ),
@@ -197,7 +197,7 @@ TABLE = {
         BASE,
         [("inputs: {image: camera.image}, ", "")],
         [
-            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of tum is on it"
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of TUM is on it"
         ],
     ),
     "a step more on the way": (
@@ -212,7 +212,7 @@ TABLE = {
         ],
         both(
             "sensing.mend",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it",
             "sssa",
             "tum",
         ),
@@ -235,7 +235,7 @@ TABLE = {
             *both(
                 "sensing.camera/timing.rate",
                 "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -252,7 +252,7 @@ TABLE = {
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "takes away the proof that the chain `react` meets its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 150 ms (144 ms → 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -266,7 +266,7 @@ TABLE = {
             for fan in ("one", "two")
             for line in both(
                 f"tracking.{fan}/timing.core",
-                f"{LATE} (~223.467 ms → 292 ms); `eye` of certh and `feet` of tum are on it",
+                f"{LATE} (~223.467 ms → 292 ms); `eye` of CERTH and `feet` of TUM are on it",
                 "certh",
                 "tum",
             )
@@ -275,14 +275,14 @@ TABLE = {
     "a host that shares its core": (
         BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
         [("wcet: 20 ms", "wcet: 120 ms")],
-        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of certh runs"],
+        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of CERTH runs"],
     ),
     "a host with a core less": (
         BASE[: BASE.index("chains:")].replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 99 ms"),
         [("pc: {cores: 2}", "pc: {cores: 1}")],
         both(
             "pc/cores",
-            "overloads the host `pc` (101 % of its core), where `eye` of certh and `mind` of sssa run",
+            "overloads the host `pc` (101 % of its core), where `eye` of CERTH and `mind` of SSSA run",
             "certh",
             "sssa",
         ),
@@ -290,7 +290,7 @@ TABLE = {
     "a rate that overloads who is fired by it": (
         BASE[: BASE.index("chains:")],
         [("rate: 10 Hz", "rate: 46 Hz")],
-        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of sssa runs"],
+        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of SSSA runs"],
     ),
     "a host that was overloaded before": (
         BASE[: BASE.index("chains:")].replace("20 ms", "99 ms"),
@@ -303,7 +303,7 @@ TABLE = {
         [("10 Mbit/s", "500 kbit/s")],
         both(
             "lan/bandwidth",
-            "asks the link `lan` for 160 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+            "asks the link `lan` for 160 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
             "sssa",
             "tum",
         ),
@@ -314,7 +314,7 @@ TABLE = {
         [
             *both(
                 "Tracks/size",
-                "asks the link `lan` for 104 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+                "asks the link `lan` for 104 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
                 "sssa",
                 "tum",
             ),
@@ -371,7 +371,7 @@ def test_a_way_round_that_nobody_meant_is_no_chain(compared: Compared) -> None:
     said = broken(compared, DIRECT.replace("240 ms", "140 ms"), edits)
     # `mind` is on the way round alone: its partner had no part in the chain.
     assert said == [
-        "moving.planner.image certh: cuts the chain `react`: `eye` no longer reaches `feet` directly; `eye` of certh is on it"
+        "moving.planner.image certh: cuts the chain `react`: `eye` no longer reaches `feet` directly; `eye` of CERTH is on it"
     ]
 
 

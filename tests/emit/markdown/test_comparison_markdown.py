@@ -98,8 +98,8 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 
 #### Breaking changes
 
-- \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
-  - breaks CERTH (promise): takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+- \\~ `display.finder` of SSSA: worst case execution time `20 ms` → `60 ms`
+  - breaks CERTH (promise): takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of CERTH is on it
   - found as `late-chain` at `robot.yaml:22:10`
 
 #### Load of hosts and links
@@ -157,19 +157,19 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
   - breaks SSSA (wire): `display.finder` takes `Image`
   - breaks CERTH and SSSA (meaning): two
-  - accepted by sssa: agreed in May
-  - said in `archgen.yaml`, not by certh and sssa: agreed in \\*June\\*
+  - accepted by SSSA: agreed in May
+  - said in `archgen.yaml`, not by CERTH and SSSA: agreed in \\*June\\*
 
 #### Other changes
 
-**Sensing · `sensing`**
+**Sensing · `sensing` (CERTH)**
 
 - \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
 """)
     refused = replace(found, changes=(kind,), policy=BreakPolicy(meaning=Severity.ERROR))
     assert (
-        "\n`review.breaking: {meaning: error}` refuses this: mend it, or certh says why it is right, in `review/certh.yaml`: "
-        "`review: {accepted: {Image: {key: message, reason: THE REASON}}}`\n"
+        "\n`review.breaking: {meaning: error}` refuses this: mend it, or CERTH says why it is right:\n\n"
+        "```yaml\n# review/certh.yaml\nreview:\n  accepted:\n    Image: {key: message, reason: THE REASON}\n```\n"
     ) in written(refused, broken)
 
 
