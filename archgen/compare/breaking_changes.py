@@ -72,10 +72,10 @@ def mark_breaking_changes(
         for index, change in enumerate(context.changes)
     ]
     # The sort is stable: within each class the order of `change_order` remains.
-    return tuple(sorted(marked_changes, key=lambda change: _urgency(change, policy)))
+    return tuple(sorted(marked_changes, key=lambda change: _rank_change(change, policy)))
 
 
-def _urgency(change: Change, policy: BreakPolicy) -> tuple[bool, bool, int]:
+def _rank_change(change: Change, policy: BreakPolicy) -> tuple[bool, bool, int]:
     """Return the sort key that puts first what needs an answer most."""
     severities = (policy.severity_of(each.category).rank for each in change.breaks)
     return not change.breaks, change.acceptance_reason is not None, -max(severities, default=0)

@@ -23,6 +23,7 @@ from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.partner_titles import title_partners
 from archgen.compare.timing_pair import analyse_timing_pair
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Severity
@@ -48,6 +49,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         lost_keys,
         _find_unnamed_outputs(after.architecture),
         (before.sound_files, after.sound_files),
+        partner_names=title_partners(before.architecture, after.architecture),
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
     if any(change.element_kind == "link" for change in changes):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 _SEPARATOR = "---"
-_Place = tuple[int, str]
+FieldPlace = tuple[int, str]
 """The part of a service or action, and the field's name."""
 
 
@@ -23,7 +23,7 @@ class FieldChanges(NamedTuple):
 
 def compare_field_lines(before: object, after: object) -> FieldChanges:
     """Compare the lines of two definitions."""
-    old_types, new_types = _read_types(before), _read_types(after)
+    old_types, new_types = read_field_types(before), read_field_types(after)
     retyped = {
         place[1]: (old_type, new_types[place])
         for place, old_type in old_types.items()
@@ -41,8 +41,9 @@ def compare_field_lines(before: object, after: object) -> FieldChanges:
     return FieldChanges(retyped, renamed, _write_lines(new, new_types), _write_lines(gone, old_types))
 
 
-def _read_types(lines: object) -> dict[_Place, str]:
-    types: dict[_Place, str] = {}
+def read_field_types(lines: object) -> dict[FieldPlace, str]:
+    """Return the types of fields by their places, in the order of the lines."""
+    types: dict[FieldPlace, str] = {}
     part = 0
     for line in map(str, lines) if isinstance(lines, (list, tuple)) else ():
         if line == _SEPARATOR:
@@ -53,5 +54,5 @@ def _read_types(lines: object) -> dict[_Place, str]:
     return types
 
 
-def _write_lines(places: Iterable[_Place], types: Mapping[_Place, str]) -> list[str]:
+def _write_lines(places: Iterable[FieldPlace], types: Mapping[FieldPlace, str]) -> list[str]:
     return [f"{types[place]} {place[1]}" for place in places]

@@ -15,7 +15,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import Analysis, EventPace, TopicLoad
 from archgen.timing.figures.figure_wording import name_unknown_reason
@@ -71,7 +71,7 @@ class FigureReader:
     def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
         if self.analysis is None:
             return
-        givers = list_answering_givers(self.architecture, interface)
+        givers = list_givers(self.architecture, interface)
         for endpoint in givers:
             node = self._common_node(endpoint) if len(givers) > 1 else ""
             if interface.flow == "topic":
@@ -153,12 +153,6 @@ def find_pace(analysis: Analysis, activity_names: activity_builder.ActivityNames
     """Return how often something is published at an endpoint."""
     activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
     return analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
-
-
-def list_answering_givers(architecture: Architecture, interface: PartnerInterface) -> tuple[Endpoint, ...]:
-    """Return the endpoints that an interface's figures are of: those of written nodes; where there are none, of all."""
-    written = tuple(endpoint for endpoint in interface.giver_endpoints if architecture.nodes[endpoint.node].written)
-    return written or interface.giver_endpoints
 
 
 def is_same_figure(name: str, before: Figure | None, after: Figure | None) -> bool:

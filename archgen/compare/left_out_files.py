@@ -36,7 +36,10 @@ def find_left_out(comparison: Comparison, changes: Sequence[Change]) -> Iterator
             if change.kind == "removed"
             and (
                 file_of_element.get((change.element_kind, change.element_id)) in files
-                or (change.element_kind == "message" and any(_defines(file, change.element_id) for file in files))
+                or (
+                    change.element_kind == "message"
+                    and any(_defines_message(file, change.element_id) for file in files)
+                )
             )
         )
         if removals:
@@ -50,7 +53,7 @@ def _name_setting(file: str) -> str:
     return "ros.interfaces" if file.endswith(_INTERFACE_ENDINGS) else "sources"
 
 
-def _defines(file: str, message: str) -> bool:
+def _defines_message(file: str, message: str) -> bool:
     """Whether a file is that of a message `package/msg/Name`: the package may be named elsewhere."""
     stem, _, ending = file.rpartition(".")
     return message.split("/")[1:] == [ending, stem.rpartition("/")[2]]

@@ -14,7 +14,6 @@ from archgen.compare.timing_pair import TimingPair
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import multiply_value
 
 _NOTICEABLE_STEP = Fraction(5, 100)
 """Smaller steps are told only where the load is high already."""
@@ -55,7 +54,9 @@ def find_load_changes(
 
 def _list_shares(analysis: Analysis) -> Iterator[tuple[Literal["host", "link"], str, TimingValue]]:
     for name, load in sorted(analysis.hosts.items()):
-        yield "host", name, multiply_value(load.utilisation, Fraction(1, load.cores))
+        # Of a host whose cores nobody counted there is no share.
+        if load.share_of_cores is not None:
+            yield "host", name, load.share_of_cores
     for name, link_load in sorted(analysis.links.items()):
         yield "link", name, link_load.share
 

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import format_value, shorten_text
-from archgen.compare.normal_values import ElementTitle
+from archgen.compare.field_changes import read_field_types
+from archgen.compare.key_phrases import format_value
+from archgen.compare.partner_titles import name_partner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
@@ -30,17 +31,10 @@ def name_ports(inputs: Iterable[str], versions: VersionPair) -> str:
         element = versions.elements_after.get(("input", name)) or versions.elements_before.get(("input", name))
         inputs_by_owner[(element and element.owner) or ""].append(name)
     phrases = [
-        tick_names(names) + (f" of {name_partner(owner, versions)}" if owner else "")
+        tick_names(names) + (f" of {name_partner(owner, versions.partner_names)}" if owner else "")
         for owner, names in sorted(inputs_by_owner.items())
     ]
     return join_words(phrases)
-
-
-def name_partner(partner: str, versions: VersionPair) -> str:
-    """Return a partner as sentences call it: by its title."""
-    element = versions.elements_after.get(("partner", partner)) or versions.elements_before.get(("partner", partner))
-    title = element.values.get("title") if element else None
-    return shorten_text(title.text if isinstance(title, ElementTitle) else partner)
 
 
 def is_read_by_others(output_id: str, versions: VersionPair) -> bool:
@@ -73,7 +67,7 @@ def describe_lost_effects(inputs: Iterable[str], versions: VersionPair) -> Itera
         for source in sorted(versions.connections_before.sources_by_input.get(reader, ())):
             output = versions.elements_after.get(("output", source))
             if output and output.owner and output.owner != input_element.owner and source not in remaining_sources:
-                owner = name_partner(output.owner, versions)
+                owner = name_partner(output.owner, versions.partner_names)
                 yield f"`{source}` of {owner} has no effect on `{component[1]}` any more"
 
 
@@ -128,15 +122,10 @@ def describe_field_changes(old_message: object, new_message: object, versions: V
 
 def _types_by_field(lines: object) -> dict[str, str]:
     """Return the types of fields by name; those of the parts of a service or action with the part's number."""
-    types: dict[str, str] = {}
-    part = 0
-    for line in lines if isinstance(lines, tuple) else ():
-        if line == "---":
-            part += 1
-        else:
-            field_type, _, name = str(line).rpartition(" ")
-            types[f"{name} of part {part + 1}" if part else name] = field_type
-    return types
+    return {
+        f"{name} of part {part + 1}" if part else name: field_type
+        for (part, name), field_type in read_field_types(lines).items()
+    }
 
 
 def describe_outer_messages(message: str, versions: VersionPair) -> str:

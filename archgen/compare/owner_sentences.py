@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import shorten_text
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.normal_values import ElementTitle
+from archgen.compare.partner_titles import name_partner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
 
@@ -15,20 +14,13 @@ def describe_new_owner(change: Change, versions: VersionPair) -> str:
     if change.key != "owner":
         return ""
     kind_word = "" if "." in change.element_id else f"{ELEMENT_KINDS[change.element_kind].kind_word} "
-    new_owner, old_owner = (_name_partner(owner, versions) for owner in (change.after, change.before))
+    new_owner, old_owner = (
+        name_partner(str(owner), versions.partner_names) if owner else "nobody"
+        for owner in (change.after, change.before)
+    )
     sentence = f"{kind_word}{tick_names([change.element_id])} belongs to {new_owner} now, not to {old_owner}"
     readers = _find_outer_readers(change, versions)
     return f"{sentence}; read by {tick_names(readers)}" if readers else sentence
-
-
-def _name_partner(partner: object, versions: VersionPair) -> str:
-    """Return the title of a partner, its id where nobody declares it."""
-    if partner is None:
-        return "nobody"
-    key = "partner", str(partner)
-    element = versions.elements_after.get(key) or versions.elements_before.get(key)
-    title = element.values.get("title") if element else None
-    return shorten_text(title.text if isinstance(title, ElementTitle) else key[1])
 
 
 def _find_outer_readers(change: Change, versions: VersionPair) -> list[str]:

@@ -9,6 +9,11 @@ from archgen.compare.key_phrases import shorten_text
 from archgen.model.architecture import Architecture
 
 
+def name_partner(partner: str, partner_names: Mapping[str, str]) -> str:
+    """Return what people call a partner; its id where nobody declares it."""
+    return partner_names.get(partner) or shorten_text(partner)
+
+
 def title_partners(before: Architecture, after: Architecture) -> Mapping[str, str]:
     """Return the name of each partner of either version, by id."""
     partners = {**before.partners, **after.partners}

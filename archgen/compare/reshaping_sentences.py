@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.key_phrases import format_value
-from archgen.compare.meaning_sentences import name_partner
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.output_heirs import OutputHeir, outputs_of, sources_of
+from archgen.compare.partner_titles import name_partner
 from archgen.compare.sentence_words import shown_id, tick_names
 from archgen.compare.text_differences import describe_text_difference
 from archgen.compare.version_pair import VersionPair
@@ -92,8 +92,8 @@ def _describe_other_owners(heirs: Sequence[OutputHeir], versions: VersionPair) -
         new_element = versions.elements_after.get(("component", new_component))
         old_owner, new_owner = (element.owner if element else None for element in (old_element, new_element))
         if new_owner and old_owner != new_owner:
-            former_note = f" instead of {name_partner(old_owner, versions)}" if old_owner else ""
-            yield f"`{new_component}` belongs to {name_partner(new_owner, versions)}{former_note}"
+            former_note = f" instead of {name_partner(old_owner, versions.partner_names)}" if old_owner else ""
+            yield f"`{new_component}` belongs to {name_partner(new_owner, versions.partner_names)}{former_note}"
 
 
 def _describe_other_sources(components: Sequence[str], own_outputs: set[str], versions: VersionPair) -> Iterator[str]:

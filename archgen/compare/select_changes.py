@@ -33,7 +33,9 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
         for chain in comparison.chains
         if not wanted_ids.isdisjoint(_activities_and_nodes(chain))
     )
-    boundaries = tuple(boundary for boundary in comparison.boundaries if _touches(boundary, wanted_keys, comparison))
+    boundaries = tuple(
+        boundary for boundary in comparison.boundaries if _touches_selection(boundary, wanted_keys, comparison)
+    )
     return replace(
         comparison,
         changes=changes,
@@ -65,7 +67,7 @@ def _keep_causes(chain: ChainChange, wanted_keys: set[ElementKey], comparison: C
     return replace(chain, causes=causes)
 
 
-def _touches(boundary: BoundaryChange, wanted_keys: set[ElementKey], comparison: Comparison) -> bool:
+def _touches_selection(boundary: BoundaryChange, wanted_keys: set[ElementKey], comparison: Comparison) -> bool:
     """Whether a selected component gives what flows at a boundary, or reads it."""
     versions = comparison.versions
     readers = {

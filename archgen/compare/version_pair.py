@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
@@ -31,6 +31,9 @@ class VersionPair:
 
     link_users: Mapping[str, frozenset[str]] | None = None
     """The partners whose data crosses each link in either version; None where timing does not know."""
+
+    partner_names: Mapping[str, str] = field(default_factory=dict)
+    """What people call each partner of either version (see `title_partners`)."""
 
     def may_be_unread(self, key: ElementKey) -> bool:
         """Whether an element that is missing in one version may be in a part of it that could not be read."""

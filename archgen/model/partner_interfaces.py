@@ -240,3 +240,9 @@ def components_at_ends(
         tuple(components_by_id[name] for name in dict.fromkeys(giving_ids) if name),
         tuple(components_by_id[name] for name in dict.fromkeys(taking_ids) if name),
     )
+
+
+def list_givers(architecture: Architecture, interface: PartnerInterface) -> tuple[Endpoint, ...]:
+    """Return the giving endpoints of nodes that somebody wrote, else those of the planned ones."""
+    written = tuple(endpoint for endpoint in interface.giver_endpoints if architecture.nodes[endpoint.node].written)
+    return written or interface.giver_endpoints

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -99,6 +99,13 @@ class HostLoad:
     Cores that nobody wrote the number of are left out.
     """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
+
+    @property
+    def share_of_cores(self) -> TimingValue | None:
+        """Return the utilisation as a share of all cores; None where nobody knows how many there are."""
+        if self.cores is None or self.utilisation.value is None:
+            return None if self.cores is None else self.utilisation
+        return replace(self.utilisation, value=self.utilisation.value / self.cores)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,11 +10,10 @@ from typing import NamedTuple
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import shorten_text
 from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
-from archgen.compare.losses.output_heirs import find_heirs
+from archgen.compare.losses.wire_heirs import find_wire_heirs
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.partner_titles import title_partners
+from archgen.compare.partner_titles import name_partner
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
@@ -192,11 +191,7 @@ class ChangeContext:
 
     def name_partner(self, partner: str) -> str:
         """Return what people call a partner."""
-        return self._partner_titles.get(partner) or shorten_text(partner)
-
-    @cached_property
-    def _partner_titles(self) -> Mapping[str, str]:
-        return title_partners(self.before, self.after)
+        return name_partner(partner, self.versions.partner_names)
 
     def owner_before(self, kind: str, name: str) -> str | None:
         """Return the partner who owned an element before the change; for a new element, who owns it."""
@@ -257,7 +252,7 @@ class ChangeContext:
     @cached_property
     def output_heirs(self) -> Mapping[str, str]:
         """Return the removed outputs that live on as new ones on the same wire, with the ids of these."""
-        return find_heirs(self.versions, (self.before, self.after), self.matched_ids)
+        return find_wire_heirs(self.versions, (self.before, self.after), self.matched_ids)
 
     @cached_property
     def lasting_outputs(self) -> Sequence[LastingOutput]:

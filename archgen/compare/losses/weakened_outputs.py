@@ -123,11 +123,11 @@ class _PromisedOutputs:
         return OutputPromise(
             rate=sum((rate for rate in rates if rate), Fraction(0)) if all(rates) else None,
             is_steady=all(timing.behaviour in {None, "periodic"} for timing in timings),
-            gap=_largest(output.max_gap for output in outputs),
+            gap=_find_largest(output.max_gap for output in outputs),
             every=max(timing.every or 1 for timing in timings),
-            throttle=_largest(timing.throttle for timing in timings) or Fraction(0),
-            jitter=_largest(timing.jitter for timing in timings),
-            response=_largest(timing.response for timing in timings),
+            throttle=_find_largest(timing.throttle for timing in timings) or Fraction(0),
+            jitter=_find_largest(timing.jitter for timing in timings),
+            response=_find_largest(timing.response for timing in timings),
             is_conditional=any(output.conditional for output in outputs),
         )
 
@@ -138,7 +138,7 @@ def _effective_rate(timing: Timing) -> Fraction | None:
     return timing.rate.value if timing.rate else None
 
 
-def _largest(quantities: Iterable[Quantity | None]) -> Fraction | None:
+def _find_largest(quantities: Iterable[Quantity | None]) -> Fraction | None:
     return max((Fraction(quantity.value) for quantity in quantities if quantity is not None), default=None)
 
 

@@ -64,18 +64,11 @@ def group_by_host(analysis: Analysis, names: Iterable[str]) -> tuple[UnfoundPlac
         UnfoundPlace(
             host,
             tuple(host_names),
-            _share_of_cores(analysis, host),
+            load.share_of_cores if (load := analysis.hosts.get(host or "")) else None,
             tuple(dict.fromkeys(analysis.responses[name].tier for name in host_names)),
         )
         for host, host_names in names_by_host.items()
     )
-
-
-def _share_of_cores(analysis: Analysis, host: str | None) -> TimingValue | None:
-    load = analysis.hosts.get(host or "")
-    if load is None or load.utilisation.value is None or not load.cores:
-        return None
-    return TimingValue(load.utilisation.value / load.cores, load.utilisation.complete, side=load.utilisation.side)
 
 
 def _is_fed(analysis: Analysis, place: UnfoundPlace, unfound_ids: set[str]) -> bool:

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from archgen.compare.interface_figures import find_pace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
 from archgen.timing.figures.timing_values import TimingValue
@@ -38,7 +39,7 @@ def promise_timing(
     if interface.flow == "physical":
         return
     timed = lookup.timing
-    givers = list_givers(lookup, interface)
+    givers = list_givers(lookup.architecture, interface)
     if timed is not None:
         for endpoint in givers:
             suffix = f" of {endpoint.node}" if len(givers) > 1 else ""
@@ -49,14 +50,6 @@ def promise_timing(
             yield _size_row(name, size)
     if timed is not None and interface.flow == "topic":
         yield PromiseRow("Traffic", expected=_traffic_runs(timed, interface))
-
-
-def list_givers(lookup: Lookup, interface: PartnerInterface) -> tuple[Endpoint, ...]:
-    """Return the giving endpoints of nodes that somebody wrote, else those of the planned ones."""
-    written_givers = [
-        endpoint for endpoint in interface.giver_endpoints if lookup.architecture.nodes[endpoint.node].written
-    ]
-    return tuple(written_givers) or interface.giver_endpoints
 
 
 def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
@@ -71,8 +64,7 @@ def find_broken_limits(
     output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "", OutputTiming())
     if lookup.timing is None or endpoint.flow != "topic":
         return
-    activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
-    gap = lookup.timing.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None)).gap
+    gap = find_pace(lookup.timing.analysis, activity_names, endpoint).gap
     figure = _spell_duration(gap)
     if figure == value_format.UNKNOWN_FIGURE:
         return
@@ -110,9 +102,7 @@ class _GivenPace:
         if self.endpoint.flow != "topic":
             yield self._answer_row()
             return
-        pace = self.timed.analysis.outputs.get(
-            (self.activity, activity_builder.endpoint_key(self.endpoint)), EventPace(None)
-        )
+        pace = find_pace(self.timed.analysis, self.activity_names, self.endpoint)
         output_timing = self.timing.outputs.get(self.endpoint.port or "", OutputTiming())
         yield self._rate_row(pace, output_timing)
         if output_timing.conditional:

@@ -12,11 +12,11 @@ from collections.abc import Iterable, Iterator
 from archgen.model.declared_timing import OutputTiming
 from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.node import Endpoint
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.figures.tick_unit import written_period
-from archgen.views.agreement.interface_timing import find_giver_timing, list_givers
+from archgen.views.agreement.interface_timing import find_giver_timing
 from archgen.views.agreement.promise_rows import identify_qos
 from archgen.views.lookup import Lookup
 
@@ -27,7 +27,7 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
     """Return the version of an interface, six hexadecimal digits."""
     architecture = lookup.architecture
     with_qos = interface.flow == "topic" and not is_ros_1(architecture.distro)
-    givers = list_givers(lookup, interface)
+    givers = list_givers(lookup.architecture, interface)
     message_type = architecture.types.get(interface.type or "")
     content = {
         "flow": interface.flow,
@@ -35,7 +35,7 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
         # The type is a name of the project's own; without a message it is all that says what flows.
         "carried": interface.message or f"type {interface.type}",
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
-        "meaning": _squeeze((interface.output.description if interface.output else None) or ""),
+        "meaning": _collapse_blanks((interface.output.description if interface.output else None) or ""),
         # To write down what counted before promises it.
         "promises qos": any(endpoint.qos.written for endpoint in interface.giver_endpoints) and with_qos,
         "offered": _list_qos(lookup, interface.giver_endpoints) if with_qos else [],
@@ -61,10 +61,10 @@ def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[o
 
 def _write_definition(definition: Interface) -> Iterator[object]:
     for part in definition.parts:
-        yield [[field.name, field.type + field.array, field.default, _squeeze(field.comment)] for field in part]
+        yield [[field.name, field.type + field.array, field.default, _collapse_blanks(field.comment)] for field in part]
     # Constants have no place on the wire: their order says nothing.
     for constants in definition.constants:
-        yield sorted([item.name, item.type, item.value, _squeeze(item.comment)] for item in constants)
+        yield sorted([item.name, item.type, item.value, _collapse_blanks(item.comment)] for item in constants)
 
 
 def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:
@@ -93,6 +93,6 @@ def _write_quantity(quantity: Quantity | None) -> str:
     return str(quantity.value) if quantity else ""
 
 
-def _squeeze(text: str) -> str:
+def _collapse_blanks(text: str) -> str:
     """Return a text with single spaces: line breaks say nothing."""
     return " ".join(text.split())

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.node import Endpoint
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
-from archgen.views.agreement.interface_timing import find_giver_timing, list_givers
+from archgen.views.agreement.interface_timing import find_giver_timing
 from archgen.views.lookup import Lookup
 
 
 def list_missing_data_duties(lookup: Lookup, interface: PartnerInterface, giver: str, taker: str) -> Iterator[str]:
     """Yield sentences on what each side, named by its title, promises or bears where data does not come in time."""
     architecture = lookup.architecture
-    givers = list_givers(lookup, interface)
+    givers = list_givers(lookup.architecture, interface)
     sentences: dict[str, None] = {}
     for endpoint in givers:
         output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "")

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator
 from archgen.analyses.port_types import is_expected_type
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.model.node import Endpoint
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system.activity_builder import ActivityNames
-from archgen.views.agreement.interface_timing import find_broken_limits, list_givers
+from archgen.views.agreement.interface_timing import find_broken_limits
 from archgen.views.lookup import Lookup
 from archgen.views.timing import value_format
 
@@ -51,7 +51,7 @@ def find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface
             yield f"{component} expects `{input_port.type}` as `{input_port.name}`, and is given `{output.type}`."
     if interface.flow == "topic" and not is_ros_1(architecture.distro):
         yield from _find_qos_clashes(lookup, interface)
-    for endpoint in list_givers(lookup, interface):
+    for endpoint in list_givers(lookup.architecture, interface):
         yield from find_broken_limits(lookup, activity_names, endpoint)
 
 

@@ -82,7 +82,9 @@ def _describe_boundary(change: BoundaryChange, comparison: Comparison) -> _Bound
     # How old data without a bound is, nobody asks.
     lost_lead = next((lead for lead, names in names_by_lead.items() if names), "")
     remaining = [figure for figure in change.figures if not leads[figure]]
-    figures = [figure for figure in remaining if not (_follows(figure, change.figures) or _has_same_hosts(figure))]
+    figures = [
+        figure for figure in remaining if not (_follows_from_others(figure, change.figures) or _has_same_hosts(figure))
+    ]
     return _Boundary(change, tuple(figures), lost_lead, names_by_lead.get(lost_lead, ()))
 
 
@@ -106,13 +108,13 @@ def _find_loss(figure: FigureChange) -> str:
     return _UNKNOWN_LEAD if before.complete and not after.complete else ""
 
 
-def _follows(figure: FigureChange, figures: Iterable[FigureChange]) -> bool:
+def _follows_from_others(figure: FigureChange, figures: Iterable[FigureChange]) -> bool:
     """Whether a figure follows from another one that is told: traffic from the rate, an age from what comes later anyway."""
     others = {other.key.name: other for other in figures if other.key.node in {"", figure.key.node}}
     if figure.key.name == "traffic":
         return "rate" in others and "size" not in others
     gap = others.get(_GAP)
-    return figure.key.name == _AGE and gap is not None and _grows_within(_growth(figure), _growth(gap))
+    return figure.key.name == _AGE and gap is not None and _grows_within(_measure_growth(figure), _measure_growth(gap))
 
 
 def _has_same_hosts(figure: FigureChange) -> bool:
@@ -125,7 +127,7 @@ def _grows_within(growth: Fraction | None, limit: Fraction | None) -> bool:
     return growth is not None and limit is not None and growth * limit > 0 and abs(growth) <= abs(limit)
 
 
-def _growth(figure: FigureChange) -> Fraction | None:
+def _measure_growth(figure: FigureChange) -> Fraction | None:
     before, after = figure.before, figure.after
     if not isinstance(before, TimingValue) or not isinstance(after, TimingValue):
         return None
@@ -133,12 +135,12 @@ def _growth(figure: FigureChange) -> Fraction | None:
 
 
 def _is_sooner(figure: FigureChange) -> bool:
-    growth = _growth(figure)
+    growth = _measure_growth(figure)
     return figure.key.name in DELAY_NAMES and growth is not None and growth < 0
 
 
 def _write_sooner(boundaries: Sequence[_Boundary], partner_names: Mapping[str, str]) -> Iterator[FigureLine]:
-    gains = [-(_growth(figure) or 0) for boundary in boundaries for figure in boundary.figures]
+    gains = [-(_measure_growth(figure) or 0) for boundary in boundaries for figure in boundary.figures]
     most = display_duration(TimingValue(Fraction(max(gains))))
     named = [
         _Boundary(boundary.change, (), "", tuple(figure.key.name for figure in boundary.figures))

@@ -7,7 +7,7 @@ escaping, folding, limits, colours. JSON is written from the comparison itself, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
@@ -155,7 +155,7 @@ def describe_comparison(
     other_edits = [note_source(edit, partner_names) for edit in edits if not is_shown_as_break(edit, comparison)]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
-    finding_groups = tuple(_group_findings(comparison, reading_errors))
+    finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
@@ -208,10 +208,12 @@ def severity_of(finding: Diagnostic) -> Severity:
     return finding.severity or Severity.ERROR
 
 
-def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
+def _group_findings(
+    comparison: Comparison, reading_errors: ReadingErrors, repeated_findings: Collection[Diagnostic]
+) -> Iterator[FindingGroup]:
     # What could not be read in the later version is told before all else, and what says the same as a break with it:
     # not once more as a new finding.
-    reported_errors = frozenset(reading_errors.after) | find_repeated_findings(comparison).keys()
+    reported_errors = frozenset((*reading_errors.after, *repeated_findings))
     findings_by_kind = {
         "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
         "silenced": comparison.silenced_findings,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from dataclasses import replace
 from typing import Any, cast
 
 import pytest
@@ -76,6 +76,7 @@ def test_an_output_that_may_be_in_what_could_not_be_read_is_not_taken_away(lost:
         by_key(element("output g.a.x", owner="certh"), reader), by_key(reader), ("g.b.i <- g.a.x", ""), ("", lost)
     )
     removal = Change("removed", "output", "g.a.x")
-    titled = cast("Any", SimpleNamespace(partners={"sssa": SimpleNamespace(title="SSSA")}))
-    found = find_lost_connections(ChangeContext(titled, titled, MatchedIds(), versions, [removal]))
+    titled = replace(versions, partner_names={"sssa": "SSSA"})
+    nothing = cast("Any", None)
+    found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), titled, [removal]))
     assert [f"{loss.partner} {loss.reason}" for loss in found] == said

@@ -18,7 +18,7 @@ Wire = frozenset[tuple[object, ...]]
 """What the nodes of an output offer: names, messages, QoS, and whether a program does so or only a plan."""
 
 
-def find_heirs(
+def find_wire_heirs(
     versions: VersionPair, architectures: tuple[Architecture, Architecture], matched_ids: MatchedIds
 ) -> Mapping[str, str]:
     """Return for each removed output that somebody read the new output on the same wire, if there is exactly one."""
