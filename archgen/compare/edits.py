@@ -121,11 +121,15 @@ def _other_numbers(changes: Iterable[Change]) -> Iterator[Edit]:
         renames = [change for change in changes if _is_rename(change, {kind}) and change.confidence >= SURE_CONFIDENCE]
         if len(renames) > 1:
             pairs = [f"`{change.old_id}` → `{change.element_id}`" for change in renames]
-            surplus = len(pairs) - _MAX_PAIRS
-            shown_pairs = pairs if surplus <= 0 else [*pairs[:_MAX_PAIRS], f"{surplus} more"]
-            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {join_words(shown_pairs)}"
+            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {_join_pairs(pairs)}"
             confidence = min(change.confidence for change in renames)
             yield Edit("renamed", kind, renames[0].element_id, text, tuple(renames), confidence)
+
+
+def _join_pairs(pairs: Sequence[str]) -> str:
+    """Join pairs of names for a sentence; the surplus is counted."""
+    surplus = len(pairs) - _MAX_PAIRS
+    return join_words(pairs if surplus <= 0 else [*pairs[:_MAX_PAIRS], f"{surplus} more"])
 
 
 def _is_rename(change: Change, kinds: Iterable[str]) -> bool:
@@ -171,10 +175,7 @@ def _other_namespaces(changes: Iterable[Change]) -> Iterator[Edit]:
             ]
             if followers:
                 pairs = [each.text.partition(": ")[2].partition("; ")[0].partition(" ")[2] for each in followers]
-                names = join_words(
-                    [*pairs[:_MAX_PAIRS], *([f"{len(pairs) - _MAX_PAIRS} more"] if len(pairs) > _MAX_PAIRS else [])]
-                )
-                text = f"{change.text}; its names follow: {names}"
+                text = f"{change.text}; its names follow: {_join_pairs(pairs)}"
                 yield Edit("changed", "node", change.element_id, text, (change, *followers))
 
 
