@@ -9,7 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.component import Component, Connection, DiagramLayout, Group, Input, Output
-from archgen.model.deployment import Container, Host, Link
+from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -156,6 +156,7 @@ class Architecture:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     hosts: Mapping[str, Host] = field(default_factory=dict)
     containers: Mapping[str, Container] = field(default_factory=dict)
+    resources: Mapping[str, Resource] = field(default_factory=dict)
     links: Mapping[str, Link] = field(default_factory=dict)
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)

@@ -65,7 +65,7 @@ _SECTIONS = (
 _QUANTITIES = frozenset({"bandwidth", "duration", "frequency", "size", "percentage", "latency"})
 """Definitions whose examples are offered: they show the form, and mean no element of another project."""
 
-_WORD_PATTERN = re.compile(r"\^\(\?:([a-z_|]+)\)\$\Z")
+_WORD_PATTERN = re.compile(r"\^\(\?:([a-z0-9_|]+)\)\$\Z")
 """A pattern that lists words, as in the short form of `qos`."""
 
 _PLAIN_TEXT = re.compile(r"(?![0-9.]+\Z)[A-Za-z0-9/](?:[^:#,\[\]{}\n]|:(?=\S))*\Z")
