@@ -180,6 +180,12 @@ class Architecture:
         mapped = self.types.get(output.type)
         return mapped.message if mapped else None
 
+    def nodes_using(self, resource_id: str) -> Iterator[Node]:
+        """Yield the nodes of which an activity uses a resource."""
+        return (
+            node for node in self.nodes.values() if any(resource_id in timing.uses for timing in node.timing.values())
+        )
+
     def nodes_implementing(self, component_id: str) -> Iterator[Node]:
         """Yield the nodes that implement the component with this complete id, planned ones included."""
         return (node for node in self.nodes.values() if component_id in node.implements)
