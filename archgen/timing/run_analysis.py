@@ -6,7 +6,7 @@ from operator import attrgetter
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
-from archgen.timing.load.host_loads import build_response_times, find_host_loads
+from archgen.timing.load.host_loads import build_response_times, build_run_responses, find_host_loads
 from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
@@ -83,6 +83,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
             for key in activity.outputs
         },
         responses=responses,
+        runs=build_run_responses(state, responses),
         hosts=find_host_loads(system, resource_list, rates.paces, responses),
         links=find_link_loads(state, rates),
         topics={} if judging else find_topic_loads(system, rates.outputs),

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
@@ -39,6 +39,14 @@ class LateChain:
     chain: Chain
     bound: TimingValue
     terms: tuple[ChainTerm, ...]
+
+
+class _ExtremePath(NamedTuple):
+    """The extreme path of a route: in which view of the network, and what it bounds all paths by."""
+
+    view: CostNetwork
+    path: CostedPath
+    value: TimingValue
 
 
 def bound_chain(
@@ -73,12 +81,11 @@ def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: F
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
         # Only the bound: the three other aims would each cost a graph of their own, and rules need none of them.
-        path_set = _paths_for_aim(network, regions, "bound") if regions else None
-        path = next(path_set.best_paths(), None) if path_set else None
-        if path_set is not None and path is not None:
-            bound = _bound_path_set(network, path_set, path, "bound")
+        extreme_path = _find_extreme_path(network, regions, "bound")
+        if extreme_path is not None:
+            view, path, bound = extreme_path
             if judge_deadline(bound, TimingValue((1 - margin) * asked_chain.deadline.value)) == "missed":
-                yield LateChain(asked_chain, bound, build_terms(network, path))
+                yield LateChain(asked_chain, bound, build_terms(view, path))
 
 
 def find_paths_between(
@@ -109,7 +116,7 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
     name = network.names[path.start]
     start_delay = steps.start_delay(name)
     chain_terms = [
-        ChainTerm(name, start_delay.value, steps.response_value(name), ZERO_VALUE, start_delay.why, start_delay.at)
+        ChainTerm(name, start_delay.value, network.start_response(name), ZERO_VALUE, start_delay.why, start_delay.at)
     ]
     for arc in (network.arcs[arc_index] for arc_index in path.arcs):
         step_delay = steps.sampling_delay(arc)
@@ -117,7 +124,7 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
             ChainTerm(
                 arc.target,
                 step_delay.value,
-                steps.response_value(arc.target),
+                network.step_response(arc),
                 steps.link_latency(arc),
                 step_delay.why,
                 step_delay.at,
@@ -134,9 +141,8 @@ def _build_result(
 ) -> ChainResult:
     """Return all figures of a chain, with the terms of its worst path; without terms where there is no path."""
     deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
-    path_set = _paths_for_aim(network, regions, "bound") if regions else None
-    path = next(path_set.best_paths(), None) if path_set else None
-    if asked_chain.unresolved or path_set is None or path is None:
+    extreme_path = _find_extreme_path(network, regions, "bound")
+    if asked_chain.unresolved or extreme_path is None:
         waypoint_ids = tuple(point.id for point in asked_chain.through)
         no_bound = (
             _unresolved_value(asked_chain.unresolved)
@@ -144,11 +150,12 @@ def _build_result(
             else _unconnected_value(network, asked_chain, chain_points)
         )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
-    bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
+    view, path, path_bound = extreme_path
+    bound = _note_event_start(network, path, path_bound)
     return ChainResult(
         id=asked_chain.id,
         through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
-        terms=build_terms(network, path),
+        terms=build_terms(view, path),
         bound=bound,
         best=_extreme_value(network, regions, "best"),
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
@@ -226,9 +233,29 @@ def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRe
 
 def _extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
     """Return the extreme figure of a route for an aim."""
-    path_set = _paths_for_aim(network, regions, aim)
-    path = next(path_set.best_paths(), None)
-    return _bound_path_set(network, path_set, path, aim) if path else UNKNOWN_VALUE
+    extreme_path = _find_extreme_path(network, regions, aim)
+    return extreme_path.value if extreme_path else UNKNOWN_VALUE
+
+
+def _find_extreme_path(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
+) -> _ExtremePath | None:
+    """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
+    if not regions:
+        return None
+    extreme_paths: list[_ExtremePath] = []
+    for view in network.list_views() if aim != "best" else (network,):
+        path_set = _paths_for_aim(view, regions, aim)
+        path = next(path_set.best_paths(), None)
+        if path is None:
+            return None
+        extreme_paths.append(_ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
+    return min(extreme_paths, key=lambda extreme_path: _bound_order(extreme_path.value))
+
+
+def _bound_order(bound: TimingValue) -> tuple[bool, bool, Fraction]:
+    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first."""
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0)
 
 
 def _path_sum(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:

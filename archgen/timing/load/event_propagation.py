@@ -12,11 +12,15 @@ from collections.abc import Iterable, Iterator
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.event_models import PropagationState, activation_model
+from archgen.timing.load.cascade_demand import Origin
+from archgen.timing.load.core_responses import InnerCore, prepare_inner_core, solve_inner_core
+from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
 from archgen.timing.load.event_streams import (
     EventStreams,
 )
+from archgen.timing.load.inner_triggers import FiringArc, find_inner_triggers
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
+from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
@@ -59,9 +63,21 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.inner_cores = self._prepare_inner_cores()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         self.successors = self._find_successors()
+
+    def _prepare_inner_cores(self) -> dict[str, InnerCore]:
+        """Return the cores on which activities fire one another, by step."""
+        system = self.state.system
+        inner_cores: dict[str, InnerCore] = {}
+        for step, resource in self.resources.items():
+            inner_triggers = find_inner_triggers(system, self.state.triggers, resource)
+            if inner_triggers is not None:
+                inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                self.state.run_arcs.update(find_run_arcs(system, inner_triggers))
+        return inner_cores
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -81,7 +97,12 @@ class _Propagation:
         for step, resource in self.resources.items():
             successors[step] += (step,) if resource.cores > 1 else ()  # what is carried in depends on responses
         for name in system.activities:
-            successors[name] += self.disturbed_resources.get(name, ())
+            successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
+        for step, inner_core in self.inner_cores.items():
+            for source in dict.fromkeys(inner_core.inner_triggers.outer_sources):
+                successors[source].append(step)
+                for source_step in self.resources_of.get(source, ()):
+                    successors[source_step].append(step)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
@@ -90,6 +111,11 @@ class _Propagation:
                     for step in self.resources_of.get(arc.source, ()):
                         successors[step].append(name)
         return successors
+
+    def _rests_on(self, step: str, name: str) -> bool:
+        """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
+        inner_core = self.inner_cores.get(step)
+        return inner_core is None or name not in inner_core.inner_triggers.inner_arcs
 
     def _trigger_arcs(self, name: str) -> Iterator[Arc]:
         """Yield the arcs on which an activity's event model rests."""
@@ -140,6 +166,8 @@ class _Propagation:
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
+        if step in self.inner_cores:
+            return self._update_inner_core(step)
         if step in self.resources:
             new_responses, self.previous_threads[step] = find_responses(
                 state.system,
@@ -159,6 +187,22 @@ class _Propagation:
         if step not in self.resources_of:
             state.responses[step] = find_dedicated_response(state.system, step, state.event_models, self.budget)
         return True
+
+    def _update_inner_core(self, step: str) -> bool:
+        """Find the responses of a core on which activities fire one another, and return whether anything changed."""
+        state = self.state
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            return state.event_models[str(origin.key)] if entry_arc is None else arriving_model(state, entry_arc.arc)
+
+        new_responses, new_ways = solve_inner_core(self.inner_cores[step], find_model, self.budget)
+        changed = any(
+            _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
+            for name, response in new_responses.items()
+        )
+        state.responses.update(new_responses)
+        state.ways_to.update(new_ways)
+        return changed
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
 
-from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime
+from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
@@ -57,6 +58,17 @@ def _build_response_time(
         worst_response.tier,
         (Reason(_TIER_SENTENCES[worst_response.tier], span, sentence_arguments),),
     )
+
+
+def build_run_responses(state: PropagationState, responses: Mapping[str, ResponseTime]) -> dict[str, RunResponse]:
+    """Return how long runs take, for each activity to which one leads from another of its core."""
+    runs: dict[str, RunResponse] = {}
+    for name, ways in state.ways_to.items():
+        delays = [way.delay for way in ways if way.delay is not None]
+        arcs = state.run_arcs.get(name, ())
+        if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
+            runs[name] = RunResponse(replace(responses[name].worst, value=max(delays) * state.system.tick), arcs)
+    return runs
 
 
 def _cores_text(resource: ProcessingResource | None) -> str:
