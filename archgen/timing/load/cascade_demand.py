@@ -230,16 +230,17 @@ class CascadeDemand:
     def share(self) -> Fraction:
         """Return the share of a core that all this takes in the long run; what is unknown of it counts as nothing."""
         return sum_fractions(
-            [Fraction(0), *(volume * self._rate_of(origin) for origin, volume in self.level.volumes.items() if volume)]
+            [Fraction(0), *(volume * self.rate_of(origin) for origin, volume in self.level.volumes.items() if volume)]
         )
 
-    def _rate_of(self, origin: Origin) -> Fraction:
+    def rate_of(self, origin: Origin) -> Fraction:
+        """Return the most events of an origin per tick in the long run; 0 where that is not known."""
         rate = self._rates.get(origin, None if origin.kind == "gate" else Fraction(0))
         if rate is None:
             rule = self.level.gate_rules[int(origin.key)]
             rate = rule.limit_rate(
                 [
-                    sum_fractions([Fraction(0), *(self._rate_of(each) * number for each, number in inputs.items())])
+                    sum_fractions([Fraction(0), *(self.rate_of(each) * number for each, number in inputs.items())])
                     for inputs in rule.inputs
                 ]
             )

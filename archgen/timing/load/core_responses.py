@@ -245,8 +245,8 @@ class _CoreSolver:
         """
         busy_period = bound.busy_period or 0
         ways = self.core.ways_to[name]
-        if any(way.entry.kind == "activity" and way.entry.key == name and not self._enters(name) for way in ways):
-            return busy_period  # a gate: how its events follow one another is not known here
+        if any(way.entry.kind == "activity" and not self._enters(str(way.entry.key)) for way in ways):
+            return busy_period  # behind a gate: how its events follow one another is not known here
         if not self.core.system.activities[name].wcet or not self._all_at_level(ways, name):
             return busy_period
         streams = tuple(

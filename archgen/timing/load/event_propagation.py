@@ -21,8 +21,9 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.inner_triggers import FiringArc, find_inner_triggers
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.shared_core_responses import SharedCores, prepare_shared_cores, solve_shared_cores
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
-from archgen.timing.system.core_placement import ProcessingResource, find_resources
+from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
@@ -53,7 +54,8 @@ class _Propagation:
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
-        for index, resource in enumerate(resource_list):
+        divided_resources = (part for resource in resource_list for part in divide_resource(state.system, resource))
+        for index, resource in enumerate(divided_resources):
             # Resources get keys that no activity has: both are steps of one graph.
             key = f"{index} {resource.id}"
             self.resources[key] = resource
@@ -68,14 +70,15 @@ class _Propagation:
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         self.successors = self._find_successors()
 
-    def _prepare_inner_cores(self) -> dict[str, InnerCore]:
+    def _prepare_inner_cores(self) -> dict[str, InnerCore | SharedCores]:
         """Return the cores on which activities fire one another, by step."""
         system = self.state.system
-        inner_cores: dict[str, InnerCore] = {}
+        inner_cores: dict[str, InnerCore | SharedCores] = {}
         for step, resource in self.resources.items():
             inner_triggers = find_inner_triggers(system, self.state.triggers, resource)
             if inner_triggers is not None:
-                inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                prepare_cores = prepare_inner_core if resource.cores == 1 else prepare_shared_cores
+                inner_cores[step] = prepare_cores(system, resource, inner_triggers)
                 self.state.run_arcs.update(find_run_arcs(system, inner_triggers))
         return inner_cores
 
@@ -95,7 +98,11 @@ class _Propagation:
         system, triggers = self.state.system, self.state.triggers
         successors: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
         for step, resource in self.resources.items():
-            successors[step] += (step,) if resource.cores > 1 else ()  # what is carried in depends on responses
+            # What is carried in depends on responses.
+            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_cores else ()
+            for name in (name for unit in resource.foreign_units for name in unit):
+                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
+                    successors[foreign_step].append(step)
         for name in system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
         for step, inner_core in self.inner_cores.items():
@@ -195,7 +202,12 @@ class _Propagation:
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             return state.event_models[str(origin.key)] if entry_arc is None else arriving_model(state, entry_arc.arc)
 
-        new_responses, new_ways = solve_inner_core(self.inner_cores[step], find_model, self.budget)
+        cores = self.inner_cores[step]
+        new_responses, new_ways = (
+            solve_inner_core(cores, find_model, self.budget)
+            if isinstance(cores, InnerCore)
+            else solve_shared_cores(cores, find_model, state.responses, self.budget)
+        )
         changed = any(
             _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
             for name, response in new_responses.items()

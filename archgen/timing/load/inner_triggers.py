@@ -1,4 +1,4 @@
-"""The triggers inside one core: what fires what without anything between them that takes time.
+"""The triggers inside a core, or cores that share their work: what fires what without anything between them that takes time.
 
 An event that fires an activity of a core, and what that fires there in turn, are one amount of work: all of it comes with
 the event, so that none of it has a jitter of its own. What comes from other cores, over a link or out of a wait is an
@@ -55,18 +55,23 @@ class InnerTriggers:
 def find_inner_triggers(
     system: TimingSystem, triggers: TriggerGraph, resource: ProcessingResource
 ) -> InnerTriggers | None:
-    """Return the triggers inside a core; None where there are none, or where several cores work side by side."""
-    if resource.cores > 1 or resource.joined:
+    """Return the triggers inside a resource; None where cores are joined, or one core has no trigger inside."""
+    if resource.joined:
         return None
     members = dict.fromkeys(resource.members)
-    fired_ids = [name for name in members if _is_fired_by_arcs(system, triggers, name)]
-    arcs_into = {name: tuple(_firing_arcs(system, triggers, name)) for name in fired_ids}
+    arcs_into = {
+        name: tuple(_firing_arcs(system, triggers, name))
+        for name in members
+        if _is_fired_by_arcs(system, triggers, name)
+        # While several cores work, what has come to a gate is never known: its own event model says what leaves it.
+        and (resource.cores == 1 or not _is_gate(system, triggers, name))
+    }
     successors: dict[str, list[str]] = {name: [] for name in members}
     for name, firing_arcs in arcs_into.items():
         for firing_arc in firing_arcs:
             if _takes_no_time(system, firing_arc.arc, members):
                 successors[firing_arc.arc.source].append(name)
-    if not any(successors.values()):
+    if resource.cores == 1 and not any(successors.values()):
         return None
     components = find_strong_components(members, successors.__getitem__)
     # Events that go round have no last one: their own event models, found by repetition, say how many there are.
@@ -74,6 +79,14 @@ def find_inner_triggers(
     return _build_inner_triggers(
         system, triggers, tuple(name for ring in components for name in ring), arcs_into, ring_ids
     )
+
+
+def _is_gate(system: TimingSystem, triggers: TriggerGraph, name: str) -> bool:
+    """Whether not each event that arrives at an activity fires it."""
+    activity = system.activities[name]
+    if activity.every > 1 or activity.throttle or len(_needed_inputs(system, triggers, name)) > 1:
+        return True
+    return any(firing_arc.calls.denominator != 1 for firing_arc in _firing_arcs(system, triggers, name))
 
 
 def _build_inner_triggers(
