@@ -10,17 +10,18 @@ t0: at most m - 1 threads had work then, and each pending cascade waits for one 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from heapq import nlargest
 from typing import NamedTuple, TypeVar
 
 from archgen.frozen import dataclass
+from archgen.timing.analysis import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.cascade_demand import CascadeDemand, LevelCascades, Origin, build_level_cascades, number_arcs
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals, streams_of_calls
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, UNBOUNDED_CAUSE, WorstResponse
@@ -85,24 +86,33 @@ def _find_crowds(system: TimingSystem, resource: ProcessingResource) -> dict[str
     }
 
 
-class _Lane(NamedTuple):
-    """What one thread, or the threads of one container, are asked for: work by origin in ticks, and the share of a core."""
+class _Job(NamedTuple):
+    """What each event of an origin asks of a thread on one way: the work of the way's last step, in ticks."""
 
-    works: Mapping[Origin, int]
-    share: Fraction
+    key: tuple[str, int]
+    origin: Origin
+    work: int
+    unit: ThreadUnit
+    steps: tuple[str, ...]
 
 
 class _Path(NamedTuple):
-    """What counts for some steps: their own time, their threads with how many there are, and all that works beside them.
+    """What counts for some steps: their own time, and the work in their threads and beside them, by its place in the jobs.
 
-    Nothing of the `inner_origins` is pending where nothing waits in the steps' own threads.
+    `own_jobs` says of each job in the steps' threads which way leads to it from other threads: what is pending of it can
+    only be on that way. `crowds` are the jobs of each container whose threads the steps wait for, with the threads' number.
     """
 
     cost: int
-    own_lanes: list[tuple[_Lane, int]]
-    inner_origins: frozenset[Origin]
-    other_lanes: list[_Lane]
-    waiting_lanes: list[_Lane]
+    own_jobs: list[tuple[int, tuple[str, int] | None]]
+    crowds: list[tuple[list[int], int]]
+    other_lanes: list[list[int]]
+    other_jobs: frozenset[int]
+    waiting_lanes: list[frozenset[Origin]]
+
+
+_LastJobs = tuple[str, int, Sequence[tuple[Origin, int]]]
+"""The last step of a path, which of its activations is looked at, and the entries that lead to it, with how many each."""
 
 
 def solve_shared_cores(
@@ -137,57 +147,50 @@ class _SharedCoreSolver:
         self.budget = budget
         self.core_count = cores.resource.cores
         self.volumes = {origin: volume for origin, volume in cores.cascades.volumes.items() if volume}
-        self.lane_of_unit = {
-            unit: self._build_lane(unit) for unit in (*cores.resource.units, *cores.resource.foreign_units)
+        self.jobs = list(self._list_jobs())
+        self.job_numbers: dict[ThreadUnit, list[int]] = {
+            unit: [] for unit in (*cores.resource.units, *cores.resource.foreign_units)
         }
-        self.crowd_lanes = self._build_crowd_lanes()
-        self.units_of_origin: dict[Origin, set[ThreadUnit]] = {}
-        for unit, lane in self.lane_of_unit.items():
-            for origin in lane.works:
-                self.units_of_origin.setdefault(origin, set()).add(unit)
+        for number, job in enumerate(self.jobs):
+            self.job_numbers[job.unit].append(number)
         self.paths: dict[tuple[str, ...], _Path] = {}
-        self.pending_times: dict[Origin, int] = {}
+        self.delays: dict[tuple[str, int], int] = {}
         self.step_responses: dict[str, int] = {}
         self.whole_ways: set[tuple[str, int]] = set()
 
-    def _build_crowd_lanes(self) -> dict[str, _Lane]:
-        """Return the lanes of containers whose members wait for one another's threads."""
-        names_by_container: dict[str, list[str]] = {}
-        for name, (container, _) in self.cores.crowd_of.items():
-            names_by_container.setdefault(container, []).append(name)
-        return {container: self._build_lane(names) for container, names in names_by_container.items()}
-
-    def _build_lane(self, names: Iterable[str]) -> _Lane:
-        works: dict[Origin, int] = {}
-        for name in names:
+    def _list_jobs(self) -> Iterator[_Job]:
+        for name, ways in self.cores.ways_to.items():
             cost = self.cores.system.activities[name].wcet
-            for origin, multiplicity in self.cores.cascades.activations[name].items() if cost else ():
-                works[origin] = works.get(origin, 0) + (cost or 0) * multiplicity
-        share = sum_fractions([Fraction(0), *(self.demand.rate_of(origin) * work for origin, work in works.items())])
-        return _Lane(works, share)
+            for number, way in enumerate(ways):
+                if cost and way.entry in self.volumes:
+                    unit = self.cores.unit_of[name]
+                    yield _Job((name, number), way.entry, cost * way.multiplicity, unit, way.steps)
+        for name in self.cores.foreign_ids:
+            origin = Origin("activity", name)
+            if origin in self.volumes:
+                cost = self.cores.system.activities[name].wcet or 0
+                yield _Job((name, 0), origin, cost, self.cores.unit_of[name], (name,))
 
     def solve(self) -> CoreResponses:
         """Find the responses of all runs together, from below, and those of the activities."""
         cause = self._find_common_cause()
         if cause is not None:
             return self._give_up(cause)
-        self.pending_times = dict.fromkeys(self.volumes, 0)
+        self.delays = {job.key: 0 for job in self.jobs}
         for name in self.cores.foreign_ids:
-            origin = Origin("activity", name)
-            if origin in self.volumes:
-                self.pending_times[origin] = self.known_responses[name].value or 0
-        delays: dict[tuple[str, int], int] = {}
+            self.delays[name, 0] = self.known_responses[name].value or 0
         try:
             for _ in range(_MAX_SWEEPS):
-                if not self._sweep_ways(delays):
-                    return self._build_responses(delays)
+                if not self._sweep_ways():
+                    return self._build_responses()
         except DivergedError:
             pass
         return self._give_up(DIVERGED_CAUSE)
 
     def _find_common_cause(self) -> UnknownCause | None:
         """Return why nothing is known of any response here, None where all is well."""
-        if self.demand.share() >= self.core_count or any(lane.share >= 1 for lane in self.lane_of_unit.values()):
+        lane_shares = {unit: self._share_of(numbers) for unit, numbers in self.job_numbers.items()}
+        if self.demand.share() >= self.core_count or any(share >= 1 for share in lane_shares.values()):
             return OVERLOAD_CAUSE
         unknown_costs = [
             UnknownCause((name,))
@@ -200,57 +203,113 @@ class _SharedCoreSolver:
         if any(response is not None and response.value is None for response in foreign_responses):
             return UNBOUNDED_CAUSE
         # What has no bound may wait in any amount, and comes in the way of all others at last.
-        if any(self._fills_core((name,)) for name in self.cores.inner_triggers.order):
+        if any(self._fills_core((name,), lane_shares) for name in self.cores.inner_triggers.order):
             return UNBOUNDED_CAUSE
         self.whole_ways = {
             (name, number)
             for name, ways in self.cores.ways_to.items()
             for number, way in enumerate(ways)
-            if len(way.steps) > 1 and not self._fills_core(way.steps)
+            if len(way.steps) > 1 and not self._fills_core(way.steps, lane_shares)
         }
         return None
 
-    def _fills_core(self, steps: tuple[str, ...]) -> bool:
+    def _share_of(self, job_numbers: Iterable[int]) -> Fraction:
+        """Return the share of a core that some jobs take in the long run."""
+        jobs = [self.jobs[number] for number in job_numbers]
+        return sum_fractions([Fraction(0), *(self.demand.rate_of(job.origin) * job.work for job in jobs)])
+
+    def _fills_core(self, steps: tuple[str, ...], lane_shares: Mapping[ThreadUnit, Fraction]) -> bool:
         """Whether the threads of some steps, and what keeps all cores busy beside them, fill a core in the long run."""
         path = self._look_at_path(steps)
-        own_share = sum_fractions([Fraction(0), *(lane.share / divisor for lane, divisor in path.own_lanes)])
-        other_shares = [lane.share for lane in path.other_lanes]
+        own_units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
+        own_share = sum_fractions(
+            [
+                *(lane_shares[unit] for unit in own_units),
+                *(self._share_of(numbers) / threads for numbers, threads in path.crowds),
+            ]
+        )
+        other_shares = [share for unit, share in lane_shares.items() if unit not in own_units]
         # Most are far from it, as the plain sum says.
         if own_share + sum_fractions([Fraction(0), *other_shares]) / self.core_count < 1:
             return False
         numerator, denominator = _find_blocked_time(other_shares, Fraction(0), self.core_count)
         return own_share + numerator / denominator >= 1
 
-    def _sweep_ways(self, delays: dict[tuple[str, int], int]) -> bool:
-        """Find the delays of all ways anew for what may be pending now, and return whether that grew."""
+    def _sweep_ways(self) -> bool:
+        """Find the delays of all ways anew for what may be pending now, and return whether one grew."""
         spend = self.budget.start_search()
         delays_by_steps: dict[tuple[Origin, tuple[str, ...]], int] = {}
-        grown = False
+        has_grown = False
         for name in self.cores.inner_triggers.order:
-            step_response = self.step_responses[name] = self._find_delay(
-                (name,), self.step_responses.get(name, 0), spend
-            )
-            for number, way in enumerate(self.cores.ways_to[name]):
-                delay = step_response
+            ways = self.cores.ways_to[name]
+            declared_response = self.cores.system.activities[name].response
+            response = self._find_delay((name,), ways, spend) - min(way.best_before for way in ways)
+            if declared_response is not None:
+                response = min(response, declared_response)
+            self.step_responses[name] = response
+            for number, way in enumerate(ways):
+                delay = response
                 if len(way.steps) > 1:
                     delay += delays_by_steps[way.entry, way.steps[:-1]]
                     if (name, number) in self.whole_ways:
-                        delay = self._find_delay(way.steps, delays.get((name, number), 0), spend, delay)
-                delays[name, number] = delays_by_steps[way.entry, way.steps] = delay
-                if delay > self.pending_times.get(way.entry, delay):
-                    self.pending_times[way.entry] = delay
-                    grown = True
-        return grown
+                        delay = self._find_delay(way.steps, ways, spend, delay)
+                has_grown |= delay > self.delays.get((name, number), 0)
+                self.delays[name, number] = delays_by_steps[way.entry, way.steps] = delay
+        return has_grown
 
     def _find_delay(
-        self, steps: tuple[str, ...], start: int, spend: Callable[[int], None], limit: int | None = None
+        self,
+        steps: tuple[str, ...],
+        ways: Sequence[EntryWay],
+        spend: Callable[[int], None],
+        limit: int | None = None,
     ) -> int:
-        """Return the least window in which some steps are sure to be done, or `limit` where it is not less."""
+        """Return how long some steps take at most from the event on, or `limit` where that is not less.
+
+        `ways` lead to the last step. Where it has a thread of its own, each activation of it is looked at: the n-th
+        comes no sooner than the n-th event that leads to it.
+        """
         path = self._look_at_path(steps)
-        window = max(start, path.cost, 1)
+        window = max(path.cost, 1)
+        entries = [(way.entry, way.multiplicity) for way in ways]
+        is_counted = (
+            len(self.cores.unit_of[steps[-1]]) == 1
+            and self.cores.system.activities[steps[-1]].wcet
+            and all(origin in self.volumes for origin, _ in entries)
+            and (len(steps) == 1 or len(ways) == 1)
+        )
+        if not is_counted:
+            return self._find_window(path, window, None, spend, limit)
+        streams = tuple(
+            stream
+            for origin, multiplicity in entries
+            for stream in streams_of_calls(self.demand.streams_of(origin), Fraction(multiplicity))
+        )
+        arrival_times = earliest_arrivals(streams)
+        arrival, longest, count = next(arrival_times, 0), 0, 0
+        while True:
+            count += 1
+            next_arrival = next(arrival_times, None)
+            window = self._find_window(
+                path, window, (steps[-1], count, entries), spend, None if limit is None else arrival + limit
+            )
+            longest = max(longest, window - arrival)
+            if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
+                return longest
+            arrival = next_arrival
+
+    def _find_window(
+        self,
+        path: _Path,
+        window: int,
+        last_jobs: _LastJobs | None,
+        spend: Callable[[int], None],
+        limit: int | None,
+    ) -> int:
+        """Return the least window in which a path is sure to be done, or `limit` where it is not less."""
         while limit is None or window < limit:
-            spend(4 * len(self.volumes) + 1)
-            needed = self._time_needed(path, window)
+            spend(2 * len(self.volumes) + 2 * len(self.jobs) + 1)
+            needed = self._time_needed(path, window, last_jobs)
             if needed <= window:
                 return needed if window == 1 else window
             window = needed
@@ -260,91 +319,157 @@ class _SharedCoreSolver:
         """Return what counts for some steps."""
         path = self.paths.get(steps)
         if path is None:
-            units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
-            crowds = dict.fromkeys(self.cores.crowd_of[step] for step in steps if step in self.cores.crowd_of)
-            other_lanes = {unit: lane for unit, lane in self.lane_of_unit.items() if unit not in units}
-            path = self.paths[steps] = _Path(
-                sum(self.cores.system.activities[step].wcet or 0 for step in steps),
-                [
-                    *((self.lane_of_unit[unit], 1) for unit in units),
-                    *((self.crowd_lanes[name], min(threads, self.core_count)) for name, threads in crowds),
-                ],
-                frozenset(
-                    origin for origin, origin_units in self.units_of_origin.items() if origin_units <= units.keys()
-                ),
-                list(other_lanes.values()),
-                [
-                    *(lane for unit, lane in other_lanes.items() if self._takes_core(unit)),
-                    *self.crowd_lanes.values(),
-                ],
-            )
+            path = self.paths[steps] = self._build_path(steps)
         return path
 
-    def _takes_core(self, unit: ThreadUnit) -> bool:
-        """Whether a thread takes a core that is idle as soon as it has work: it waits for no other thread, and no pin."""
-        return unit[0] not in self.cores.crowd_of and unit[0] not in self.cores.foreign_ids
+    def _build_path(self, steps: tuple[str, ...]) -> _Path:
+        units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
+        crowds = dict.fromkeys(self.cores.crowd_of[step] for step in steps if step in self.cores.crowd_of)
+        other_units = [unit for unit in self.job_numbers if unit not in units]
+        inner_origins = set(self.volumes).difference(job.origin for job in self.jobs if job.unit not in units)
+        return _Path(
+            sum(self.cores.system.activities[step].wcet or 0 for step in steps),
+            [
+                (number, self._find_way_before(self.jobs[number], units))
+                for unit in units
+                for number in self.job_numbers[unit]
+            ],
+            [
+                (
+                    [
+                        number
+                        for number, job in enumerate(self.jobs)
+                        if self.cores.crowd_of.get(job.key[0]) == (container, threads)
+                    ],
+                    min(threads, self.core_count),
+                )
+                for container, threads in crowds
+            ],
+            [self.job_numbers[unit] for unit in other_units],
+            frozenset(number for number, job in enumerate(self.jobs) if job.origin not in inner_origins),
+            self._list_waiting_lanes(other_units),
+        )
 
-    def _time_needed(self, path: _Path, window: int) -> int:
+    def _find_way_before(self, job: _Job, units: Mapping[ThreadUnit, None]) -> tuple[str, int] | None:
+        """Return the way to the step before a job, where that leads through other threads than these, else None."""
+        if all(self.cores.unit_of[step] in units for step in job.steps[:-1]):
+            return None
+        before = job.steps[-2]
+        return next(
+            (before, number)
+            for number, way in enumerate(self.cores.ways_to[before])
+            if way.entry == job.origin and way.steps == job.steps[:-1]
+        )
+
+    def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> list[frozenset[Origin]]:
+        """Return what waits in each thread, or container, that takes an idle core as soon as it has work."""
+        origins_by_lane: dict[object, set[Origin]] = {}
+        for unit in units:
+            if unit[0] not in self.cores.foreign_ids:
+                lane = self.cores.crowd_of.get(unit[0], unit)
+                origins_by_lane.setdefault(lane, set()).update(
+                    self.jobs[number].origin for number in self.job_numbers[unit]
+                )
+        return [frozenset(origins) for origins in origins_by_lane.values()]
+
+    def _time_needed(self, path: _Path, window: int, last_jobs: _LastJobs | None) -> int:
         """Return how long all takes that may come in the way of a path in a window: A + B."""
-        # The way's own time at least, also where it works only at the start and so has no events.
-        path_work = max(self._path_work(path, window), path.cost)
         arrivals = {origin: max_arrivals(self.demand.streams_of(origin), window) for origin in self.volumes}
-        lane_works = [
-            sum([arrivals[origin] * work for origin, work in lane.works.items()]) for lane in path.other_lanes
-        ]
-        pending_work = self._pending_work(path, window, arrivals)
-        # The plain quotient is a bound as well, and the exact one where no thread has more work than it.
-        blocked_time = -(-(sum(lane_works) + pending_work) // self.core_count)
-        if lane_works and max(lane_works) > blocked_time:
-            numerator, denominator = _find_blocked_time(lane_works, pending_work, self.core_count)
-            blocked_time = -(-numerator // denominator)
-        return path_work + blocked_time
+        # The way's own time at least, also where it works only at the start and so has no events.
+        path_work = max(self._path_work(path, window, arrivals, last_jobs), path.cost)
+        return path_work + self._blocked_time(path, window, arrivals)
 
-    def _path_work(self, path: _Path, window: int) -> int:
+    def _count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
+        """Return how many events may have come up to `delay` before a window, beside those in it."""
+        return max_arrivals(self.demand.streams_of(origin), window + delay) - arrivals[origin] if delay else 0
+
+    def _path_work(self, path: _Path, window: int, arrivals: Mapping[Origin, int], last_jobs: _LastJobs | None) -> int:
         """Return the work of the threads of a path in a window, as the time for which they can hold it up."""
         total = 0
-        for lane, divisor in path.own_lanes:
-            lane_work = 0
-            for origin, work in lane.works.items():
-                # At the start of the window nothing waits in the threads of the path themselves.
-                pending_time = 0 if divisor == 1 and origin in path.inner_origins else self.pending_times[origin]
-                lane_work += work * max_arrivals(self.demand.streams_of(origin), window + pending_time)
-            total -= -lane_work // divisor
-        return total
+        for number, way_before in path.own_jobs:
+            job = self.jobs[number]
+            # At the start of the window nothing waits in the threads of the path themselves.
+            delay = self.delays.get(way_before, 0) if way_before else 0
+            total += job.work * (arrivals[job.origin] + self._count_pending(job.origin, window, delay, arrivals))
+        for numbers, threads in path.crowds:
+            crowd_work = 0
+            for job in (self.jobs[number] for number in numbers):
+                pending = self._count_pending(job.origin, window, self.delays[job.key], arrivals)
+                crowd_work += job.work * (arrivals[job.origin] + pending)
+            total -= -crowd_work // threads
+        if last_jobs is None:
+            return total
+        name, count, entries = last_jobs
+        all_jobs = sum([arrivals[origin] * multiplicity for origin, multiplicity in entries])
+        # Later activations of the last step, in its own thread, are none of this one's.
+        return total - max(0, all_jobs - count) * (self.cores.system.activities[name].wcet or 0)
 
-    def _pending_work(self, path: _Path, window: int, arrivals: Mapping[Origin, int]) -> int:
-        """Return how much may have been pending before a window, while a core was idle.
+    def _blocked_time(self, path: _Path, window: int, arrivals: Mapping[Origin, int]) -> int:
+        """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
 
-        That is what waits for m - 1 threads, and all that is foreign, for it may have waited for a core of its own.
+        Pending, while a core was idle, is what waits for m - 1 threads, and all that is foreign, for that may have
+        waited for a core of its own.
         """
-        pending: dict[Origin, int] = {}
-        for origin, volume in self.volumes.items():
-            if origin not in path.inner_origins:
-                streams = self.demand.streams_of(origin)
-                carried = max_arrivals(streams, window + self.pending_times[origin]) - arrivals[origin]
-                if carried:
-                    pending[origin] = volume * carried
-        if not pending:
-            return 0
-        foreign_work = sum([work for origin, work in pending.items() if origin.key in self.cores.foreign_ids])
-        lane_works = [sum([pending.get(origin, 0) for origin in lane.works]) for lane in path.waiting_lanes]
-        return min(sum(nlargest(self.core_count - 1, lane_works)) + foreign_work, sum(pending.values()))
+        jobs = self.jobs
+        pending_works = {
+            number: jobs[number].work * count
+            for number in path.other_jobs
+            if (count := self._count_pending(jobs[number].origin, window, self.delays[jobs[number].key], arrivals))
+        }
+        lane_works = [
+            sum([jobs[number].work * arrivals[jobs[number].origin] for number in numbers])
+            for numbers in path.other_lanes
+        ]
+        most_pending = self._most_pending(path, pending_works)
+        blocked_time = self._divide_work(lane_works, most_pending)
+        if most_pending:
+            # Or all that may be pending of each thread: less, where a single one has most of it.
+            all_works = [
+                work + sum([pending_works.get(number, 0) for number in numbers])
+                for work, numbers in zip(lane_works, path.other_lanes, strict=True)
+            ]
+            blocked_time = min(blocked_time, self._divide_work(all_works, 0))
+        return blocked_time
 
-    def _build_responses(self, delays: Mapping[tuple[str, int], int]) -> CoreResponses:
+    def _most_pending(self, path: _Path, pending_works: Mapping[int, int]) -> int:
+        """Return the most work that may have been pending while a core was idle."""
+        work_by_origin: dict[Origin, int] = {}
+        foreign_work = 0
+        for number, work in pending_works.items():
+            job = self.jobs[number]
+            if job.key[0] in self.cores.foreign_ids:
+                foreign_work += work
+            else:
+                work_by_origin[job.origin] = work_by_origin.get(job.origin, 0) + work
+        waiting_works = [
+            sum([work for origin, work in work_by_origin.items() if origin in origins])
+            for origins in path.waiting_lanes
+        ]
+        return foreign_work + min(sum(nlargest(self.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+
+    def _divide_work(self, lane_works: list[int], pending_work: int) -> int:
+        """Return the longest time for which threads can keep all cores busy, rounded up."""
+        # The plain quotient is the answer where no thread has more work than it.
+        quotient = -(-(sum(lane_works) + pending_work) // self.core_count)
+        if not lane_works or max(lane_works) <= quotient:
+            return quotient
+        numerator, denominator = _find_blocked_time(lane_works, pending_work, self.core_count)
+        return -(-numerator // denominator)
+
+    def _build_responses(self) -> CoreResponses:
         responses: dict[str, WorstResponse] = {}
         ways_to: dict[str, tuple[EntryWay, ...]] = {}
         for name in self.cores.inner_triggers.order:
-            ways = tuple(
-                way._replace(delay=delays[name, number]) for number, way in enumerate(self.cores.ways_to[name])
+            ways = ways_to[name] = tuple(
+                way._replace(delay=self.delays[name, number]) for number, way in enumerate(self.cores.ways_to[name])
             )
             activity = self.cores.system.activities[name]
-            ways_to[name] = ways
-            response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
-            responses[name] = (
-                self._give_up_one(name, UnknownCause())
-                if activity.wcet is None or activity.response is not None
-                else WorstResponse(response, "executor" if len(self.cores.unit_of[name]) > 1 else "cores")
-            )
+            if activity.wcet is None or activity.response is not None:
+                responses[name] = self._give_up_one(name, UnknownCause())
+            else:
+                longest = max((way.delay or 0) - way.best_before for way in ways)
+                tier: ResponseTier = "executor" if len(self.cores.unit_of[name]) > 1 else "cores"
+                responses[name] = WorstResponse(min(self.step_responses[name], longest), tier)
         return CoreResponses(responses, ways_to)
 
     def _give_up(self, cause: UnknownCause) -> CoreResponses:
