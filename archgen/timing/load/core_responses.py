@@ -7,7 +7,7 @@ the least urgent of them. So the busy period of that level bounds them all toget
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 from typing import NamedTuple
@@ -78,18 +78,13 @@ class _LevelBound(NamedTuple):
 
 def prepare_inner_core(system: TimingSystem, resource: ProcessingResource, inner_triggers: InnerTriggers) -> InnerCore:
     """Find the threads of a core, its levels of urgency, and the cascades that count at each."""
-    silent_ids = inner_triggers.silent_ids
-    plain_threads = [_build_plain_thread(system, unit) for unit in (*resource.units, *resource.foreign_units)]
-    event_models: dict[str, EventStreams | UnknownCause] = {
-        name: () if name in silent_ids else UnknownCause() for thread in plain_threads for name in thread.unit
-    }
-    threads = tuple(lower_crowded_threads(system, plain_threads, event_models))
+    threads = rank_threads(system, (*resource.units, *resource.foreign_units), inner_triggers.silent_ids)
     own_threads = threads[: len(resource.units)]
     foreign_ids = [name for thread in threads[len(resource.units) :] for name in thread.unit]
     arc_numbers, entering_arcs = number_arcs(inner_triggers)
     levels = {
         level: build_level_cascades(system, inner_triggers, arc_numbers, _find_level_ids(threads, level), foreign_ids)
-        for level in sorted({thread.lowest_priority for thread in own_threads}, key=_urgency, reverse=True)
+        for level in sorted({thread.lowest_priority for thread in own_threads}, key=urgency_of, reverse=True)
     }
     return InnerCore(
         system,
@@ -102,6 +97,20 @@ def prepare_inner_core(system: TimingSystem, resource: ProcessingResource, inner
     )
 
 
+def rank_threads(
+    system: TimingSystem, units: Iterable[tuple[str, ...]], silent_ids: Collection[str]
+) -> tuple[ThreadWork, ...]:
+    """Return the threads of some units with their priorities alone, as far as they compete with others.
+
+    `silent_ids` are the activities that never work, or only at the start.
+    """
+    plain_threads = [_build_plain_thread(system, unit) for unit in units]
+    event_models: dict[str, EventStreams | UnknownCause] = {
+        name: () if name in silent_ids else UnknownCause() for thread in plain_threads for name in thread.unit
+    }
+    return tuple(lower_crowded_threads(system, plain_threads, event_models))
+
+
 def _build_plain_thread(system: TimingSystem, unit: tuple[str, ...]) -> ThreadWork:
     """Return a thread with its priorities alone: its work is that of the cascades."""
     priorities = [system.activities[name].priority for name in unit]
@@ -111,7 +120,8 @@ def _build_plain_thread(system: TimingSystem, unit: tuple[str, ...]) -> ThreadWo
     return ThreadWork(unit, (), None, lowest, highest, Fraction(0), system.activities[unit[0]].container)
 
 
-def _urgency(level: Priority) -> int:
+def urgency_of(level: Priority) -> int:
+    """Sort key of levels: those without a priority are below all others."""
     return -1 if level is None else level
 
 
@@ -294,7 +304,7 @@ class _CoreSolver:
 
     def _level_of_steps(self, steps: Iterable[str]) -> Priority:
         """Return the level of the least urgent of some steps."""
-        return min((self.core.thread_of[step].lowest_priority for step in steps), key=_urgency)
+        return min((self.core.thread_of[step].lowest_priority for step in steps), key=urgency_of)
 
     def _period_of_steps(self, steps: Iterable[str]) -> int | None:
         """Return the busy period of the level at which all of a run's steps count."""

@@ -20,11 +20,17 @@ from archgen.timing.analysis import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.cascade_demand import CascadeDemand, LevelCascades, Origin, build_level_cascades, number_arcs
-from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.core_responses import CoreResponses, rank_threads, urgency_of
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals, streams_of_calls
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
-from archgen.timing.load.run_ways import EntryWay, find_entry_ways
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, UNBOUNDED_CAUSE, WorstResponse
+from archgen.timing.load.run_ways import EntryWay, Priority, find_entry_ways
+from archgen.timing.load.thread_work import (
+    DIVERGED_CAUSE,
+    OVERLOAD_CAUSE,
+    UNBOUNDED_CAUSE,
+    ThreadWork,
+    WorstResponse,
+)
 from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -49,6 +55,7 @@ class SharedCores:
     unit_of: Mapping[str, ThreadUnit]
     crowd_of: Mapping[str, tuple[str, int]]
     foreign_ids: frozenset[str]
+    threads: Mapping[ThreadUnit, ThreadWork]
 
 
 def prepare_shared_cores(
@@ -68,6 +75,10 @@ def prepare_shared_cores(
         {name: unit for unit in (*resource.units, *resource.foreign_units) for name in unit},
         _find_crowds(system, resource),
         frozenset(foreign_ids),
+        {
+            thread.unit: thread
+            for thread in rank_threads(system, (*resource.units, *resource.foreign_units), inner_triggers.silent_ids)
+        },
     )
 
 
@@ -101,6 +112,8 @@ class _Path(NamedTuple):
 
     `own_jobs` says of each job in the steps' threads which way leads to it from other threads: what is pending of it can
     only be on that way. `crowds` are the jobs of each container whose threads the steps wait for, with the threads' number.
+    Of the other threads only those count that may be as urgent; `less_urgent_ways` are the jobs among theirs that something
+    less urgent leads to, which may have been held up for long.
     """
 
     cost: int
@@ -109,6 +122,7 @@ class _Path(NamedTuple):
     other_lanes: list[list[int]]
     other_jobs: frozenset[int]
     waiting_lanes: list[frozenset[Origin]]
+    less_urgent_ways: frozenset[int]
 
 
 _LastJobs = tuple[str, int, Sequence[tuple[Origin, int]]]
@@ -221,14 +235,13 @@ class _SharedCoreSolver:
     def _fills_core(self, steps: tuple[str, ...], lane_shares: Mapping[ThreadUnit, Fraction]) -> bool:
         """Whether the threads of some steps, and what keeps all cores busy beside them, fill a core in the long run."""
         path = self._look_at_path(steps)
-        own_units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
         own_share = sum_fractions(
             [
-                *(lane_shares[unit] for unit in own_units),
+                *(lane_shares[unit] for unit in dict.fromkeys(self.cores.unit_of[step] for step in steps)),
                 *(self._share_of(numbers) / threads for numbers, threads in path.crowds),
             ]
         )
-        other_shares = [share for unit, share in lane_shares.items() if unit not in own_units]
+        other_shares = [lane_shares[self.jobs[numbers[0]].unit] for numbers in path.other_lanes if numbers]
         # Most are far from it, as the plain sum says.
         if own_share + sum_fractions([Fraction(0), *other_shares]) / self.core_count < 1:
             return False
@@ -324,8 +337,10 @@ class _SharedCoreSolver:
 
     def _build_path(self, steps: tuple[str, ...]) -> _Path:
         units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
+        level = min((self.cores.threads[unit].lowest_priority for unit in units), key=urgency_of)
         crowds = dict.fromkeys(self.cores.crowd_of[step] for step in steps if step in self.cores.crowd_of)
-        other_units = [unit for unit in self.job_numbers if unit not in units]
+        other_units = [unit for unit in self.job_numbers if unit not in units and self._counts_at(unit, level)]
+        other_jobs = [number for unit in other_units for number in self.job_numbers[unit]]
         inner_origins = set(self.volumes).difference(job.origin for job in self.jobs if job.unit not in units)
         return _Path(
             sum(self.cores.system.activities[step].wcet or 0 for step in steps),
@@ -346,9 +361,22 @@ class _SharedCoreSolver:
                 for container, threads in crowds
             ],
             [self.job_numbers[unit] for unit in other_units],
-            frozenset(number for number, job in enumerate(self.jobs) if job.origin not in inner_origins),
+            frozenset(number for number in other_jobs if self.jobs[number].origin not in inner_origins),
             self._list_waiting_lanes(other_units),
+            frozenset(
+                number
+                for number in other_jobs
+                if not all(
+                    self.cores.unit_of[step] in units or self._counts_at(self.cores.unit_of[step], level)
+                    for step in self.jobs[number].steps
+                )
+            ),
         )
+
+    def _counts_at(self, unit: ThreadUnit, level: Priority) -> bool:
+        """Whether a thread may be as urgent as a level."""
+        highest = self.cores.threads[unit].highest_priority
+        return level is None or (highest is not None and highest >= level)
 
     def _find_way_before(self, job: _Job, units: Mapping[ThreadUnit, None]) -> tuple[str, int] | None:
         """Return the way to the step before a job, where that leads through other threads than these, else None."""
@@ -432,12 +460,12 @@ class _SharedCoreSolver:
         return blocked_time
 
     def _most_pending(self, path: _Path, pending_works: Mapping[int, int]) -> int:
-        """Return the most work that may have been pending while a core was idle."""
+        """Return the most work that may have been pending while a core was idle, or busy with what is less urgent."""
         work_by_origin: dict[Origin, int] = {}
         foreign_work = 0
         for number, work in pending_works.items():
             job = self.jobs[number]
-            if job.key[0] in self.cores.foreign_ids:
+            if job.key[0] in self.cores.foreign_ids or number in path.less_urgent_ways:
                 foreign_work += work
             else:
                 work_by_origin[job.origin] = work_by_origin.get(job.origin, 0) + work
