@@ -12,7 +12,7 @@ from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
-from archgen.timing.system.core_placement import find_resources
+from archgen.timing.system.core_placement import divide_resource, find_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -71,7 +71,9 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
     # them.
     system, trigger_graph, state = settle_links(system)
     resource_list = find_resources(system)
-    responses = build_response_times(state, resource_list)
+    responses = build_response_times(
+        state, [part for resource in resource_list for part in divide_resource(system, resource)]
+    )
     rates = find_rates(state, responses)
     edge_context = EdgeContext(state, rates.paces, rates.outputs, responses)
     return Analysis(

@@ -97,19 +97,7 @@ class _Propagation:
         """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
         successors: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
-        for step, resource in self.resources.items():
-            # What is carried in depends on responses.
-            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_cores else ()
-            for name in (name for unit in resource.foreign_units for name in unit):
-                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
-                    successors[foreign_step].append(step)
-        for name in system.activities:
-            successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
-        for step, inner_core in self.inner_cores.items():
-            for source in dict.fromkeys(inner_core.inner_triggers.outer_sources):
-                successors[source].append(step)
-                for source_step in self.resources_of.get(source, ()):
-                    successors[source_step].append(step)
+        self._add_resource_steps(successors)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
@@ -118,6 +106,22 @@ class _Propagation:
                     for step in self.resources_of.get(arc.source, ()):
                         successors[step].append(name)
         return successors
+
+    def _add_resource_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what the responses on each resource rest on."""
+        for step, resource in self.resources.items():
+            # What is carried in depends on responses.
+            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_cores else ()
+            for name in (name for unit in resource.foreign_units for name in unit):
+                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
+                    successors[foreign_step].append(step)
+        for name in self.state.system.activities:
+            successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
+        for step, inner_core in self.inner_cores.items():
+            for source in dict.fromkeys(inner_core.inner_triggers.outer_sources):
+                successors[source].append(step)
+                for source_step in self.resources_of.get(source, ()):
+                    successors[source_step].append(step)
 
     def _rests_on(self, step: str, name: str) -> bool:
         """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
@@ -183,6 +187,9 @@ class _Propagation:
                 state.responses,
                 AnalysisEffort(self.budget, self._stale_activities(step), self.previous_threads.get(step)),
             )
+            new_responses = {
+                name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
+            }
             changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
             state.responses.update(new_responses)
             return changed
@@ -208,6 +215,7 @@ class _Propagation:
             if isinstance(cores, InnerCore)
             else solve_shared_cores(cores, find_model, state.responses, self.budget)
         )
+        new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
         changed = any(
             _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
             for name, response in new_responses.items()
@@ -230,6 +238,13 @@ class _Propagation:
             if previous_models is None
             else frozenset(name for name in current_models if current_models[name] is not previous_models[name])
         )
+
+
+def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
+    """Name the tier of a thread that has one of several cores to itself."""
+    if not resource.undisturbed or response.tier in {"declared", "unknown"}:
+        return response
+    return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 
 
 def _has_changed(old: WorstResponse | None, new: WorstResponse) -> bool:

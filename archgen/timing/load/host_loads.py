@@ -50,13 +50,16 @@ def _build_response_time(
     """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
+    sentence = _TIER_SENTENCES[worst_response.tier]
+    if resource is not None and resource.undisturbed and worst_response.tier == "cores":
+        sentence = "its own work: {0} has no more threads than cores"
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,
         _worst_value(activity, worst_response, tick, resource),
         worst_response.tier,
-        (Reason(_TIER_SENTENCES[worst_response.tier], span, sentence_arguments),),
+        (Reason(sentence, span, sentence_arguments),),
     )
 
 

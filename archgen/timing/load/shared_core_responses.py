@@ -171,6 +171,7 @@ class _SharedCoreSolver:
         self.delays: dict[tuple[str, int], int] = {}
         self.step_responses: dict[str, int] = {}
         self.whole_ways: set[tuple[str, int]] = set()
+        self.cause_of: dict[str, UnknownCause] = {}
 
     def _list_jobs(self) -> Iterator[_Job]:
         for name, ways in self.cores.ways_to.items():
@@ -189,22 +190,33 @@ class _SharedCoreSolver:
         """Find the responses of all runs together, from below, and those of the activities."""
         cause = self._find_common_cause()
         if cause is not None:
-            return self._give_up(cause)
+            self.cause_of = dict.fromkeys(self.cores.inner_triggers.order, cause)
+            return self._build_responses()
+        self._mark_full_threads()
         self.delays = {job.key: 0 for job in self.jobs}
         for name in self.cores.foreign_ids:
             self.delays[name, 0] = self.known_responses[name].value or 0
-        try:
-            for _ in range(_MAX_SWEEPS):
-                if not self._sweep_ways():
-                    return self._build_responses()
-        except DivergedError:
-            pass
-        return self._give_up(DIVERGED_CAUSE)
+        while grown_names := self._repeat_sweeps():
+            # What still grows has no bound that is found, and neither has what it comes in the way of.
+            self._mark_boundless(grown_names, DIVERGED_CAUSE)
+        return self._build_responses()
+
+    def _repeat_sweeps(self) -> list[str]:
+        """Sweep until nothing grows; return what still does where the end is not reached."""
+        grown_names: list[str] = []
+        for _ in range(_MAX_SWEEPS):
+            grown_names = []
+            try:
+                self._sweep_ways(grown_names)
+            except DivergedError:
+                break
+            if not grown_names:
+                break
+        return grown_names
 
     def _find_common_cause(self) -> UnknownCause | None:
         """Return why nothing is known of any response here, None where all is well."""
-        lane_shares = {unit: self._share_of(numbers) for unit, numbers in self.job_numbers.items()}
-        if self.demand.share() >= self.core_count or any(share >= 1 for share in lane_shares.values()):
+        if self.demand.share() >= self.core_count:
             return OVERLOAD_CAUSE
         unknown_costs = [
             UnknownCause((name,))
@@ -213,19 +225,54 @@ class _SharedCoreSolver:
         ]
         if unknown_costs or self.demand.causes:
             return unite_causes((*unknown_costs, *self.demand.causes))
-        foreign_responses = [self.known_responses.get(name) for name in self.cores.foreign_ids]
-        if any(response is not None and response.value is None for response in foreign_responses):
-            return UNBOUNDED_CAUSE
-        # What has no bound may wait in any amount, and comes in the way of all others at last.
-        if any(self._fills_core((name,), lane_shares) for name in self.cores.inner_triggers.order):
-            return UNBOUNDED_CAUSE
+        return None
+
+    def _mark_full_threads(self) -> None:
+        """Mark what has no bound because its thread is busy all the time, and find the ways that can be looked at whole."""
+        shares = {unit: self._share_of(numbers) for unit, numbers in self.job_numbers.items()}
+        for unit in self.cores.resource.units:
+            if shares[unit] >= 1:
+                self._mark_boundless(unit, OVERLOAD_CAUSE)
+        boundless_ids = [
+            name
+            for name in self.cores.foreign_ids
+            if (response := self.known_responses.get(name)) is None or response.value is None
+        ]
+        self._mark_boundless(
+            [*boundless_ids, *(name for name in self.cores.inner_triggers.order if self._fills_core((name,), shares))],
+            UNBOUNDED_CAUSE,
+        )
         self.whole_ways = {
             (name, number)
             for name, ways in self.cores.ways_to.items()
             for number, way in enumerate(ways)
-            if len(way.steps) > 1 and not self._fills_core(way.steps, lane_shares)
+            if len(way.steps) > 1 and not self._fills_core(way.steps, shares)
         }
-        return None
+
+    def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
+        """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""
+        for name in names:
+            self.cause_of.setdefault(name, cause)
+        lasting_cause = UNBOUNDED_CAUSE if cause == OVERLOAD_CAUSE else cause
+        boundless_jobs = {number for number, job in enumerate(self.jobs) if job.key[0] in self.cause_of}
+        has_grown = True
+        while has_grown:
+            has_grown = False
+            for name in self.cores.inner_triggers.order:
+                if name not in self.cause_of and not boundless_jobs.isdisjoint(self._list_disturbing_jobs(name)):
+                    self.cause_of[name] = lasting_cause
+                    boundless_jobs.update(number for number, job in enumerate(self.jobs) if job.key[0] == name)
+                    has_grown = True
+
+    def _list_disturbing_jobs(self, name: str) -> Iterator[int]:
+        """Yield the jobs that come in the way of an activity, and those that lead to it."""
+        path = self._look_at_path((name,))
+        yield from (number for number, _ in path.own_jobs)
+        yield from path.other_jobs
+        for numbers, _ in path.crowds:
+            yield from numbers
+        steps = {step for way in self.cores.ways_to[name] for step in way.steps}
+        yield from (number for number, job in enumerate(self.jobs) if job.key[0] in steps)
 
     def _share_of(self, job_numbers: Iterable[int]) -> Fraction:
         """Return the share of a core that some jobs take in the long run."""
@@ -248,15 +295,17 @@ class _SharedCoreSolver:
         numerator, denominator = _find_blocked_time(other_shares, Fraction(0), self.core_count)
         return own_share + numerator / denominator >= 1
 
-    def _sweep_ways(self) -> bool:
-        """Find the delays of all ways anew for what may be pending now, and return whether one grew."""
+    def _sweep_ways(self, grown_names: list[str]) -> None:
+        """Find the delays of all ways anew for what may be pending now, and note what grew."""
         spend = self.budget.start_search()
         delays_by_steps: dict[tuple[Origin, tuple[str, ...]], int] = {}
-        has_grown = False
         for name in self.cores.inner_triggers.order:
+            if name in self.cause_of:
+                continue
             ways = self.cores.ways_to[name]
             declared_response = self.cores.system.activities[name].response
-            response = self._find_delay((name,), ways, spend) - min(way.best_before for way in ways)
+            # Not less what comes before it at the least: the event may have come before the window.
+            response = self._find_delay((name,), ways, spend)
             if declared_response is not None:
                 response = min(response, declared_response)
             self.step_responses[name] = response
@@ -266,9 +315,9 @@ class _SharedCoreSolver:
                     delay += delays_by_steps[way.entry, way.steps[:-1]]
                     if (name, number) in self.whole_ways:
                         delay = self._find_delay(way.steps, ways, spend, delay)
-                has_grown |= delay > self.delays.get((name, number), 0)
+                if delay > self.delays.get((name, number), 0):
+                    grown_names.append(name)
                 self.delays[name, number] = delays_by_steps[way.entry, way.steps] = delay
-        return has_grown
 
     def _find_delay(
         self,
@@ -339,7 +388,12 @@ class _SharedCoreSolver:
         units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
         level = min((self.cores.threads[unit].lowest_priority for unit in units), key=urgency_of)
         crowds = dict.fromkeys(self.cores.crowd_of[step] for step in steps if step in self.cores.crowd_of)
-        other_units = [unit for unit in self.job_numbers if unit not in units and self._counts_at(unit, level)]
+        # What holds the threads of a container does so k at a time, with k threads: that counts for more than the cores.
+        other_units = [
+            unit
+            for unit in self.job_numbers
+            if unit not in units and self._counts_at(unit, level) and self.cores.crowd_of.get(unit[0]) not in crowds
+        ]
         other_jobs = [number for unit in other_units for number in self.job_numbers[unit]]
         inner_origins = set(self.volumes).difference(job.origin for job in self.jobs if job.unit not in units)
         return _Path(
@@ -354,7 +408,7 @@ class _SharedCoreSolver:
                     [
                         number
                         for number, job in enumerate(self.jobs)
-                        if self.cores.crowd_of.get(job.key[0]) == (container, threads)
+                        if self.cores.crowd_of.get(job.key[0]) == (container, threads) and job.unit not in units
                     ],
                     min(threads, self.core_count),
                 )
@@ -485,34 +539,29 @@ class _SharedCoreSolver:
         return -(-numerator // denominator)
 
     def _build_responses(self) -> CoreResponses:
-        responses: dict[str, WorstResponse] = {}
         ways_to: dict[str, tuple[EntryWay, ...]] = {}
-        for name in self.cores.inner_triggers.order:
-            ways = ways_to[name] = tuple(
-                way._replace(delay=self.delays[name, number]) for number, way in enumerate(self.cores.ways_to[name])
+        for name, ways in self.cores.ways_to.items():
+            ways_to[name] = (
+                ways
+                if name in self.cause_of
+                else tuple(way._replace(delay=self.delays[name, number]) for number, way in enumerate(ways))
             )
-            activity = self.cores.system.activities[name]
-            if activity.wcet is None or activity.response is not None:
-                responses[name] = self._give_up_one(name, UnknownCause())
-            else:
-                longest = max((way.delay or 0) - way.best_before for way in ways)
-                tier: ResponseTier = "executor" if len(self.cores.unit_of[name]) > 1 else "cores"
-                responses[name] = WorstResponse(min(self.step_responses[name], longest), tier)
-        return CoreResponses(responses, ways_to)
-
-    def _give_up(self, cause: UnknownCause) -> CoreResponses:
         return CoreResponses(
-            {name: self._give_up_one(name, cause) for name in self.cores.inner_triggers.order},
-            {name: self.cores.ways_to[name] for name in self.cores.inner_triggers.order},
+            {name: self._build_response(name, ways_to[name]) for name in self.cores.inner_triggers.order}, ways_to
         )
 
-    def _give_up_one(self, name: str, cause: UnknownCause) -> WorstResponse:
+    def _build_response(self, name: str, ways: Sequence[EntryWay]) -> WorstResponse:
         activity = self.cores.system.activities[name]
         if activity.response is not None:
             return WorstResponse(activity.response, "declared")
+        cause = self.cause_of.get(name, UnknownCause())
         if activity.wcet is None:
             return WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), cause)))
-        return WorstResponse(None, "cores", cause)
+        tier: ResponseTier = "executor" if len(self.cores.unit_of[name]) > 1 else "cores"
+        if name in self.cause_of:
+            return WorstResponse(None, tier, cause)
+        longest = max((way.delay or 0) - way.best_before for way in ways)
+        return WorstResponse(min(self.step_responses[name], longest), tier)
 
 
 def _find_blocked_time(lane_works: Sequence[_Amount], pending_work: _Amount, core_count: int) -> tuple[_Amount, int]:

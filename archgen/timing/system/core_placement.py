@@ -32,6 +32,8 @@ class ProcessingResource:
     foreign_units: tuple[ThreadUnit, ...] = ()
     assumptions: tuple[str, ...] = ()
     joined: bool = False
+    undisturbed: bool = False
+    """One thread, of no more threads than there are cores: it always has one to itself."""
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -68,7 +70,7 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
     )
     if is_crowded:
         return (resource,)
-    return (replace(resource, cores=1, units=(unit,)) for unit in resource.units)
+    return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
 
 
 def find_unplaced_containers(system: TimingSystem) -> dict[str, list[Activity]]:
