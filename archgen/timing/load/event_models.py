@@ -162,7 +162,8 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
     response = state.responses[arc.source]
     if response.value is None:
         return _downstream_cause(response.cause)
-    ways = state.ways_to.get(arc.source, ())
+    # What a declared response says goes for its output, whatever may be computed.
+    ways = state.ways_to.get(arc.source, ()) if source.response is None else ()
     if (len(ways) == 1 and len(ways[0].steps) == 1) or any(way.delay is None for way in ways):
         ways = ()
     if not ways:

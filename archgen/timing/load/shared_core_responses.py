@@ -120,7 +120,7 @@ class _Path(NamedTuple):
     own_jobs: list[tuple[int, tuple[str, int] | None]]
     crowds: list[tuple[list[int], int]]
     other_lanes: list[list[int]]
-    other_jobs: frozenset[int]
+    other_jobs: list[int]
     waiting_lanes: list[frozenset[Origin]]
     less_urgent_ways: frozenset[int]
 
@@ -167,6 +167,13 @@ class _SharedCoreSolver:
         }
         for number, job in enumerate(self.jobs):
             self.job_numbers[job.unit].append(number)
+        self.origins_of_unit = {
+            unit: frozenset(self.jobs[number].origin for number in numbers)
+            for unit, numbers in self.job_numbers.items()
+        }
+        self.units_of_origin: dict[Origin, set[ThreadUnit]] = {}
+        for job in self.jobs:
+            self.units_of_origin.setdefault(job.origin, set()).add(job.unit)
         self.paths: dict[tuple[str, ...], _Path] = {}
         self.delays: dict[tuple[str, int], int] = {}
         self.step_responses: dict[str, int] = {}
@@ -307,7 +314,7 @@ class _SharedCoreSolver:
             # Not less what comes before it at the least: the event may have come before the window.
             response = self._find_delay((name,), ways, spend)
             if declared_response is not None:
-                response = min(response, declared_response)
+                response = max(response, declared_response)
             self.step_responses[name] = response
             for number, way in enumerate(ways):
                 delay = response
@@ -387,44 +394,52 @@ class _SharedCoreSolver:
     def _build_path(self, steps: tuple[str, ...]) -> _Path:
         units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
         level = min((self.cores.threads[unit].lowest_priority for unit in units), key=urgency_of)
-        crowds = dict.fromkeys(self.cores.crowd_of[step] for step in steps if step in self.cores.crowd_of)
+        crowds = self._find_path_crowds(steps, units)
         # What holds the threads of a container does so k at a time, with k threads: that counts for more than the cores.
         other_units = [
             unit
             for unit in self.job_numbers
             if unit not in units and self._counts_at(unit, level) and self.cores.crowd_of.get(unit[0]) not in crowds
         ]
-        other_jobs = [number for unit in other_units for number in self.job_numbers[unit]]
-        inner_origins = set(self.volumes).difference(job.origin for job in self.jobs if job.unit not in units)
+        own_numbers = [number for unit in units for number in self.job_numbers[unit]]
+        own_origins = {self.jobs[number].origin for number in own_numbers}
+        inner_origins = {origin for origin in own_origins if self.units_of_origin[origin] <= units.keys()}
+        other_jobs = [
+            number
+            for unit in other_units
+            for number in self.job_numbers[unit]
+            if self.jobs[number].origin not in inner_origins
+        ]
         return _Path(
             sum(self.cores.system.activities[step].wcet or 0 for step in steps),
-            [
-                (number, self._find_way_before(self.jobs[number], units))
-                for unit in units
-                for number in self.job_numbers[unit]
-            ],
-            [
-                (
-                    [
-                        number
-                        for number, job in enumerate(self.jobs)
-                        if self.cores.crowd_of.get(job.key[0]) == (container, threads) and job.unit not in units
-                    ],
-                    min(threads, self.core_count),
-                )
-                for container, threads in crowds
-            ],
+            [(number, self._find_way_before(self.jobs[number], units)) for number in own_numbers],
+            [(numbers, min(threads, self.core_count)) for (_, threads), numbers in crowds.items()],
             [self.job_numbers[unit] for unit in other_units],
-            frozenset(number for number in other_jobs if self.jobs[number].origin not in inner_origins),
+            other_jobs,
             self._list_waiting_lanes(other_units),
-            frozenset(
-                number
-                for number in other_jobs
-                if not all(
-                    self.cores.unit_of[step] in units or self._counts_at(self.cores.unit_of[step], level)
-                    for step in self.jobs[number].steps
-                )
-            ),
+            frozenset(number for number in other_jobs if not self._is_urgent_way(number, units, level)),
+        )
+
+    def _find_path_crowds(
+        self, steps: Iterable[str], units: Mapping[ThreadUnit, None]
+    ) -> dict[tuple[str, int], list[int]]:
+        """Return the containers whose threads some steps wait for, each with the jobs of its other members."""
+        if not self.cores.crowd_of:
+            return {}
+        crowds: dict[tuple[str, int], list[int]] = {
+            self.cores.crowd_of[step]: [] for step in steps if step in self.cores.crowd_of
+        }
+        for number, job in enumerate(self.jobs):
+            crowd = self.cores.crowd_of.get(job.key[0])
+            if crowd is not None and crowd in crowds and job.unit not in units:
+                crowds[crowd].append(number)
+        return crowds
+
+    def _is_urgent_way(self, number: int, units: Mapping[ThreadUnit, None], level: Priority) -> bool:
+        """Whether all steps that lead to a job may be as urgent as a level, or are of the path itself."""
+        return level is None or all(
+            self.cores.unit_of[step] in units or self._counts_at(self.cores.unit_of[step], level)
+            for step in self.jobs[number].steps
         )
 
     def _counts_at(self, unit: ThreadUnit, level: Priority) -> bool:
@@ -445,14 +460,15 @@ class _SharedCoreSolver:
 
     def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> list[frozenset[Origin]]:
         """Return what waits in each thread, or container, that takes an idle core as soon as it has work."""
-        origins_by_lane: dict[object, set[Origin]] = {}
+        origins_by_crowd: dict[object, frozenset[Origin]] = {}
+        lanes: list[frozenset[Origin]] = []
         for unit in units:
-            if unit[0] not in self.cores.foreign_ids:
-                lane = self.cores.crowd_of.get(unit[0], unit)
-                origins_by_lane.setdefault(lane, set()).update(
-                    self.jobs[number].origin for number in self.job_numbers[unit]
-                )
-        return [frozenset(origins) for origins in origins_by_lane.values()]
+            crowd = self.cores.crowd_of.get(unit[0])
+            if crowd is not None:
+                origins_by_crowd[crowd] = origins_by_crowd.get(crowd, frozenset()) | self.origins_of_unit[unit]
+            elif unit[0] not in self.cores.foreign_ids:
+                lanes.append(self.origins_of_unit[unit])
+        return [*lanes, *origins_by_crowd.values()]
 
     def _time_needed(self, path: _Path, window: int, last_jobs: _LastJobs | None) -> int:
         """Return how long all takes that may come in the way of a path in a window: A + B."""
