@@ -177,6 +177,9 @@ class _CoreSolver:
                 )
             if activity.response is not None:
                 response = WorstResponse(activity.response, "declared")
+            if self._is_idle(name):  # its work is not in the busy periods, nor has it any events
+                responses[name], ways_to[name] = response, self.core.ways_to[name]
+                continue
             ways: list[EntryWay] = []
             for way in self.core.ways_to[name]:
                 candidates = [whole_delay, self._period_of_steps(way.steps)]

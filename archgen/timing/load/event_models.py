@@ -45,6 +45,8 @@ class PropagationState:
     """The ways on which events reach each activity of a core with triggers inside."""
     run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
     """The arcs by which ways go on to an activity from another of its core."""
+    entering_models: dict[int, EventStreams | UnknownCause] = field(default_factory=dict)
+    """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
 
@@ -185,7 +187,9 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
 def entering_model(state: PropagationState, way: EntryWay) -> EventStreams | UnknownCause:
     """Return the event model of what enters a core by a way."""
     if way.entry_arc is not None:
-        return arriving_model(state, way.entry_arc.arc)
+        # Looked up, for each of several ways back may lead to several ways on the core before, and so on.
+        known_model = state.entering_models.get(id(way.entry_arc.arc))
+        return arriving_model(state, way.entry_arc.arc) if known_model is None else known_model
     return state.event_models[str(way.entry.key)]
 
 

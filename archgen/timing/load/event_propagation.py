@@ -15,13 +15,13 @@ from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.cascade_demand import Origin
 from archgen.timing.load.core_responses import InnerCore, prepare_inner_core, solve_inner_core
 from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
-from archgen.timing.load.event_streams import (
-    EventStreams,
-)
-from archgen.timing.load.inner_triggers import FiringArc, find_inner_triggers
+from archgen.timing.load.core_paths import CorePaths
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
-from archgen.timing.load.shared_core_responses import SharedCores, prepare_shared_cores, solve_shared_cores
+from archgen.timing.load.shared_core_responses import solve_shared_cores
+from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
@@ -65,22 +65,29 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
-        self.inner_cores = self._prepare_inner_cores()
+        self.inner_cores: dict[str, InnerCore] = {}
+        self.shared_cores: dict[str, CorePaths] = {}
+        self.inner_triggers: dict[str, InnerTriggers] = {}
+        self._prepare_inner_cores()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         self.successors = self._find_successors()
 
-    def _prepare_inner_cores(self) -> dict[str, InnerCore | SharedCores]:
-        """Return the cores on which activities fire one another, by step."""
+    def _prepare_inner_cores(self) -> None:
+        """Prepare the cores on which activities fire one another, and those that share their work."""
         system = self.state.system
-        inner_cores: dict[str, InnerCore | SharedCores] = {}
         for step, resource in self.resources.items():
             inner_triggers = find_inner_triggers(system, self.state.triggers, resource)
-            if inner_triggers is not None:
-                prepare_cores = prepare_inner_core if resource.cores == 1 else prepare_shared_cores
-                inner_cores[step] = prepare_cores(system, resource, inner_triggers)
-                self.state.run_arcs.update(find_run_arcs(system, inner_triggers))
-        return inner_cores
+            if inner_triggers is None:
+                continue
+            if resource.cores == 1:
+                core = self.inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
+            else:
+                cores = prepare_shared_cores(system, resource, inner_triggers)
+                self.shared_cores[step] = CorePaths(cores)
+                self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
+            self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -111,22 +118,22 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             # What is carried in depends on responses.
-            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_cores else ()
+            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_triggers else ()
             for name in (name for unit in resource.foreign_units for name in unit):
                 for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
                     successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
-        for step, inner_core in self.inner_cores.items():
-            for source in dict.fromkeys(inner_core.inner_triggers.outer_sources):
+        for step, inner_triggers in self.inner_triggers.items():
+            for source in dict.fromkeys(inner_triggers.outer_sources):
                 successors[source].append(step)
                 for source_step in self.resources_of.get(source, ()):
                     successors[source_step].append(step)
 
     def _rests_on(self, step: str, name: str) -> bool:
         """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
-        inner_core = self.inner_cores.get(step)
-        return inner_core is None or name not in inner_core.inner_triggers.inner_arcs
+        inner_triggers = self.inner_triggers.get(step)
+        return inner_triggers is None or name not in inner_triggers.inner_arcs
 
     def _trigger_arcs(self, name: str) -> Iterator[Arc]:
         """Yield the arcs on which an activity's event model rests."""
@@ -177,7 +184,7 @@ class _Propagation:
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
-        if step in self.inner_cores:
+        if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
             new_responses, self.previous_threads[step] = find_responses(
@@ -205,18 +212,25 @@ class _Propagation:
     def _update_inner_core(self, step: str) -> bool:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""
         state = self.state
+        entering_models: dict[int, EventStreams | UnknownCause] = {}
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
-            return state.event_models[str(origin.key)] if entry_arc is None else arriving_model(state, entry_arc.arc)
+            if entry_arc is None:
+                return state.event_models[str(origin.key)]
+            key = id(entry_arc.arc)
+            if key not in entering_models:
+                entering_models[key] = arriving_model(state, entry_arc.arc)
+            return entering_models[key]
 
-        cores = self.inner_cores[step]
         new_responses, new_ways = (
-            solve_inner_core(cores, find_model, self.budget)
-            if isinstance(cores, InnerCore)
-            else solve_shared_cores(cores, find_model, state.responses, self.budget)
+            solve_inner_core(self.inner_cores[step], find_model, self.budget)
+            if step in self.inner_cores
+            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget)
         )
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
-        changed = any(
+        changed = any(not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models)
+        state.entering_models.update(entering_models)
+        changed = changed or any(
             _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
             for name, response in new_responses.items()
         )

@@ -73,12 +73,15 @@ def _find_ways_to(
     return tuple(ways)
 
 
-def find_run_arcs(system: TimingSystem, inner_triggers: InnerTriggers) -> dict[str, tuple[Arc, ...]]:
+def find_run_arcs(
+    inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple[EntryWay, ...]]
+) -> dict[str, tuple[Arc, ...]]:
     """Return the arcs by which a way goes on to each activity from another one of its core."""
     return {
         name: tuple(firing_arc.arc for firing_arc in firing_arcs)
         for name, firing_arcs in inner_triggers.inner_arcs.items()
-        if firing_arcs and not is_gate(system, inner_triggers, name)
+        # What begins a way of its own is reached by none that began before.
+        if firing_arcs and ways_to[name][0].entry != Origin("activity", name)
     }
 
 
