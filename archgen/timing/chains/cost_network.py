@@ -79,8 +79,13 @@ class CostNetwork:
         """Return what a step adds: link, sampling (or holding), response."""
         if aim == "best":
             return (self.steps.link_latency(arc, worst=False), self.steps.response_value(arc.target, worst=False))
-        wait = self.steps.holding_age(arc) if aim == "reduced age" else self.steps.sampling_wait(arc)
-        return (self.steps.link_latency(arc), wait, self.step_response(arc))
+        if aim != "reduced age":
+            return (self.steps.link_latency(arc), self.steps.sampling_wait(arc), self.step_response(arc))
+        holding_age = self.steps.holding_age(arc)
+        # What is used again, with a later event of something else, is not used in the run that brought it.
+        is_held = self.by_runs and holding_age is not ZERO_VALUE
+        response = self.steps.run_response(arc.target) if is_held else self.step_response(arc)
+        return (self.steps.link_latency(arc), holding_age, response)
 
     def _build_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Build the graph of an aim."""

@@ -55,8 +55,16 @@ class InnerTriggers:
 def find_inner_triggers(
     system: TimingSystem, triggers: TriggerGraph, resource: ProcessingResource
 ) -> InnerTriggers | None:
-    """Return the triggers inside a resource; None where cores are joined, or one core has no trigger inside."""
+    """Return the triggers inside a resource; None where each activity is looked at by itself.
+
+    That is so where cores are joined, where one core has no trigger inside, and on a core of some with priorities on which
+    others may run too.
+    """
     if resource.joined:
+        return None
+    is_ranked = any(system.activities[name].priority is not None for name in resource.members)
+    if resource.cores == 1 and resource.foreign_units and is_ranked:
+        # While something urgent runs on another core, what is less urgent may end here, and fire more that is urgent.
         return None
     members = dict.fromkeys(resource.members)
     arcs_into = {

@@ -46,12 +46,13 @@ def test_the_exact_bound_needs_no_root() -> None:
     [
         # 0.8 + 0.4 / 2 = 1. The others have no bound beside what has none.
         (2, (8, 2, 2), ["none [unbounded]"] * 3),
-        # 7 + 3 (2 + 2) / 2: two jobs of each come within 13, and one is carried in. The others: 2 + (3 x 7 + 4 x 2) / 2.
-        (2, (7, 2, 2), ["13", "33/2", "33/2"]),
+        # 7 + (2 + 2 + 2) / 2: one of each comes within 10, and one of them may have been pending. The others: 2 + B, where
+        # 2 B = min(7, B) + 2: the first keeps one core busy, and the other core has 2 besides.
+        (2, (7, 2, 2), ["10", "4", "4"]),
         # 0.8 + 0.6 / 3 = 1.
         (3, (8, 2, 2, 2), ["none [unbounded]"] * 4),
-        # 6 + 2 (2 + 2 + 2) / 3; 2 + (2 x 6 + 2 x 2 + 2 x 2) / 3.
-        (3, (6, 2, 2, 2), ["10", "26/3", "26/3", "26/3"]),
+        # 6 + (2 + 2 + 2 + 2 x 2) / 3: two were pending. 2 + B, where 3 B = min(6, B) + 2 + 2.
+        (3, (6, 2, 2, 2), ["28/3", "4", "4", "4"]),
     ],
 )
 def test_a_thread_and_its_part_of_the_others_fill_a_core(
@@ -65,9 +66,9 @@ def test_a_thread_and_its_part_of_the_others_fill_a_core(
 @pytest.mark.parametrize(
     ("shares", "others", "responses"),
     [
-        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (18 x 5 + 23 x 2) / 2 + 16 x 3 / 3 = 89: with responses of 89, 138 and
-        # 211/3, so many came within 89 and the response before it.
-        ((5, 5, 2), 3, ["89", "89", "138", "211/3"]),
+        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (11 x 5 + 14 x 2) / 2 + 8 x 3 / 3 = 54.5: with responses of 54.5, 83 and
+        # 25, so many came within 54.5 and the response before it.
+        ((5, 5, 2), 3, ["109/2", "109/2", "83", "25"]),
         # 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
         ((5, 5, 3), 3, ["none [unbounded]"] * 4),
         # 0.5 + (0.5 + 0.2) / 2 + 0.6 / 3 = 1.05.
