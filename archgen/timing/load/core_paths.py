@@ -32,9 +32,9 @@ class CorePath:
     `own_jobs` are those of the steps' threads, but of `last_step`, where that is known. Each has the way that leads to it
     from other threads: what is pending of it can only be on that way. `crowds` are the jobs of each container whose threads
     the steps wait for, with the number of those that can work at once. Of the other threads only those count that may be
-    as urgent; `less_urgent_jobs` are the jobs among theirs that something less urgent leads to, which may have been held
-    up for long. `waiting_lanes` is what each of the other threads can be busy with. `start_cost` is the work of a step that
-    works only at the start, and so has no events.
+    as urgent. `held_jobs` are the jobs among theirs that may wait though a core is idle: of what is foreign, and behind
+    something less urgent. `lanes_of_origin` says which of the other threads, or containers, what comes of an origin may wait
+    for. `start_cost` is the work of a step that works only at the start, and so has no events.
     """
 
     cost: int
@@ -43,16 +43,15 @@ class CorePath:
     own_jobs: tuple[tuple[int, WayKey | None], ...]
     crowds: tuple[tuple[list[int], int], ...]
     other_lanes: tuple[list[int], ...]
-    other_jobs: tuple[int, ...]
-    waiting_lanes: tuple[frozenset[Origin], ...]
-    less_urgent_jobs: frozenset[int]
+    held_jobs: frozenset[int]
+    lanes_of_origin: Mapping[Origin, list[int]]
+    lane_count: int
 
     def list_jobs(self) -> Iterator[int]:
         """Yield the jobs that come in the way."""
         yield from (number for number, _ in self.own_jobs)
-        yield from self.other_jobs
-        for numbers, _ in self.crowds:
-            yield from numbers
+        for lane in (*self.other_lanes, *(numbers for numbers, _ in self.crowds)):
+            yield from lane
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +83,11 @@ class CorePaths:
             and cores.crowd_of.get(unit[0]) not in crowds
         ]
         other_jobs = tuple(number for unit in other_units for number in cores.job_numbers[unit])
+        waiting_lanes = self._list_waiting_lanes(other_units)
+        lanes_of_origin: dict[Origin, list[int]] = {cores.jobs[number].origin: [] for number in other_jobs}
+        for lane, origins in enumerate(waiting_lanes):
+            for origin in origins:
+                lanes_of_origin.setdefault(origin, []).append(lane)
         last_step = self._find_last_step(steps, units)
         costs = [cores.system.activities[step].wcet or 0 for step in steps]
         return CorePath(
@@ -98,11 +102,9 @@ class CorePaths:
             ),
             tuple((numbers, min(threads, cores.core_count)) for (_, threads), numbers in crowds.items()),
             tuple(cores.job_numbers[unit] for unit in other_units if cores.job_numbers[unit]),
-            other_jobs,
-            self._list_waiting_lanes(other_units),
-            frozenset()
-            if level is None
-            else frozenset(number for number in other_jobs if not self._is_urgent_way(number, units, level)),
+            frozenset(number for number in other_jobs if self._is_held(number, units, level)),
+            lanes_of_origin,
+            len(waiting_lanes),
         )
 
     def _find_last_step(self, steps: tuple[str, ...], units: Mapping[ThreadUnit, None]) -> LastStep | None:
@@ -139,11 +141,11 @@ class CorePaths:
                 crowds[crowd].append(number)
         return crowds
 
-    def _is_urgent_way(self, number: int, units: Mapping[ThreadUnit, None], level: Priority) -> bool:
-        """Whether all steps that lead to a job may be as urgent as a level, or are of the path itself."""
-        return all(
-            self.cores.unit_of[step] in units or self._counts_at(self.cores.unit_of[step], level)
-            for step in self.cores.jobs[number].steps
+    def _is_held(self, number: int, units: Mapping[ThreadUnit, None], level: Priority) -> bool:
+        """Whether a job is foreign, or something less urgent that is not of the path itself leads to it."""
+        job, unit_of = self.cores.jobs[number], self.cores.unit_of
+        return job.key[0] in self.cores.foreign_ids or not all(
+            unit_of[step] in units or self._counts_at(unit_of[step], level) for step in job.steps
         )
 
     def _counts_at(self, unit: ThreadUnit, level: Priority) -> bool:

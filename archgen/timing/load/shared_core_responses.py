@@ -43,6 +43,8 @@ from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, UNBO
 
 _MAX_SWEEPS = 60
 """Sweeps over all runs of some cores before their responses are given up."""
+_ENDLESS = 1 << 200
+"""Longer than any window, in ticks."""
 
 
 def solve_shared_cores(
@@ -74,15 +76,17 @@ class _SharedCoreSolver:
     ) -> None:
         self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
         self.known_responses = known_responses
-        self.origins = [origin for origin, volume in self.cores.cascades.volumes.items() if volume]
+        self.streams: dict[Origin, EventStreams] = {}
         self.delays: dict[WayKey, int] = {}
         self.longest_delay = 0
         self.step_responses: dict[str, int] = {}
         self.whole_ways: set[WayKey] = set()
         self.cause_of: dict[str, UnknownCause] = {}
         self.calm_arrivals: dict[Origin, int] = {}
+        self.calm_windows: dict[Origin, int] = {}
         self.calm_window = 0
         self.calm_times: dict[int, int] = {}
+        self.last_windows: dict[tuple[int, int], int] = {}
 
     def solve(self) -> CoreResponses:
         """Find the responses of all runs together, from below, and those of the activities."""
@@ -155,10 +159,16 @@ class _SharedCoreSolver:
         return any(step in self.cause_of for way in self.cores.ways_to[name] for step in way.steps)
 
     def _find_calm_window(self) -> None:
-        """Find the longest window in which no more comes of anything than at once."""
-        streams = {origin: self.demand.streams_of(origin) for origin in self.origins}
-        self.calm_arrivals = {origin: max_arrivals(model, 1) for origin, model in streams.items()}
-        self.calm_window = min((_find_calm_time(stream) for model in streams.values() for stream in model), default=0)
+        """Find the longest windows in which no more comes of an origin, or of all of them, than at once."""
+        self.streams = {
+            origin: self.demand.streams_of(origin) for origin, volume in self.cores.cascades.volumes.items() if volume
+        }
+        self.calm_arrivals = {origin: max_arrivals(model, 1) for origin, model in self.streams.items()}
+        self.calm_windows = {
+            origin: min((_find_calm_time(stream) for stream in model), default=_ENDLESS)
+            for origin, model in self.streams.items()
+        }
+        self.calm_window = min(self.calm_windows.values(), default=0)
 
     def _note_delay(self, key: WayKey, delay: int) -> bool:
         """Note how long a way takes, unless it was longer before; return whether it grew."""
@@ -216,16 +226,16 @@ class _SharedCoreSolver:
         Where the last step has a thread of its own, each activation of it since t0 is looked at. None waited then, so
         that the n-th comes no sooner than the n-th of all that fires it.
         """
-        window = max(path.cost, 1)
         if path.last_step is None:
-            return self._find_window(path, window, 0, spend, limit)
+            return self._find_window(path, 0, max(path.cost, 1), spend, limit)
         arrival_times = earliest_arrivals(self._activation_streams(path.last_step))
-        arrival, longest, count = next(arrival_times, 0), 0, 0
+        arrival, longest, count, window = next(arrival_times, 0), 0, 0, max(path.cost, 1)
         while True:
             count += 1
             next_arrival = next(arrival_times, None)
-            last_work = count * path.last_step.cost
-            window = self._find_window(path, window, last_work, spend, None if limit is None else arrival + limit)
+            if next_arrival == arrival:  # the last of those that come at once ends last
+                continue
+            window = self._find_window(path, count, window, spend, None if limit is None else arrival + limit)
             longest = max(longest, window - arrival)
             if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
                 return longest
@@ -243,13 +253,21 @@ class _SharedCoreSolver:
         return tuple(streams)
 
     def _find_window(
-        self, path: CorePath, window: int, last_work: int, spend: Callable[[int], None], limit: int | None
+        self, path: CorePath, count: int, window: int, spend: Callable[[int], None], limit: int | None
     ) -> int:
-        """Return the least window in which a path is sure to be done, or `limit` where it is not less."""
+        """Return the least window in which a path is sure to be done, or `limit` where it is not less.
+
+        It is not below `window`, nor below what it was when less was pending. So many activations (`count`) of the last
+        step are looked at, where they are counted.
+        """
+        last_work = count * path.last_step.cost if path.last_step else 0
+        key = (id(path), count)
+        window = max(window, self.last_windows.get(key, 0))
         while limit is None or window < limit:
             spend(2)
             needed = max(last_work + self._time_beside(path, window, spend), path.cost)
             if needed <= window:
+                self.last_windows[key] = window
                 return needed if window == 1 else window
             window = needed
         return limit
@@ -257,8 +275,12 @@ class _SharedCoreSolver:
     def _time_beside(self, path: CorePath, window: int, spend: Callable[[int], None]) -> int:
         """Return how long all takes in a window but the last step's activations: A + B."""
         if window + self.longest_delay > self.calm_window:
-            spend(2 * (len(self.origins) + len(self.cores.jobs)))
-            arrivals = {origin: max_arrivals(self.demand.streams_of(origin), window) for origin in self.origins}
+            spend(2 * (len(self.streams) + len(self.cores.jobs)))
+            calm_windows = self.calm_windows
+            arrivals = {
+                origin: count if window <= calm_windows[origin] else max_arrivals(self.streams[origin], window)
+                for origin, count in self.calm_arrivals.items()
+            }
             return self._path_work(path, window, arrivals) + self._blocked_time(path, window, arrivals)
         # In such a window nothing comes twice, and nothing is pending: its length does not matter.
         time = self.calm_times.get(id(path))
@@ -270,9 +292,9 @@ class _SharedCoreSolver:
 
     def _count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""
-        if not delay or 0 < window <= self.calm_window - delay:
+        if not delay or window + delay <= self.calm_windows[origin]:
             return 0
-        return max_arrivals(self.demand.streams_of(origin), window + delay) - arrivals.get(origin, 0)
+        return max_arrivals(self.streams[origin], window + delay) - arrivals[origin]
 
     def _path_work(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
         """Return the work of the threads of a path in a window, as the time for which they can hold it up."""
@@ -296,57 +318,63 @@ class _SharedCoreSolver:
         Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
         own.
         """
-        jobs, core_count = self.cores.jobs, self.cores.core_count
-        lane_works = [sum([jobs[number].work * arrivals[jobs[number].origin] for number in lane]) for lane in path.other_lanes]
-        pending_works = self._list_pending_works(path, window, arrivals)
-        if not pending_works and not path.crowds:
+        core_count = self.cores.core_count
+        lane_works: list[int] = []
+        pending_works: list[int] = []
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        for lane in path.other_lanes:
+            lane_work = pending_work = 0
+            for number in lane:
+                key, origin, work, _, _ = self.cores.jobs[number]
+                lane_work += work * arrivals[origin]
+                count = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                if count:
+                    pending_work += work * count
+                    if number in path.held_jobs:
+                        held_work += work * count
+                    else:
+                        pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
+            lane_works.append(lane_work)
+            pending_works.append(pending_work)
+        if not any(pending_works) and not path.crowds:
             return divide_among_cores(lane_works, 0, core_count)
-        blocked_time = -(-(sum(lane_works) + self._most_pending(path, pending_works)) // core_count)
+        most_pending = held_work + self._most_waiting(path, pending_by_origin)
+        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
         if path.crowds:
             return blocked_time
         # All that each thread may have in the end: less, where a single one has most of it.
-        all_works = [
-            work + sum([pending_works.get(number, 0) for number in lane])
-            for work, lane in zip(lane_works, path.other_lanes, strict=True)
-        ]
+        all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
         blocked_time = min(blocked_time, divide_among_cores(all_works, 0, core_count))
-        if max(lane_works, default=0) > blocked_time:
-            # Beside what each thread gets in the window, and may not have done in time, as much as can be pending at
-            # all: the more came before t0, the fewer come after it, but those may be the ones not done in time.
-            most_pending = self._most_pending(path, self._list_pending_works(path, 0, {}))
-            blocked_time = min(blocked_time, divide_among_cores(lane_works, most_pending, core_count))
+        if max(lane_works) > blocked_time:
+            blocked_time = min(blocked_time, divide_among_cores(lane_works, self._most_pending(path), core_count))
         return blocked_time
 
-    def _list_pending_works(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> dict[int, int]:
-        """Return the work, by job, that a window has more if what may be pending before it counts too."""
-        if window and window + self.longest_delay <= self.calm_window:
-            return {}
-        pending_works: dict[int, int] = {}
-        for number in path.other_jobs:
-            key, origin, work, _, _ = self.cores.jobs[number]
-            count = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
-            if count:
-                pending_works[number] = work * count
-        return pending_works
+    def _most_pending(self, path: CorePath) -> int:
+        """Return the most work that can be pending at t0 at all.
 
-    def _most_pending(self, path: CorePath, pending_works: Mapping[int, int]) -> int:
-        """Return the most work that may have been pending while a core was idle, or busy with what is less urgent."""
-        if not pending_works:
-            return 0
-        work_by_origin: dict[Origin, int] = {}
-        foreign_work = 0
-        for number, work in pending_works.items():
-            job = self.cores.jobs[number]
-            if job.key[0] in self.cores.foreign_ids or number in path.less_urgent_jobs:
-                foreign_work += work
-            else:
-                work_by_origin[job.origin] = work_by_origin.get(job.origin, 0) + work
-        waiting_works = [
-            sum([work for origin, work in work_by_origin.items() if origin in origins])
-            for origins in path.waiting_lanes
-        ]
-        most_waiting = sum(nlargest(self.cores.core_count - 1, waiting_works))
-        return foreign_work + min(most_waiting, sum(work_by_origin.values()))
+        The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
+        """
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        for lane in path.other_lanes:
+            for number in lane:
+                key, origin, work, _, _ = self.cores.jobs[number]
+                delay = self.delays.get(key, 0)
+                pending_work = work * max_arrivals(self.streams[origin], delay) if delay else 0
+                if number in path.held_jobs:
+                    held_work += pending_work
+                else:
+                    pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
+        return held_work + self._most_waiting(path, pending_by_origin)
+
+    def _most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
+        """Return the most work that may have waited for m - 1 threads."""
+        waiting_works = [0] * path.lane_count
+        for origin, work in work_by_origin.items():
+            for lane in path.lanes_of_origin[origin]:
+                waiting_works[lane] += work
+        return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
 
     def _build_responses(self) -> CoreResponses:
         """Return what was found, or why nothing was."""
