@@ -85,7 +85,9 @@ class _StyleMaker:
         return f"wcet: {worst} us, bcet: {self.dice.choice((worst, worst, worst // 2, 0))} us"
 
     def _urgency(self) -> list[str]:
-        ranked = self.style in {"ranked cores", "ranked core"} or (self.style in {"crowded", "pinned"} and self.count % 2)
+        ranked = self.style in {"ranked cores", "ranked core"} or (
+            self.style in {"crowded", "pinned"} and self.count % 2
+        )
         priority = [f"priority: {self.dice.randint(1, 12)}"] if ranked and self.dice.random() < 0.9 else []
         pinned = self.style == "pinned" and self.dice.random() < 0.7
         return [*priority, *([f"core: {self.dice.randrange(self.cores)}"] if pinned else [])]

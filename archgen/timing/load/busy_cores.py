@@ -20,9 +20,7 @@ def divide_among_cores(lane_works: Sequence[int], pending_work: int, core_count:
     return -(-numerator // denominator)
 
 
-def find_blocked_time(
-    lane_works: Sequence[_Amount], pending_work: _Amount, core_count: int
-) -> tuple[_Amount, int]:
+def find_blocked_time(lane_works: Sequence[_Amount], pending_work: _Amount, core_count: int) -> tuple[_Amount, int]:
     """Return the longest time B for which threads can keep all cores busy, as numerator and denominator.
 
     m B = pending work + sum of min(work, B): no thread works longer than that time.

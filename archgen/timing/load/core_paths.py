@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 
 from archgen.frozen import dataclass
-from archgen.timing.load.cascade_demand import Origin
-from archgen.timing.load.core_responses import urgency_of
+from archgen.timing.load.inner_core import urgency_of
+from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import Priority
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
 from archgen.timing.system.core_placement import ThreadUnit
@@ -129,9 +129,7 @@ class CorePaths:
             ),
         )
 
-    def _find_crowds(
-        self, steps: Iterable[str], units: Mapping[ThreadUnit, None]
-    ) -> dict[tuple[str, int], list[int]]:
+    def _find_crowds(self, steps: Iterable[str], units: Mapping[ThreadUnit, None]) -> dict[tuple[str, int], list[int]]:
         """Return the containers whose threads some steps wait for, each with the jobs of its other members."""
         crowd_of = self.cores.crowd_of
         crowds: dict[tuple[str, int], list[int]] = {crowd_of[step]: [] for step in steps if step in crowd_of}

@@ -12,12 +12,13 @@ from collections.abc import Iterable, Iterator
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.cascade_demand import Origin
-from archgen.timing.load.core_responses import InnerCore, prepare_inner_core, solve_inner_core
-from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
 from archgen.timing.load.core_paths import CorePaths
+from archgen.timing.load.core_responses import solve_inner_core
+from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
+from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.shared_core_responses import solve_shared_cores
@@ -228,7 +229,9 @@ class _Propagation:
             else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget)
         )
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
-        changed = any(not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models)
+        changed = any(
+            not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
+        )
         state.entering_models.update(entering_models)
         changed = changed or any(
             _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]

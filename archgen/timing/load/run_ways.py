@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from archgen.timing.load.cascade_demand import Origin
 from archgen.timing.load.event_streams import MAX_STREAMS
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
+from archgen.timing.load.level_cascades import Origin
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 Priority = int | None

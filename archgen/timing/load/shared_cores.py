@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from archgen.frozen import dataclass
-from archgen.timing.load.cascade_demand import LevelCascades, Origin, build_level_cascades, number_arcs
-from archgen.timing.load.core_responses import rank_threads
+from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
+from archgen.timing.load.level_cascades import LevelCascades, Origin, build_level_cascades, number_arcs
 from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit

@@ -149,4 +149,6 @@ def test_strictly_periodic_cascades_may_fill_a_core_up_to_a_limit(monkeypatch: p
         "b 5..5 priorities",
     ]
     monkeypatch.setattr(core_responses, "_MAX_JOBS_IN_ROUND", 0)
-    assert list_responses(analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 1}}"))[1] == "b 5..none [overload] priorities"
+    assert (
+        list_responses(analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 1}}"))[1] == "b 5..none [overload] priorities"
+    )
