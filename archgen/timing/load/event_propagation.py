@@ -23,7 +23,7 @@ from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_re
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
@@ -71,7 +71,6 @@ class _Propagation:
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
-        self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         self.successors = self._find_successors()
 
     def _prepare_inner_cores(self) -> None:
@@ -118,8 +117,6 @@ class _Propagation:
     def _add_resource_steps(self, successors: dict[str, list[str]]) -> None:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
-            # What is carried in depends on responses.
-            successors[step] += (step,) if resource.cores > 1 and step not in self.inner_triggers else ()
             for name in (name for unit in resource.foreign_units for name in unit):
                 for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
                     successors[foreign_step].append(step)
@@ -188,12 +185,11 @@ class _Propagation:
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
-            new_responses, self.previous_threads[step] = find_responses(
+            new_responses = find_responses(
                 state.system,
                 self.resources[step],
                 state.event_models,
-                state.responses,
-                AnalysisEffort(self.budget, self._stale_activities(step), self.previous_threads.get(step)),
+                AnalysisEffort(self.budget, self._stale_activities(step)),
             )
             new_responses = {
                 name: _name_tier(self.resources[step], response) for name, response in new_responses.items()

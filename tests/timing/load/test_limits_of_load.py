@@ -10,10 +10,8 @@ import pytest
 from archgen.timing.load import link_queueing, response_times
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
-from archgen.timing.load.event_streams import written_streams
 from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
 from archgen.timing.load.link_queueing import longest_queueing, settle_links
-from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.trigger_graph import find_triggers
 from tests.timing.printed import MS, show_ms
@@ -162,9 +160,5 @@ def test_what_a_full_core_is_known_by_without_a_search(
     nodes |= {"other @pc": f"period: 100 ms, wcet: {others} ms"} if others else {}
     rest = f"hosts: {{pc: {{cores: {cores}}}}}\ncontainers: {{box: {{threads: 2, host: pc}}}}"
     system, _ = build_system(read_sketch(nodes, "", rest))
-    (resource,) = find_resources(system)
-    event_models = {name: written_streams(activity) or () for name, activity in system.activities.items()}
-    found = response_times.find_responses(
-        system, resource, event_models, {}, response_times.AnalysisEffort(SearchBudget(0))
-    )
-    assert " ".join(response.cause.notes[0] for response in found.response_of.values()) == causes
+    found = propagate_events(system, find_triggers(system), SearchBudget(0)).responses
+    assert " ".join(response.cause.notes[0] for response in found.values()) == causes

@@ -285,16 +285,6 @@ def test_a_search_that_did_not_end_is_not_taken_for_an_answer() -> None:
             ranked.busy_period_of_first(2, SearchBudget(1000))
 
 
-def test_what_is_asked_for_responses_is_not_written_to(derived: Derived) -> None:
-    rows = {"a": periodic("10", "1"), "b": periodic("20", "3")}
-    system, _, state = settle_links(build_system(derived(tasks(rows, host="cores: 2")))[0])
-    (resource,) = find_resources(system)
-    first = find_responses(system, resource, state.event_models, state.responses, AnalysisEffort(SearchBudget()))
-    assert first.response_of
-    again = AnalysisEffort(SearchBudget(), None, tuple(first.threads))
-    assert find_responses(system, resource, state.event_models, state.responses, again).response_of == {}
-
-
 @pytest.mark.parametrize(
     ("stale", "found"),
     [
@@ -313,9 +303,9 @@ def test_only_what_something_stale_bears_on_is_looked_at_again(derived: Derived,
     system, _, state = settle_links(build_system(derived(tasks(rows)))[0])
     (resource,) = find_resources(system)
     effort = AnalysisEffort(SearchBudget(), frozenset(stale.split()))
-    again = find_responses(system, resource, state.event_models, state.responses, effort)
-    assert " ".join(sorted(again.response_of)) == found
-    assert all(again.response_of[name] == state.responses[name] for name in again.response_of)
+    again = find_responses(system, resource, state.event_models, effort)
+    assert " ".join(sorted(again)) == found
+    assert all(again[name] == state.responses[name] for name in again)
 
 
 def test_the_order_in_which_elements_are_written_does_not_matter() -> None:
