@@ -140,13 +140,13 @@ def test_one_budget_bounds_all_searches() -> None:
     ("cores", "shares", "others", "causes"),
     [
         # In percent of a core. 80 + (20 + 20) / 2 fills one: no search is needed to know it; 19 and 20 + (80 + 19) / 2 do not.
-        (2, (80, 20, 20), 0, "unbounded diverged diverged"),
+        (2, (80, 20, 20), 0, "unbounded unbounded unbounded"),
         (2, (80, 20, 19), 0, "diverged diverged diverged"),
         # 80 + (20 + 20 + 20) / 3; without 1 of it there is room left.
-        (3, (80, 20, 20, 20), 0, "unbounded diverged diverged diverged"),
+        (3, (80, 20, 20, 20), 0, "unbounded unbounded unbounded unbounded"),
         (3, (79, 20, 20, 20), 0, "diverged diverged diverged diverged"),
         # Two threads of a container on three cores: 50 + (50 + 30) / 2 + 30 / 3; one less, and there is room left.
-        (3, (50, 50, 30), 30, "unbounded unbounded diverged diverged"),
+        (3, (50, 50, 30), 30, "unbounded unbounded unbounded unbounded"),
         (3, (50, 50, 29), 30, "diverged diverged diverged diverged"),
         (3, (50, 50, 30), 29, "diverged diverged diverged diverged"),
     ],
@@ -154,7 +154,7 @@ def test_one_budget_bounds_all_searches() -> None:
 def test_what_a_full_core_is_known_by_without_a_search(
     cores: int, shares: tuple[int, ...], others: int, causes: str
 ) -> None:
-    """Nothing may be searched here, so that whatever is not known to be full is given up."""
+    """Nothing may be searched here, so that whatever is not known to be full, nor beside what is, is given up."""
     place = "+box" if others else "@pc"
     nodes = {f"c{index} {place}": f"period: 100 ms, wcet: {share} ms" for index, share in enumerate(shares)}
     nodes |= {"other @pc": f"period: 100 ms, wcet: {others} ms"} if others else {}
