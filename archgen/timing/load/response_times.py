@@ -150,14 +150,20 @@ def _solve_one_core(
 
 
 def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0) -> WorstResponse:
-    """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top."""
+    """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top.
+
+    What is alone on a core works in the order in which it is activated.
+    """
     if sum_fractions(thread.share for thread in threads) >= 1:
         return WorstResponse(None, "host", OVERLOAD_CAUSE)
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
         return WorstResponse(None, "host", unite_causes(causes))
+    works = [work for thread in threads for work in thread.works]
     try:
-        load = GrowingLoad(work for thread in threads for work in thread.works)
+        if len(works) == 1 and works[0].streams:
+            return WorstResponse(worst_response(works[0], NO_DEMAND, budget), "host")
+        load = GrowingLoad(works)
         return WorstResponse(
             longest_busy_period(
                 add_demands(load.demand_function(), DemandFunction(lambda _: once_cost)), budget, once_cost
