@@ -74,9 +74,27 @@ class _SharedCoreSolver:
         self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
         self.known_responses = known_responses
         self.step_responses: dict[str, int] = {}
-        self.whole_ways: set[WayKey] = set()
         self.cause_of: dict[str, UnknownCause] = {}
+        self.way_before = {
+            (name, number): self._find_way_before(way)
+            for name, ways in self.cores.ways_to.items()
+            for number, way in enumerate(ways)
+            if len(way.steps) > 1
+        }
+        # The longest ways first: each passes on what it is bounded by.
+        self.ways_before = sorted(
+            self.way_before.items(), key=lambda pair: -len(self.cores.ways_to[pair[0][0]][pair[0][1]].steps)
+        )
         self.last_windows: dict[tuple[int, int], int] = {}
+
+    def _find_way_before(self, way: EntryWay) -> WayKey:
+        """Return the way to the step before the last one of a way."""
+        before = way.steps[-2]
+        return next(
+            (before, number)
+            for number, shorter_way in enumerate(self.cores.ways_to[before])
+            if shorter_way.entry == way.entry and shorter_way.steps == way.steps[:-1]
+        )
 
     def solve(self) -> CoreResponses:
         """Find the responses of all runs together, from below, and those of the activities."""
@@ -107,7 +125,7 @@ class _SharedCoreSolver:
         return None
 
     def _mark_full_threads(self) -> None:
-        """Mark what has no bound as its thread is busy all the time, and find the ways that can be looked at whole."""
+        """Mark what has no bound as its thread, or a core with what is beside it, is busy all the time."""
         shares = CoreShares(self.cores, self.demand)
         for unit in self.cores.own_units:
             if shares.fills_thread(unit):
@@ -120,12 +138,6 @@ class _SharedCoreSolver:
         order = self.cores.inner_triggers.order
         full_names = [name for name in order if shares.fills_core((name,), self.paths.look_up((name,)))]
         self._mark_boundless([*boundless_ids, *full_names], UNBOUNDED_CAUSE)
-        self.whole_ways = {
-            (name, number)
-            for name, ways in self.cores.ways_to.items()
-            for number, way in enumerate(ways)
-            if len(way.steps) > 1 and not shares.fills_core(way.steps, self.paths.look_up(way.steps))
-        }
 
     def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
         """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""
@@ -152,42 +164,38 @@ class _SharedCoreSolver:
         """Sweep until nothing grows; return what still does where the end is not reached."""
         grown_names: list[str] = []
         for _ in range(_MAX_SWEEPS):
-            grown_names = []
             spend = self.budget.start_search()
-            for name in self.cores.inner_triggers.order:
-                if name not in self.cause_of:
-                    try:
-                        grown_names += [name] if self._update_ways(name, spend) else []
-                    except DivergedError:
-                        return [name]
+            delays: dict[WayKey, int] = {}
+            for name in self._list_bounded():
+                try:
+                    self._find_way_delays(name, delays, spend)
+                except DivergedError:
+                    return [name]
+            # A step has ended before the one that it fires: what bounds all of them bounds each.
+            for key, way_before in self.ways_before:
+                if key in delays and delays[key] < delays[way_before]:
+                    delays[way_before] = delays[key]
+            grown_names = [key[0] for key, delay in delays.items() if self.work.note_delay(key, delay)]
             if not grown_names:
                 break
         return grown_names
 
-    def _update_ways(self, name: str, spend: Callable[[int], None]) -> bool:
-        """Find the delays of the ways to an activity anew for what may be pending now; return whether any grew."""
+    def _list_bounded(self) -> list[str]:
+        """Return the activities of which a bound may be found, each behind what fires it."""
+        return [name for name in self.cores.inner_triggers.order if name not in self.cause_of]
+
+    def _find_way_delays(self, name: str, delays: dict[WayKey, int], spend: Callable[[int], None]) -> None:
+        """Find the delays of the ways to an activity anew, for what may be pending now."""
         response = self._find_delay(self.paths.look_up((name,)), spend)
         # What a declared response says may be more than is computed: so long it may be pending.
         response = max(response, self.cores.system.activities[name].response or 0)
         self.step_responses[name] = response
-        has_grown = False
         for number, way in enumerate(self.cores.ways_to[name]):
             delay = response
             if len(way.steps) > 1:
-                delay += self._delay_before(way)
-                if (name, number) in self.whole_ways:
-                    delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)
-            has_grown |= self.work.note_delay((name, number), delay)
-        return has_grown
-
-    def _delay_before(self, way: EntryWay) -> int:
-        """Return how long a way takes to the end of the step before its last one."""
-        before = way.steps[-2]
-        return next(
-            self.work.delays[before, number]
-            for number, shorter_way in enumerate(self.cores.ways_to[before])
-            if shorter_way.entry == way.entry and shorter_way.steps == way.steps[:-1]
-        )
+                delay += delays[self.way_before[name, number]]
+                delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)
+            delays[name, number] = delay
 
     def _find_delay(self, path: CorePath, spend: Callable[[int], None], limit: int | None = None) -> int:
         """Return how long a path takes at most from the event on, or `limit` where that is not less.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from archgen.timing.load.cascade_demand import CascadeDemand
@@ -133,9 +135,8 @@ def test_the_demand_of_cascades_is_counted_over_the_window() -> None:
     demand = CascadeDemand(core.levels[None], lambda _: (EventStream(10),))
     within = demand.demand_function().within
     assert [within(window) // cost for window in (1, 10, 11, 30, 31, 61)] == [3, 3, 5, 7, 10, 17]
-    assert demand.share() == (2 + 1 / 3) * 0 + demand.rate_of(
-        Origin("activity", "s")
-    ) * 2 * cost + cost * demand.rate_of(Origin("gate", 0))
+    # Two each 10, and a third each 30.
+    assert demand.share() == Fraction(2, 10) * cost + Fraction(1, 30) * cost
     assert demand.has_gates
 
 

@@ -187,7 +187,9 @@ def test_work_beside_a_path_is_what_comes_and_what_was_pending() -> None:
     assert not shares.fills_thread(("a",))
     # 0.6 + 0.3, as the core beside it has only 0.4 and 0.3, of which a is the larger: 2 B = B + 0.3.
     assert not shares.fills_core(("b",), paths.look_up(("b",)))
-    found = solve_shared_cores(paths, lambda _, __: streams, {}, busy_windows.SearchBudget())
+    # Every 100: 4 + 3; 6 + B, where 2 B = min(4, B) + 3; 3 + B, where 2 B = min(6, B) + 4.
+    rare_streams = (EventStream(100 * tick),)
+    found = solve_shared_cores(paths, lambda _, __: rare_streams, {}, busy_windows.SearchBudget())
     assert {name: response.value and response.value // tick for name, response in found.response_of.items()} == {
         "a": 7,
         "b": 9,
