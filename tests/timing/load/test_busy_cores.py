@@ -32,6 +32,6 @@ def test_the_blocked_time_is_the_longest_that_the_work_allows() -> None:
         for cores, pending in product((2, 3, 4), (0, 3)):
             numerator, denominator = find_blocked_time(works, pending, cores)
             time = Fraction(numerator, denominator)
-            assert cores * time == pending + sum(min(work, time) for work in works)
+            assert cores * time == pending + sum(min(Fraction(work), time) for work in works)
             longer = time + Fraction(1, 7)
-            assert cores * longer > pending + sum(min(work, longer) for work in works)
+            assert cores * longer > pending + sum(min(Fraction(work), longer) for work in works)

@@ -43,7 +43,7 @@ def test_an_event_leads_to_all_that_is_fired_without_taking_time() -> None:
     core = prepare({"s @pc": TIMER, "a @pc": EVENT, "b @pc": EVENT}, "s>a a>b s>b")
     assert list_ways(core) == ["activity s: s x1", "activity s: s a x1", "activity s: s a b x1", "activity s: s b x1"]
     # s, a, and b twice.
-    assert core.levels[None].volumes == {Origin("activity", "s"): 4 * core.system.activities["s"].wcet}
+    assert core.levels[None].volumes == {Origin("activity", "s"): 4 * (core.system.activities["s"].wcet or 0)}
 
 
 @pytest.mark.parametrize(
