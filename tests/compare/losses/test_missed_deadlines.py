@@ -68,7 +68,7 @@ TABLE = {
         [RATE],
         both(
             "sensing.camera/timing.rate",
-            LATE + " (151 ms → 301 ms); `mind` of sssa and `feet` of tum are on it",
+            LATE + " (129 ms → 279 ms); `mind` of sssa and `feet` of tum are on it",
             "sssa",
             "tum",
         ),
@@ -85,7 +85,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            f"{LATE} (151 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            f"{LATE} (129 ms → no bound); `eye` of certh and `mind` of sssa are on it",
             "certh",
             "sssa",
         ),
@@ -95,7 +95,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "makes the chain `react` miss its deadline of 100 ms (it takes 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "makes the chain `react` miss its deadline of 100 ms (it takes 129 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
             "certh",
             "sssa",
             "tum",
@@ -126,7 +126,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "makes the chain `react` miss the deadline of 250 ms that it had before (129 ms → 279 ms); "
                 "`mind` of sssa and `feet` of tum are on it",
                 "sssa",
                 "tum",
@@ -173,7 +173,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` miss its deadline of 100 ms by still more (129 ms → 130 ms); `eye` of certh and `mind` of sssa are on it",
             "certh",
             "sssa",
         ),
@@ -184,7 +184,7 @@ TABLE = {
         [("behaviour: event, wcet: 20 ms", "behaviour: event")],
         both(
             "tracking.tracker/timing.wcet",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
+            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; "
             "`eye` of certh and `feet` of tum are on it",
             "certh",
             "tum",
@@ -194,7 +194,7 @@ TABLE = {
         BASE,
         [("inputs: {image: camera.image}, ", "")],
         [
-            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of tum is on it"
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 129 ms; `feet` of tum is on it"
         ],
     ),
     "a step more on the way": (
@@ -209,7 +209,7 @@ TABLE = {
         ],
         both(
             "sensing.mend",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
             "sssa",
             "tum",
         ),
@@ -231,7 +231,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "makes the chain `react` miss the deadline of 250 ms that it had before (129 ms → 279 ms); "
                 "`mind` of sssa and `feet` of tum are on it",
                 "sssa",
                 "tum",
@@ -249,7 +249,7 @@ TABLE = {
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "makes the chain `react` miss its deadline of 150 ms (144 ms → 151 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "makes the chain `react` miss its deadline of 150 ms (144 ms → 129 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
             "certh",
             "sssa",
             "tum",
