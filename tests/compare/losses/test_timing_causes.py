@@ -68,7 +68,7 @@ CASES = {
     "the link on the way": (
         ROBOT,
         [("worst: 2 ms", "worst: 200 ms")],
-        both("lan/latency.worst", f"{LATE} (129 ms → 359 ms); {ALL}", "certh", "sssa", "tum"),
+        both("lan/latency.worst", f"{LATE} (129 ms → 337 ms); {ALL}", "certh", "sssa", "tum"),
     ),
     "a source more": (
         FIRED,
