@@ -209,7 +209,7 @@ TABLE = {
         ],
         both(
             "sensing.mend",
-            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; `mind` of sssa and `feet` of tum are on it",
+            f"{LATE} (129 ms → no bound); `mind` of sssa and `feet` of tum are on it",
             "sssa",
             "tum",
         ),
