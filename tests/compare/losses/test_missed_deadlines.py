@@ -207,12 +207,15 @@ TABLE = {
             ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
             ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 90 ms}, host: pc}\n"),
         ],
-        both(
-            "sensing.mend",
-            f"{LATE} (129 ms → no bound); `mind` of sssa and `feet` of tum are on it",
-            "sssa",
-            "tum",
-        ),
+        [
+            *both(
+                "sensing.mend",
+                f"{LATE} (129 ms → no bound); `mind` of sssa and `feet` of tum are on it",
+                "sssa",
+                "tum",
+            ),
+            "sensing.mend sssa: overloads the host `pc` (112 % of its core), where `mind` of sssa runs",
+        ],
     ),
     "a chain that is removed": (
         BASE,
