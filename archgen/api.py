@@ -21,7 +21,13 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject
-from archgen.products import agreement_documents, code_ownership, compared_versions, project_outputs, project_views
+from archgen.products import (
+    agreement_documents,
+    code_ownership,
+    project_outputs,
+    project_views,
+    signed_agreements,
+)
 from archgen.products.output_options import OutputOptions
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chain_bounds as timing_chains
@@ -133,22 +139,35 @@ class Project:
             self.checked, self._output_options(select), Path(fspath(folder)), formats, only
         )
 
-    def write_agreement(
-        self, file: AnyPath, first: str, second: str, *, since: str | None = None, revision: str | None = None
+    def write_agreement(  # noqa: PLR0913 - what may be printed instead of what git says
+        self,
+        file: AnyPath,
+        first: str,
+        second: str,
+        *,
+        since: str | None = None,
+        revision: str | None = None,
+        date: str | None = None,
     ) -> None:
         """Write what flows between two partners. The file's suffix (.docx, .md, .html) determines the format.
 
-        `since` marks what changed since a git revision (or a folder or packed file). Raises `PartnersError` if the two
-        have no interfaces, ValueError for another suffix, `git.GitError` for a revision that does not exist.
+        `since` marks what changed since a git revision (or a folder or packed file); `date` (`2026-03-31`) and `revision`
+        are printed instead of git's. Raises `PartnersError` if the two have no interfaces, ValueError for another suffix
+        or what is no date, `git.GitError` for a revision that does not exist.
         """
         target = Path(fspath(file))
         file_format = agreement_documents.FORMAT_BY_ENDING.get(target.suffix.lower())
         if file_format is None:
             msg = f"the ending of `{target.name}` names no format: .docx, .md or .html"
             raise ValueError(msg)
-        earlier_version = compared_versions.read_version(since, self._source_path()) if since else None
+        issue_date = agreement_documents.parse_issue_date(date) if date else None
+        earlier_version = (
+            signed_agreements.read_version_before(since, self.checked, self._source_path()) if since else None
+        )
         agreement_documents.write_agreement(
-            agreement_documents.make_project_agreement(self.checked, first, second, earlier_version, revision),
+            agreement_documents.make_project_agreement(
+                self.checked, first, second, earlier_version, revision, issue_date=issue_date
+            ),
             file_format,
             target,
         )

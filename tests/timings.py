@@ -215,7 +215,7 @@ def chain(way: tuple[str, tuple[str, ...], int | None], analysis: Analysis) -> C
     total = sum((value.value for value in values if value.value is not None), Fraction(0))
     bound = TimingValue(total, not missing, missing, side="at least" if missing else "exact")
     late = deadline is not None and total > deadline
-    verdict = "missed" if late and not missing else "met" if deadline and not missing else "open"
+    verdict = "not proven" if late and not missing else "met" if deadline and not missing else "open"
     best = exact(sum((analysis.responses[each].best.value or 0 for each in through), Fraction(0)))
     return ChainResult(
         name,

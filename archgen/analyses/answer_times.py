@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_duration
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
     from archgen.model.component import Component, PerformanceIndicator
+    from archgen.model.deployment import Host
     from archgen.timing.analysis import Analysis, ServiceLoad
     from archgen.timing.system.timing_system import Activity
 
@@ -24,7 +26,8 @@ def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fr
     """A component's node takes longer than the execution time that its performance asks for.
 
     Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
-    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found.
+    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found. Several
+    components of one host that are only held up by what else works there are one finding, about the host.
 
     Bad:
         groups:
@@ -46,6 +49,31 @@ def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fr
         nodes:
           detector: {implements: detector, timing: {period: 500 ms, wcet: 180 ms}}
     """
+    held_up: dict[str, list[_SlowAnswer]] = {}
+    for slow_answer in _find_slow_answers(architecture, analysis, margin):
+        if slow_answer.is_undisturbed or slow_answer.activity.host is None:
+            yield _report_slow_component(slow_answer, margin)
+        else:
+            held_up.setdefault(slow_answer.activity.host, []).append(slow_answer)
+    for host_id, slow_answers in held_up.items():
+        if len({slow_answer.component.id for slow_answer in slow_answers}) > 1:
+            yield _report_slow_host(architecture.hosts[host_id], slow_answers, margin)
+        else:
+            yield from (_report_slow_component(slow_answer, margin) for slow_answer in slow_answers)
+
+
+class _SlowAnswer(NamedTuple):
+    """An activity that takes longer (ns) than its component promises; `is_undisturbed`: by itself."""
+
+    component: Component
+    indicator: PerformanceIndicator
+    activity: Activity
+    worst_response: Fraction
+    is_undisturbed: bool
+
+
+def _find_slow_answers(architecture: Architecture, analysis: Analysis, margin: Fraction) -> Iterator[_SlowAnswer]:
+    """Yield the activities whose responses leave less of the required execution time than the margin."""
     for activity in analysis.system.activities.values():
         component = architecture.components.get(activity.component or "")
         worst_response = analysis.responses[activity.id].worst.value
@@ -58,21 +86,35 @@ def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fr
                 is_undisturbed = (
                     activity.response is not None or worst_response == (activity.wcet or 0) * analysis.system.tick
                 )
-                yield _report_slow_component(
-                    component, indicator, activity, (worst_response, margin), is_undisturbed=is_undisturbed
-                )
+                yield _SlowAnswer(component, indicator, activity, worst_response, is_undisturbed)
 
 
-def _report_slow_component(
-    component: Component,
-    indicator: PerformanceIndicator,
-    activity: Activity,
-    response_and_margin: tuple[Fraction, Fraction],
-    *,
-    is_undisturbed: bool,
-) -> Diagnostic:
-    """Report a response (ns) that leaves less of the required execution time than the margin, a share of it."""
-    worst_response, margin = response_and_margin
+_MAX_NAMED_ANSWERS = 6
+"""So many components are named in the finding about their host."""
+
+
+def _report_slow_host(host: Host, slow_answers: Sequence[_SlowAnswer], margin: Fraction) -> Diagnostic:
+    """Report a host on which several components are held up by what else works there."""
+    phrases = [
+        f"`{answer.activity.id}` takes up to {format_duration(answer.worst_response)} instead of {answer.indicator.execution_time}"
+        for answer in slow_answers[:_MAX_NAMED_ANSWERS]
+    ]
+    more_count = len(slow_answers) - len(phrases)
+    more_text = [f"{more_count} more"] if more_count else []
+    return Diagnostic(
+        "slow-component",
+        f"with all that works on `{host.id}`, {len(slow_answers)} promises may not be kept: {join_words([*phrases, *more_text])}{_describe_margin(margin)}",
+        host.at,
+        labels=tuple(Label(answer.indicator.at, "asks for less") for answer in slow_answers[:_MAX_NAMED_ANSWERS]),
+        help="give what is urgent a priority or a core, move something to another host, or correct what the performances "
+        "promise",
+        element=host.id,
+    )
+
+
+def _report_slow_component(slow_answer: _SlowAnswer, margin: Fraction) -> Diagnostic:
+    """Report a response that leaves less of the required execution time than the margin, a share of it."""
+    component, indicator, activity, worst_response, is_undisturbed = slow_answer
     span = activity.places.get("wcet" if activity.response is None else "response", activity.at)
     cause = "" if is_undisturbed or activity.host is None else f" with all that works on `{activity.host}`"
     return Diagnostic(

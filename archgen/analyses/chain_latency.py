@@ -7,26 +7,27 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.timing.chains.chain_bounds import find_missed_chains
+from archgen.timing.chains.chain_bounds import find_unmet_chains
+from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound
+from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
     from fractions import Fraction
 
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis, ChainTerm
     from archgen.timing.chains.chain_bounds import LateChain
-    from archgen.timing.figures.timing_values import TimingValue
 
 
 def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """The latency of a chain may exceed its deadline.
+    """A chain misses its deadline, or nothing proves that it meets it.
 
     Why: The bound adds up, for each element of the chain, the longest that a sample waits to be read, the longest
-    response and the link's latency. Where it is above the deadline, nothing in the design guarantees the reaction in
-    time. `archgen timing --chain ID` shows each term, `archgen timing --sensitivity ID` which figure helps most.
+    response and the link's latency. Where it is above the deadline, or none was found, nothing in the design guarantees
+    the reaction in time: the deadline is "not proven". It is "missed" where the best case is above it already, or a host
+    is overloaded. `archgen timing --chain ID` shows each term, `archgen timing --sensitivity ID` which figure helps most.
 
     Bad:
         groups:
@@ -62,12 +63,18 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
     """
     if not any(chain.deadline for chain in architecture.chains.values()):
         return
-    for late_result in find_missed_chains(analysis, architecture, margin):
+    for late_result in find_unmet_chains(analysis, architecture, margin):
         chain_id, chain = late_result.chain.id, late_result.chain
+        deadline = f"its deadline of {chain.deadline}"
+        verdict_text = (
+            f"the chain `{chain_id}` misses {deadline}"
+            if late_result.verdict == "missed"
+            else f"nothing proves that the chain `{chain_id}` meets {deadline}"
+            + (f" with a margin of {format_percentage(margin)}" if margin else "")
+        )
         yield Diagnostic(
             "late-chain",
-            f"{_describe_bound(late_result)}, its deadline is {chain.deadline}"
-            + (f" with a margin of {format_percentage(margin)}" if margin else ""),
+            f"{verdict_text}: {_describe_bound(analysis, late_result)}",
             chain.at,
             labels=(_label_largest_part(architecture, analysis, late_result),),
             help=f"`archgen timing --sensitivity {chain_id}` shows which figure shortens it most",
@@ -75,11 +82,22 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
         )
 
 
-def _describe_bound(late_chain: LateChain) -> str:
-    """Describe how long a chain may take, or that no bound was found: several cores leave that open."""
-    if late_chain.bound.value is None and _find_boundless_terms(late_chain.terms, "unbounded"):
-        return f"no bound was found for the chain `{late_chain.chain.id}`"
-    return f"the chain `{late_chain.chain.id}` may take {_format_bound(late_chain.bound)}"
+def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
+    """Describe how long a chain takes, or why nobody can say."""
+    bound, deadline = late_chain.bound, late_chain.chain.deadline
+    if is_boundless(bound):
+        hosts = join_words([f"`{host}`" for host in find_overloaded_hosts(analysis, late_chain.terms)])
+        return (
+            f"it may take any time, for more is to be done on {hosts} than can be" if hosts else "it may take any time"
+        )
+    if late_chain.verdict == "missed" and late_chain.best.value is not None:
+        return f"it takes at least {figure_wording.format_duration(late_chain.best.value)}"
+    if bound.value is None or (deadline is not None and bound.value <= deadline.value and is_unfound(bound)):
+        places = find_unfound_places(analysis, late_chain.terms)
+        hosts = join_words([f"`{place.host}`{place.load_text}" for place in places if place.host])
+        return f"no bound was found on {hosts}" if hosts else "no bound was found"
+    suffix = "" if is_known_bound(bound) else " and more, for not all of its figures are known"
+    return f"it may take {figure_wording.format_duration(bound.value)}{suffix}"
 
 
 def _label_largest_part(architecture: Architecture, analysis: Analysis, late_chain: LateChain) -> Label:
@@ -88,38 +106,25 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
-    for reason, text in (("overload", "has more to do than it can"), ("unbounded", "no bound was found for")):
-        terms = _find_boundless_terms(late_chain.terms, reason)
-        host = architecture.hosts.get(analysis.system.activities[terms[0].activity].host or "") if terms else None
-        if host is not None:
-            names = join_words(
-                [f"`{term.activity}`" for term in terms if analysis.system.activities[term.activity].host == host.id]
-            )
-            return Label(host.at, f"{text} {names} here" if reason == "unbounded" else f"{text}, and {names} runs here")
+    for host_id in find_overloaded_hosts(analysis, late_chain.terms):
+        boundless_ids = [
+            f"`{term.activity}`"
+            for term in late_chain.terms
+            if is_boundless(term.response) and analysis.system.activities[term.activity].host == host_id
+        ]
+        verb = "runs" if len(boundless_ids) == 1 else "run"
+        text = f"has more to do than it can, and {join_words(boundless_ids)} {verb} here"
+        return Label(architecture.hosts[host_id].at, text)
+    for place in find_unfound_places(analysis, late_chain.terms):
+        if place.host is not None:
+            names = join_words([f"`{name}`" for name in place.activities])
+            return Label(architecture.hosts[place.host].at, f"no bound was found for {names} here")
     largest_term = max(late_chain.terms, key=_term_weight)
     activity = analysis.system.activities[largest_term.activity]
     parts = [largest_term.sampling.value, largest_term.response.value, largest_term.link.value]
     is_own_work = None not in parts and parts[1] == max(parts)  # type: ignore[type-var]  # no None among them
     span = activity.places.get("wcet", largest_term.at) if is_own_work else largest_term.at
     return Label(span, f"the largest part: {largest_term.activity}, {_format_term(largest_term)}")
-
-
-def _find_boundless_terms(terms: Iterable[ChainTerm], reason: str) -> list[ChainTerm]:
-    """Return the terms whose response has no bound for a reason, and whose waiting has one."""
-    return [
-        term
-        for term in terms
-        if figure_wording.name_unknown_reason(term.response) == reason and not is_boundless(term.sampling)
-    ]
-
-
-def _format_bound(bound: TimingValue) -> str:
-    """Format a bound on a latency (ns), with what makes it unbounded or incomplete."""
-    # `missed` returns only chains whose bound is exceeded, so that None here means unbounded, never unknown.
-    if bound.value is None:
-        return "any time, for a host is overloaded" if "overload" in bound.assumptions else "any time"
-    suffix = "" if is_known_bound(bound) else " and more, for not all of its figures are known"
-    return figure_wording.format_duration(bound.value) + suffix
 
 
 def _term_weight(term: ChainTerm) -> tuple[bool, object]:

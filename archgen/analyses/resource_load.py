@@ -14,11 +14,10 @@ from archgen.timing.load.host_loads import activity_share
 from archgen.timing.system.core_placement import find_unplaced_containers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis, HostLoad
-    from archgen.timing.system.timing_system import Activity
 
 
 def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
@@ -116,16 +115,25 @@ def _report_overload(
         labels=(Label(heaviest.places.get("wcet", heaviest.at), f"`{heaviest.id}` takes most"),)
         if heaviest.at != NO_SPAN
         else (),
-        help=_describe_calls(analysis, heaviest) or "move something to another host or core, or let it run less often",
+        help=_advise_on_load(analysis, [name for _, name in activity_loads]),
         element=host_id,
     )
 
 
-def _describe_calls(analysis: Analysis, activity: Activity) -> str:
+def _advise_on_load(analysis: Analysis, activity_ids: Sequence[str]) -> str:
+    """Say what can be done about a load (the heaviest comes first), and what of it is only taken for granted."""
+    calls = [(name, text) for name in activity_ids if (text := _describe_calls(analysis, name))]
+    if calls and calls[0][0] == activity_ids[0]:
+        return f"{calls[0][1]}, or move something to another host"
+    advice = "move something to another host or core, or let it run less often"
+    return "; ".join((advice, *(text for _, text in calls[:1])))
+
+
+def _describe_calls(analysis: Analysis, activity_id: str) -> str:
     """Describe who calls a server as often as it runs itself, because nothing says how often; empty for none."""
     requests = [
         arc
-        for arc in analysis.system.arcs_into.get(activity.id, ())
+        for arc in analysis.system.arcs_into.get(activity_id, ())
         if arc.role == "request" and arc.output not in analysis.system.activities[arc.source].calls
     ]
     rates = [(arc, analysis.paces[arc.source].rate.value) for arc in requests]
@@ -134,9 +142,8 @@ def _describe_calls(analysis: Analysis, activity: Activity) -> str:
         return ""
     arc, rate = max(known_rates, key=lambda pair: pair[1])
     return (
-        f"`{arc.source}` is taken to call `{activity.id}` once in each activation, {format_number(rate)} times a second: "
-        f"write in its timing how often it calls (`calls: {{{arc.output.rpartition('.')[2]}: 0.1}}`), or move something to "
-        "another host"
+        f"`{arc.source}` is taken to call `{activity_id}` once in each activation, {format_number(rate)} times a second: "
+        f"write in its timing how often it calls (`calls: {{{arc.output.rpartition('.')[2]}: 0.1}}`)"
     )
 
 

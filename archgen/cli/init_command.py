@@ -252,6 +252,10 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
         click.echo(f"The repository begins at {project_plan.repository_folder}: what the forge reads stands there.")
     if project_plan.repository_folder / ".gitlab-ci.yml" in project_plan.existing_files:
         click.echo("That .gitlab-ci.yml does not check this project yet: docs/pull_requests.md says which job to add.")
+    if any(path.name == "CODEOWNERS" for path in project_plan.existing_files):
+        click.echo(
+            "That CODEOWNERS does not name this project's files yet: add what `archgen owners --format codeowners` prints."
+        )
     if project_plan.reviewers_missing:
         click.echo(
             "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"

@@ -41,7 +41,13 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
 @click.option(
     "--signed",
     metavar="REV",
-    help="As --since, with the revision that was signed; end with 1 where terms are others now.",
+    help="As --since, with the revision that was signed, such as a tag; end with 1 where terms or promises are others now.",
+)
+@click.option(
+    "--date",
+    "issue_date",
+    metavar="YYYY-MM-DD",
+    help="The date of issue.  [default: the day of git's last commit of the project, none if files differ from it]",
 )
 @shared_options.revision_option
 @shared_options.keep_going_option
@@ -53,13 +59,14 @@ def command(  # noqa: PLR0913 - one for each option
     form: AgreementFormat | None,
     since: str | None,
     signed: str | None,
+    issue_date: str | None,
     revision: str | None,
     keep_going: bool,
 ) -> None:
     """Write the interface agreement of two partners of PROJECT: what flows between them, both ways.
 
-    Each topic, service and action with its message, rate, size, quality of service, chains, requirements, open points,
-    and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
+    Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
+    requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
     from archgen.diagnostics.safe_text import make_visible
     from archgen.products import agreement_documents, product_writing
@@ -69,12 +76,21 @@ def command(  # noqa: PLR0913 - one for each option
         msg = "--signed marks what changed as --since does: give one of them"
         raise click.UsageError(msg)
     form = _choose_format(form, output)
+    if issue_date is not None:
+        issue_date = _check_date(issue_date)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    earlier_version = _read_earlier(since, "--since", project) if since else None
+    earlier_version = _read_earlier(since, "--since", checked_project, project) if since else None
     if signed:
-        earlier_version = _read_earlier(signed, "--signed", project)
+        earlier_version = _read_earlier(signed, "--signed", checked_project, project)
     try:
-        agreement = agreement_documents.make_project_agreement(checked_project, *pair, earlier_version, revision)
+        agreement = agreement_documents.make_project_agreement(
+            checked_project,
+            *pair,
+            earlier_version,
+            revision,
+            issue_date=issue_date,
+            signed_version=earlier_version if signed else None,
+        )
     except agreement_documents.PartnersError as error:
         raise click.UsageError(make_visible(str(error))) from None
     output_options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
@@ -92,25 +108,45 @@ def command(  # noqa: PLR0913 - one for each option
     _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
 
 
+def _check_date(text: str) -> str:
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.products.agreement_documents import parse_issue_date
+
+    try:
+        return parse_issue_date(text)
+    except ValueError as error:
+        raise click.UsageError(make_visible(f"--date: {error}")) from None
+
+
 def _exit_by_terms(
     checked_project: CheckedProject, agreement: PartnerAgreement, signed_version: ProjectVersion | None
 ) -> NoReturn:
     """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.views.agreement.signed_terms import list_departures
+    from archgen.git.project_revision import find_revision
+    from archgen.views.agreement.signed_terms import has_departures, write_verdict
 
     if signed_version is None or agreement.changes is None:
         command_support.exit_by_findings(checked_project)
-    for version in (signed_version.checked_project, checked_project):
-        if version.structural_errors:
-            where = f"at {signed_version.title}" if version is signed_version.checked_project else "now"
-            click.echo(make_visible(f"cannot be judged: the architecture cannot be read whole {where}"), err=True)
-            sys.exit(1)
-    departures = list(list_departures(agreement.changes))
-    verdict = f"not as signed at {signed_version.title}:" if departures else f"as signed at {signed_version.title}"
-    for line in (verdict, *(f"  {departure}" for departure in departures)):
+    _refuse_unsound(signed_version.checked_project, f"at {signed_version.title}")
+    _refuse_unsound(checked_project, "now")
+    if find_revision(checked_project.root, checked_project.input_files).endswith("+"):
+        click.echo("note: this is about the working tree, which has changes that are not committed", err=True)
+    for line in write_verdict(agreement.changes):
         click.echo(make_visible(line), err=True)
-    sys.exit(1 if departures else command_support.exit_status(checked_project.findings))
+    sys.exit(1 if has_departures(agreement.changes) else command_support.exit_status(checked_project.findings))
+
+
+def _refuse_unsound(checked_project: CheckedProject, when: str) -> None:
+    """End with 1 where a state cannot be read whole, and say what is wrong with it first."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    if checked_project.structural_errors:
+        error = checked_project.structural_errors[0]
+        reason = f"{error.span.file}:{error.span.line}: {error.message}"
+        message = f"cannot be judged: the architecture cannot be read whole {when} ({reason})"
+        click.echo(make_visible(message), err=True)
+        sys.exit(1)
 
 
 def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> AgreementFormat:
@@ -126,14 +162,14 @@ def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> 
     return format_of_ending
 
 
-def _read_earlier(revision: str, option: str, project: Path | None) -> ProjectVersion:
+def _read_earlier(revision: str, option: str, checked_project: CheckedProject, project: Path | None) -> ProjectVersion:
     """Read the project as it was. A revision that cannot be read is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.products import compared_versions
+    from archgen.products.signed_agreements import read_version_before
     from archgen.project import ProjectNotFoundError
 
     try:
-        return compared_versions.read_version(revision, project)
+        return read_version_before(revision, checked_project, project)
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(f"{option}: {error}")) from None

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.group("new")
 def command() -> None:
-    """Add a group, a component or a node: in the file where its like stand, in the form that the file has.
+    """Add a group, a component, a node or a partner: in the file where its like stand, in the form that the file has.
 
     All else in the file stays as it is, byte for byte. Nothing is written where the result would not load, or where
     another element would change; then it says what to write by hand.
@@ -147,6 +147,53 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
         NewElement(name, body),
         name,
         dry_run=dry_run,
+    )
+
+
+@command.command("partner")
+@click.option("--dry-run", is_flag=True, help="Print the difference and write nothing.")
+@shared_options.project_option
+@click.option("--reviewers", metavar="HANDLES", help="Who reviews its changes, as CODEOWNERS names them.")
+@click.option("--title", metavar="TEXT", help="The title.  [default: made from the ID]")
+@click.argument("name", metavar="ID")
+def add_partner(name: str, title: str | None, reviewers: str | None, project: Path | None, *, dry_run: bool) -> None:
+    """Add a partner, with the file in which it agrees to changes that break it."""
+    from archgen.edit import element_place
+    from archgen.edit.new_element import NewElement
+    from archgen.model.path_resolver import title_from_id
+
+    checked_project = command_support.check_or_exit(project)
+    _require_free_id(name, "partner", {key: value.at for key, value in checked_project.architecture.partners.items()})
+    body = _drop_missing(title=title or title_from_id(name), reviewers=reviewers)
+    _add_element(
+        checked_project,
+        element_place.place_for_partner(checked_project),
+        NewElement(name, body),
+        name,
+        dry_run=dry_run,
+    )
+    if not dry_run:
+        _add_agreement_file(checked_project, name, title or title_from_id(name))
+
+
+def _add_agreement_file(checked_project: CheckedProject, name: str, title: str) -> None:
+    """Write the file of a partner's agreements where the project is a folder; say what is left to do."""
+    from archgen.emit import file_tree
+    from archgen.model.review_settings import agreement_file
+    from archgen.products.schema_renewal import SCHEMA_FILE
+    from archgen.project import PROJECT_FILE
+    from archgen.start.start_templates import fill_agreements
+
+    if checked_project.loaded_project.first_file != PROJECT_FILE:
+        return
+    path = checked_project.root / agreement_file(name)
+    with command_support.explain_write_errors():
+        if not path.is_symlink() and not path.exists():
+            has_schema = (checked_project.root / SCHEMA_FILE).exists()
+            file_tree.write_file(path, fill_agreements(title, has_schema=has_schema))
+            command_support.print_written(path, "what it agrees on")
+    click.echo(
+        "`archgen owners --format codeowners` makes CODEOWNERS anew; `owner:` of a group gives it something to own."
     )
 
 

@@ -141,7 +141,8 @@ def _explain_in_comment(target: Path, base: str | None) -> Iterator[None]:
 
 def _refuses_breaks(checked_project: CheckedProject) -> bool:
     """Whether the project's policy is to fail: then it fails, too, where nobody can say what a change breaks."""
-    return checked_project.architecture.review.breaking is Severity.ERROR
+    policy = checked_project.architecture.review.breaking
+    return policy is not None and policy.gravest is Severity.ERROR
 
 
 def _write_unjudged(target: Path, reason: str) -> None:
@@ -175,9 +176,13 @@ def _compare_change(
     from archgen.forge.reviewed_request import find_reviewed_request
     from archgen.products.reviewed_change import compare_change
     from archgen.project import NotAtRevisionError
+    from archgen.project.project_tracking import UnclearMoveError
 
     try:
         return compare_change(checked_project, project, merge_target, find_reviewed_request(), version_cache)
+    except UnclearMoveError as error:
+        # The policy of the project that it was is not known, and the branch's own cannot be trusted.
+        raise click.UsageError(make_visible(str(error))) from None
     except NotAtRevisionError as error:
         reason = f"{error}: there is nothing to compare with"
     except git.GitError as error:

@@ -141,7 +141,7 @@ def _print_chain(request: TimingRequest, chain_id: str) -> None:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, analysis.system, age, published, find_width(sys.stdout)))
+        _print_lines(timing_text.format_chain(result, analysis, age, published, find_width(sys.stdout)))
 
 
 def _print_reasons(request: TimingRequest, word: str) -> None:
@@ -202,7 +202,7 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
     if request.as_json:
         _print_json(timing_answers.sensitivity_to_json(result, ranking))
     else:
-        _print_lines(timing_answers.format_sensitivity(result, analysis.system, ranking, find_width(sys.stdout)))
+        _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
 
 
 def _print_measured(request: TimingRequest, file: Path) -> None:

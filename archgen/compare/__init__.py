@@ -2,7 +2,7 @@
 
 `kinds` says what elements of each kind have. `match_elements` pairs renamed and moved elements first, `element_listing`
 lists both versions in normal form under common ids, and every difference then is a change (`difference_finder`), described by `change_sentences` with its
-effects on connections (`connection_maps`).
+effects on connections (`connection_maps`). `edits` says which changes are one item to people.
 """
 
 from archgen.compare.architecture_version import ArchitectureVersion

@@ -11,38 +11,49 @@ from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerB
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
-from archgen.compare.losses.lost_connections import find_lost_connections
+from archgen.compare.losses.changed_distro import find_changed_distro
+from archgen.compare.losses.changed_meanings import find_changed_meanings
+from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources
 from archgen.compare.losses.missed_deadlines import find_late_chains
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_outputs import find_weakened_outputs
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
 from archgen.compare.losses.weakened_qos import find_weakened_publishers
+from archgen.compare.losses.weakened_sizes import find_weakened_sizes
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
-from archgen.model.review_settings import AcceptedChange, ReviewSettings
+from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
 
 _LOSS_FINDERS = (
     find_lost_connections,
+    find_changed_distro,
     find_retyped_outputs,
     find_redefined_messages,
     find_renamed_topics,
+    find_retyped_topics,
     find_weakened_publishers,
+    find_weakened_outputs,
+    find_weakened_sizes,
     find_unserved_requirements,
+    find_changed_meanings,
+    find_renamed_sources,
 )
 
 
-def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> Severity:
+def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> BreakPolicy:
     """Return the stricter policy of both versions, so that no branch weakens the policy it is judged by."""
-    return max(review.breaking or Severity.WARNING for review in (old_review, new_review))
+    return (old_review.breaking or BreakPolicy()).combine_stricter(new_review.breaking or BreakPolicy())
 
 
 def mark_breaking_changes(
-    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
+    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None, policy: BreakPolicy
 ) -> tuple[Change, ...]:
-    """Add to each change whom it breaks and whether that is accepted; breaking changes come first, accepted ones after
-    the rest of them.
+    """Add to each change whom it breaks and whether that is accepted; breaking changes come first, the gravest before the
+    others, accepted ones after the rest of them. What the policy does not ask for is no loss.
     """
     if not context.changes or not (context.before.partners or context.after.partners):
         return tuple(context.changes)
@@ -50,7 +61,9 @@ def mark_breaking_changes(
     # stay.
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
     for loss in _find_losses(context, chains, timing_pair):
-        breaks_by_index[loss.change_index][PartnerBreak(loss.partner, loss.reason)] = None
+        if policy.severity_of(loss.category) is not Severity.OFF:
+            partner_break = PartnerBreak(loss.partner, loss.reason, category=loss.category)
+            breaks_by_index[loss.change_index][partner_break] = None
     entries = context.before.review.accepted, context.after.review.accepted
     marked_changes = [
         judge_agreements(change, breaks_by_index[index], entries, context.matched_ids)
@@ -59,7 +72,13 @@ def mark_breaking_changes(
         for index, change in enumerate(context.changes)
     ]
     # The sort is stable: within each class the order of `change_order` remains.
-    return tuple(sorted(marked_changes, key=lambda change: (not change.breaks, change.acceptance_reason is not None)))
+    return tuple(sorted(marked_changes, key=lambda change: _rank_change(change, policy)))
+
+
+def _rank_change(change: Change, policy: BreakPolicy) -> tuple[bool, bool, int]:
+    """Return the sort key that puts first what needs an answer most."""
+    severities = (policy.severity_of(each.category).rank for each in change.breaks)
+    return not change.breaks, change.acceptance_reason is not None, -max(severities, default=0)
 
 
 def _find_losses(
@@ -96,5 +115,7 @@ def keep_breaking_only(comparison: Comparison) -> Comparison:
         silenced_findings=(),
         chains=(),
         concerned_owners=concerned_owners,
+        boundaries=(),
+        loads=(),
         only_breaking=True,
     )

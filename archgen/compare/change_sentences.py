@@ -6,12 +6,25 @@ from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import describe_key_change, shorten_text
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.meaning_sentences import (
+    describe_field_changes,
+    describe_outer_messages,
+    describe_output_timing,
+    describe_readers,
+)
+from archgen.compare.owner_sentences import describe_new_owner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
+from archgen.model.quantity import Quantity
 from archgen.transform import ros_names
 
-_SURE_CONFIDENCE = 0.85
+SURE_CONFIDENCE = 0.85
 """From here on a rename is stated without its confidence."""
+
+
+def note_confidence(confidence: float) -> str:
+    """Return what stands behind a sentence that is not sure, empty for one that is."""
+    return "" if confidence >= SURE_CONFIDENCE else f" (recognised with {round(confidence * 100)} % confidence)"
 
 
 def describe_rename(change: Change, versions: VersionPair) -> str:
@@ -26,12 +39,7 @@ def describe_rename(change: Change, versions: VersionPair) -> str:
         sentence = f"{kind_word} `{old_id}` is called `{change.element_id.rpartition('.')[2]}` now"
     else:
         sentence = f"{kind_word} `{shorten_text(old_id)}` is called `{shorten_text(change.element_id)}` now"
-    confidence_note = (
-        ""
-        if change.confidence >= _SURE_CONFIDENCE
-        else f" (recognised with {round(change.confidence * 100)} % confidence)"
-    )
-    return sentence + confidence_note + _describe_following_names(change, versions)
+    return sentence + note_confidence(change.confidence) + _describe_following_names(change, versions)
 
 
 def _describe_following_names(change: Change, versions: VersionPair) -> str:
@@ -57,6 +65,8 @@ def describe_port_change(change_kind: str, element: ComparedElement, versions: V
     topic_names = (
         ", ".join(sorted(map(str, topics))) if isinstance(topics := element.values.get("topic"), frozenset) else ""
     )
+    if name.startswith("internal."):
+        return _describe_internal_port(change_kind, node_id, name, topic_names, element.values.get("message"))
     topic_note = f" on {topic_names}" if topic_names else ""
     verb = "now has" if change_kind == "added" else "no longer has"
     same_port_elements = (
@@ -75,35 +85,84 @@ def describe_port_change(change_kind: str, element: ComparedElement, versions: V
     return f"node `{node_id}` {verb} `{name}`{topic_note}{heir_note}"
 
 
+_USE_VERBS = {
+    "publishes": "publishes",
+    "subscribes": "subscribes to",
+    "serves": "serves",
+    "calls": "calls",
+}
+"""What a node does, by the key that says it."""
+
+
+def _describe_internal_port(change_kind: str, node_id: str, name: str, topic_names: str, message: object) -> str:
+    """Describe a topic, service or action of a node that no component knows, such as one for finding faults."""
+    _, use, key = name.split(".", 2)
+    phrase = f"{'now' if change_kind == 'added' else 'no longer'} {_USE_VERBS.get(use, use)}"
+    message_note = f", a `{shorten_text(str(message))}`" if message else ""
+    return f"node `{node_id}` {phrase} `{shorten_text(topic_names or key)}`{message_note}; no component knows of it"
+
+
 def describe_change(change: Change, versions: VersionPair) -> str:
     """Describe the old and new value of a key, and whom that concerns."""
-    return "; ".join(filter(None, (describe_key_change(change), _describe_concerned(change, versions))))
+    sentence = (
+        describe_new_owner(change, versions) or describe_output_timing(change, versions) or describe_key_change(change)
+    )
+    return "; ".join(filter(None, (sentence, _describe_concerned(change, versions))))
 
 
 def _describe_concerned(change: Change, versions: VersionPair) -> str:
     """Describe who is at the other end of a change: readers, carriers, requirements that nothing serves any more."""
-    element_id = change.element_id
     match change.element_kind, change.key:
-        case "output", "type":
-            readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
-            return f"it is read by {tick_names(readers)}" if readers else ""
-        case "type", "message" | "size":
-            outputs = versions.find_elements_with("output", "type", element_id)
-            return f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
-        case "message", _:
-            types = versions.find_elements_with("type", "message", element_id)
-            return f"it carries {tick_names(types)}" if types else ""
+        case "output", "description":
+            return describe_readers(change.element_id, versions)
+        case "chain", "deadline":
+            return _describe_weaker_promise(change, versions)
         case "component", "requirements":
-            before, after = versions.serving_components
-            lost_requirements = [
-                requirement
-                for requirement in sorted(before)
-                if requirement not in after and element_id == min(before[requirement])
-            ]
-            unserved = [
-                requirement
-                for requirement in lost_requirements
-                if ("requirement", requirement) in versions.elements_after
-            ]
-            return f"no component serves {tick_names(unserved)} any more" if unserved else ""
+            return _describe_unserved(change.element_id, versions)
+        case "output" | "type" | "message", _:
+            return _describe_carriers(change, versions)
     return ""
+
+
+def _describe_carriers(change: Change, versions: VersionPair) -> str:
+    """Describe who carries what has another form, and for another message in which fields that differs."""
+    element_id = change.element_id
+    if change.element_kind == "message":
+        types = versions.find_elements_with("type", "message", element_id)
+        return f"it carries {tick_names(types)}" if types else describe_outer_messages(element_id, versions)
+    if change.element_kind == "output" and change.key == "type":
+        readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
+        return f"it is read by {tick_names(readers)}" if readers else ""
+    if change.element_kind == "type" and change.key in {"message", "size", "comment"}:
+        outputs = versions.find_elements_with("output", "type", element_id)
+        carrier_note = f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""
+        field_note = describe_field_changes(change.before, change.after, versions) if change.key == "message" else ""
+        return "; ".join(filter(None, (carrier_note, field_note)))
+    return ""
+
+
+def _describe_unserved(component_id: str, versions: VersionPair) -> str:
+    before, after = versions.serving_components
+    unserved = [
+        requirement
+        for requirement in sorted(before)
+        if requirement not in after
+        and component_id == min(before[requirement])
+        and ("requirement", requirement) in versions.elements_after
+    ]
+    return f"no component serves {tick_names(unserved)} any more" if unserved else ""
+
+
+def _describe_weaker_promise(change: Change, versions: VersionPair) -> str:
+    """Describe what a chain no longer promises: its deadline is relaxed, or gone."""
+    old_chain, new_chain = (
+        elements.get(("chain", change.element_id)) for elements in (versions.elements_before, versions.elements_after)
+    )
+    old_deadline, new_deadline = (chain and chain.values.get("deadline") for chain in (old_chain, new_chain))
+    if old_chain is None or not isinstance(old_deadline, Quantity):
+        return ""
+    requirements = old_chain.values.get("requirements")
+    served_note = f" to {tick_names(sorted(requirements))}" if isinstance(requirements, frozenset) else ""
+    if not isinstance(new_deadline, Quantity):
+        return f"nothing is promised{served_note} any more"
+    return f"a weaker promise{served_note} than before" if new_deadline.value > old_deadline.value else ""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
+from archgen.compare.chain_causes import add_chain_causes
 from archgen.compare.chain_changes import compare_chains
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Comparison
@@ -14,10 +17,13 @@ from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.connection_maps import map_connections
 from archgen.compare.difference_finder import DifferenceFinder
 from archgen.compare.element_listing import list_elements
+from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.finding_changes import judge_findings
+from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.partner_titles import title_partners
 from archgen.compare.timing_pair import analyse_timing_pair
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Severity
@@ -43,21 +49,32 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         lost_keys,
         _find_unnamed_outputs(after.architecture),
         (before.sound_files, after.sound_files),
+        partner_names=title_partners(before.architecture, after.architecture),
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
+    if any(change.element_kind == "link" for change in changes):
+        version_pair = replace(version_pair, link_users=find_link_users(before, after, matched_ids))
     judged_findings = judge_findings(before, after, matched_ids)
     timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
-    breaking_severity = stricter_policy(before.architecture.review, after.architecture.review)
+    change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes)
+    chain_changes = add_chain_causes(change_context, chain_changes, timing_pair)
+    policy = stricter_policy(before.architecture.review, after.architecture.review)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
-    if breaking_severity is not Severity.OFF:
+    if policy.gravest is not Severity.OFF:
         changes = mark_breaking_changes(
-            ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes),
+            change_context,
             chain_changes,
             timing_pair,
+            policy,
         )
         idle_acceptances = find_idle_acceptances(changes, after.architecture.review)
+    boundaries: tuple[BoundaryChange, ...] = ()
+    loads: tuple[LoadChange, ...] = ()
+    if changes:
+        boundaries = find_boundary_changes(before, after, matched_ids, timing_pair, version_pair)
+        loads = find_load_changes(after.architecture, matched_ids, timing_pair)
     return Comparison(
         before,
         after,
@@ -67,10 +84,12 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         judged_findings.new_findings,
         judged_findings.cured_findings,
         chain_changes,
-        find_concerned_owners(changes, version_pair),
+        find_concerned_owners(changes, version_pair, (*boundaries, *loads, *chain_changes)),
         judged_findings.silenced_findings,
-        breaking_severity=breaking_severity,
+        policy=policy,
         idle_acceptances=idle_acceptances,
+        boundaries=boundaries,
+        loads=loads,
     )
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -21,12 +22,13 @@ class PartnerBreak:
     """What a partner loses by a change. `reason` completes a sentence after the change: "takes `a.b.c` from sssa, who
     ...".
 
-    `agreement` is why the partner agrees, None if it does not.
+    `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it.
     """
 
     partner: str
     reason: str
     agreement: str | None = None
+    category: BreakCategory = "wire"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +61,13 @@ class Change:
         return tuple(sorted({partner_break.partner for partner_break in self.breaks}))
 
     @property
+    def break_categories(self) -> tuple[BreakCategory, ...]:
+        """Return the categories of what partners lose, in the order of the policy."""
+        return tuple(
+            category for category in BREAK_CATEGORIES if any(each.category == category for each in self.breaks)
+        )
+
+    @property
     def unheard_partners(self) -> tuple[str, ...]:
         """Return the partners who lose something and did not agree, sorted."""
         return tuple(sorted({each.partner for each in self.breaks if each.agreement is None}))
@@ -77,6 +86,10 @@ class ChainChange:
     id: str
     before: ChainResult | None
     after: ChainResult | None
+    causes: tuple[Change, ...] = ()
+    """The changes that made its bound another."""
+    concerned_partners: frozenset[str] = frozenset()
+    """The partners with a part on it in either version; none where the bound is nearly the same."""
 
     @property
     def deadline(self) -> TimingValue | None:
@@ -90,9 +103,9 @@ class Comparison:
     """Everything that differs. `cured_findings` and `silenced_findings` belong to the first version, `new_findings` to
     the second.
 
-    A silenced finding is not cured: a comment or a setting hides it now. `breaking_severity` is how serious it is to
-    break a partner: the stricter policy of both versions. `idle_acceptances` are the accepted entries of the second
-    version that name no breaking change.
+    A silenced finding is not cured: a comment or a setting hides it now. `policy` is how serious it is to break a
+    partner: the stricter one of both versions. `idle_acceptances` are the accepted entries of the second version that
+    name no breaking change.
     """
 
     before: ArchitectureVersion
@@ -105,8 +118,14 @@ class Comparison:
     chains: tuple[ChainChange, ...]
     concerned_owners: tuple[str, ...]
     silenced_findings: tuple[Diagnostic, ...] = ()
-    breaking_severity: Severity = Severity.WARNING
+    policy: BreakPolicy = field(default_factory=BreakPolicy)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
+    boundaries: tuple[BoundaryChange, ...] = ()
+    """What changed at the interfaces between partners, by interface."""
+    loads: tuple[LoadChange, ...] = ()
+    """The hosts and links whose load changed noticeably."""
+    left_out_files: tuple[str, ...] = ()
+    """The files that the first version read, and the second one has and does not read."""
     only_breaking: bool = False
     """Whether only the changes that break a partner were kept."""
 
@@ -115,9 +134,14 @@ class Comparison:
         """Whether the project's policy refuses this comparison: a partner is broken and did not agree, or nobody can
         say that none is.
         """
-        return self.breaking_severity is Severity.ERROR and (
-            not self.is_judged or any(change.unheard_partners for change in self.changes)
+        return self.policy.gravest is Severity.ERROR and (
+            not self.is_judged or any(self.break_severity(change) is Severity.ERROR for change in self.changes)
         )
+
+    def break_severity(self, change: Change) -> Severity:
+        """Return how serious it is that a change breaks partners who did not agree; `off` if there are none."""
+        severities = (self.policy.severity_of(each.category) for each in change.breaks if each.agreement is None)
+        return max(severities, default=Severity.OFF)
 
     @property
     def is_judged(self) -> bool:

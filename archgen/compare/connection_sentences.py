@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.compare.connection_maps import RewiredInput
+from archgen.compare.meaning_sentences import describe_lost_effects
 from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
 
@@ -26,7 +27,8 @@ def describe_connection(rewired_input: RewiredInput, versions: VersionPair) -> s
         and not versions.connections_before.readers_by_output.get(output_id)
     ]
     sentence += f"; nobody reads {tick_names(unread_outputs)} any more" if unread_outputs else ""
-    return sentence + (f"; nobody read {tick_names(newly_read_outputs)} before" if newly_read_outputs else "")
+    sentence += f"; nobody read {tick_names(newly_read_outputs)} before" if newly_read_outputs else ""
+    return "; ".join((sentence, *limit_effects(list(describe_lost_effects([rewired_input.input_id], versions)))))
 
 
 def _describe_reading(rewired_input: RewiredInput, reader: str, versions: VersionPair) -> str:
@@ -43,6 +45,7 @@ def _describe_reading(rewired_input: RewiredInput, reader: str, versions: Versio
     if lost_outputs and gained_outputs:
         return f"{reader} now reads {tick_names(gained_outputs)} instead of {tick_names(lost_outputs)}"
     if lost_outputs:
+        lost_outputs = [_old_name(name, versions) for name in sorted(rewired_input.lost_sources)]
         all_removed = all(versions.is_removed("output", name) for name in rewired_input.lost_sources)
         removal_note = f", which {'was' if len(lost_outputs) == 1 else 'were'} removed" if all_removed else ""
         return f"{reader} no longer reads {tick_names(lost_outputs)}{removal_note}{'' if rewired_input.sources_after else '; it has no source any more'}"
@@ -51,6 +54,12 @@ def _describe_reading(rewired_input: RewiredInput, reader: str, versions: Versio
     if rewired_input.sources_before:
         return f"{reader} now also reads {tick_names(gained_outputs)}"
     return f"{reader} now reads {tick_names(gained_outputs)}, its first source{'s' if len(gained_outputs) > 1 else ''}"
+
+
+def _old_name(output_id: str, versions: VersionPair) -> str:
+    """Return the name under which an output was read: what it is called now it may never have been read as."""
+    element = versions.elements_before.get(("output", output_id))
+    return element.own_id if element else output_id
 
 
 def _describe_removed_reader(rewired_input: RewiredInput, reader: str, versions: VersionPair) -> str:

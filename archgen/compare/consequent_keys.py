@@ -22,6 +22,9 @@ def is_consequence(
     old_value, new_value = old_element.values.get(key), new_element.values.get(key)
     if isinstance(old_value, ElementTitle) and isinstance(new_value, ElementTitle):
         return _is_same_title(old_value, new_value, old_element, new_element)
+    if key == "timing.behaviour" and {old_value, new_value} == {None, "periodic"}:
+        # What has a rate is periodic, whether or not somebody writes it down.
+        return all(element.values.get("timing.rate") is not None for element in (old_element, new_element))
     if key in _OWNER_KEYS:
         return _component_came_or_went(old_element, new_element, before, after) or _owner_is_inherited(
             key, old_element, new_element, before, after
@@ -29,6 +32,8 @@ def is_consequence(
     # That a removed element is no longer named is no news.
     referred_kind = find_key(new_element.kind, key).refers_to
     if referred_kind and _lost_removed_only(old_value, new_value, referred_kind, after):
+        return True
+    if new_element.kind == "chain" and key == "through" and _leads_past_removed_only(old_value, new_value, after):
         return True
     return _follows_by_kind(key, old_element, new_element, before, after)
 
@@ -81,6 +86,15 @@ def _lost_removed_only(old_value: object, new_value: object, kind: str, after: E
         value if isinstance(value, frozenset) else frozenset[str]() for value in (old_value, new_value)
     )
     return old_names > new_names and not any((kind, name) in after for name in old_names - new_names)
+
+
+def _leads_past_removed_only(old_points: object, new_points: object, after: ElementsByKey) -> bool:
+    """Whether a chain leads through the same as before, but for what was removed."""
+    if not isinstance(old_points, tuple) or not isinstance(new_points, tuple):
+        return False
+    lost_points = set(old_points) - set(new_points)
+    is_gone = not any((kind, point) in after for point in lost_points for kind in ("component", "node", "output"))
+    return bool(lost_points) and is_gone and [point for point in old_points if point in new_points] == [*new_points]
 
 
 def _follows_mapping(key: str, old_element: ComparedElement, new_element: ComparedElement) -> bool:

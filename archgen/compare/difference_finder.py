@@ -109,8 +109,18 @@ class DifferenceFinder:
         for key, before, after in changed_keys.list_changed_keys(
             old_element, new_element, self.elements_before, self.elements_after
         ):
-            if not self.versions.value_may_be_unread((new_element.kind, new_element.id), before, after):
+            element_key = (new_element.kind, new_element.id)
+            if isinstance(before, Mapping) and isinstance(after, Mapping):
+                read_names = [name for name in before if not self._may_be_unread_in_one(element_key, name)]
+                before, after = ({name: each[name] for name in read_names} for each in (before, after))  # noqa: PLW2901
+                if not read_names:
+                    continue
+            if not self.versions.value_may_be_unread(element_key, before, after, key):
                 self.top_changes.append(self._key_change(new_element, key, before, after))
+
+    def _may_be_unread_in_one(self, key: ElementKey, value_key: str) -> bool:
+        """Whether a value that has a default was taken out of either version, since it could not be read."""
+        return any(self.versions.key_may_be_unread(key, value_key, side) for side in (0, 1))
 
     def _key_change(self, element: ComparedElement, key: str, before: object, after: object) -> Change:
         change = Change("changed", element.kind, element.id, key=key, before=before, after=after)
@@ -132,7 +142,13 @@ class DifferenceFinder:
             else None
         )
         parent_key = node_key or outermost_key
-        if parent_key or ("carried" in port_element.values and port_element.parent_key in self._sharing_nodes):
+        # What is inside a node belongs to no component that could say it: it came or went as a whole.
+        is_own = not port_element.component_refs
+        if (
+            parent_key
+            or is_own
+            or ("carried" in port_element.values and port_element.parent_key in self._sharing_nodes)
+        ):
             change_kind = "added" if new_port else "removed"
             change = Change("added" if new_port else "removed", "port", port_element.own_id)
             change = replace(

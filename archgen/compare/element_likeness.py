@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
 MIN_LIKENESS = 0.6
 """Below this likeness an element was not renamed or moved: one was removed, and another one added."""
+CERTAIN = 0.99
+"""The confidence in a pair that is the same in all but its name; likeness stays below 1."""
+_CERTAIN_WEIGHT = 5.0
+"""As much as this has to be the same for a pair to be certain: more than one feature."""
 _DOUBT_WEIGHT = 1.0
 """Weight of what is unknown: two elements about which hardly anything is said are never surely the same."""
 _MAX_PAIRS_PER_MARK = 64
@@ -22,6 +26,8 @@ class Feature(NamedTuple):
     weight: float
     marks: frozenset[str]
     generated: bool = False
+    decisive: bool = False
+    """Whether it decides alone where most of both sides' marks are the same."""
 
 
 FeatureMap = Mapping[str, Feature]
@@ -34,13 +40,29 @@ def measure_likeness(old_features: FeatureMap, new_features: FeatureMap) -> floa
     # The doubt is counted as a feature without anything in common, so that a single equal feature of weight 1 is only
     # 50 % likely.
     total_weight, common_weight = _DOUBT_WEIGHT, 0.0
-    for name, (weight, marks, generated) in old_features.items():
-        _, other_marks, other_generated = new_features[name]
+    decisive_share = 0.0
+    for name, (weight, marks, generated, decisive) in old_features.items():
+        _, other_marks, other_generated, _ = new_features[name]
         if (marks or other_marks) and not (generated and other_generated):
             total_weight += weight
+            common_count = len(marks & other_marks)
             # Jaccard index of the marks.
-            common_weight += weight * len(marks & other_marks) / len(marks | other_marks)
-    return common_weight / total_weight
+            common_weight += weight * common_count / len(marks | other_marks)
+            if decisive and common_count > 1:
+                decisive_share = min(common_count / max(len(marks), len(other_marks)), CERTAIN)
+    return max(common_weight / total_weight, decisive_share)
+
+
+def _equal_but_for_names(old_features: FeatureMap, new_features: FeatureMap) -> bool:
+    """Whether all that is known of two elements is the same, but their ids and the titles that follow these."""
+    equal_weight = 0.0
+    for name, old_feature in old_features.items():
+        new_feature = new_features[name]
+        if name != "name" and not (old_feature.generated and new_feature.generated):
+            if old_feature.marks != new_feature.marks:
+                return False
+            equal_weight += old_feature.weight if old_feature.marks else 0
+    return equal_weight >= _CERTAIN_WEIGHT
 
 
 def letter_pairs(name: str) -> frozenset[str]:
@@ -70,7 +92,11 @@ def find_likely_pairs(
     # image (tests/compare/test_same.py).
     scored.sort(key=lambda entry: (-entry[0], min(entry[1:]), max(entry[1:])))
     used_old_ids, used_new_ids = set[str](), set[str]()
-    for confidence, old_id, new_id in scored:
+    # An element that could as well be another one is not certain.
+    rivals = Counter(side_id for _, *ids in scored for side_id in zip("<>", ids, strict=True))
+    for likeness, old_id, new_id in scored:
+        has_rival = rivals["<", old_id] > 1 or rivals[">", new_id] > 1
+        confidence = CERTAIN if not has_rival and _equal_but_for_names(before[old_id], after[new_id]) else likeness
         if old_id not in used_old_ids and new_id not in used_new_ids:
             used_old_ids.add(old_id)
             used_new_ids.add(new_id)

@@ -8,10 +8,12 @@ from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import shorten_text
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.meaning_sentences import describe_lost_effects
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.model.review_settings import agreement_file
 
 
 def describe_element_change(change: Change, element: ComparedElement, versions: VersionPair) -> str:
@@ -34,6 +36,8 @@ def _describe_new_element(element: ComparedElement) -> str:
     """Describe what matters most of a new element, such as a node's place or the way of a chain."""
     if element.kind == "policy":
         return f"; nothing may lead from `{shorten_text(str(element.values['forbid.from']))}` to `{shorten_text(str(element.values['forbid.to']))}`"
+    if element.kind == "partner":
+        return f"; what it agrees on stands in `{agreement_file(element.own_id)}`"
     clauses = [
         f"{key.new_verb} {tick_names(referred_names)}"
         for key in ELEMENT_KINDS[element.kind].keys
@@ -129,10 +133,15 @@ def _describe_sources(
         if ("output", name) in versions.elements_before and ("output", name) in versions.elements_after
     }
     told_anyway = {name for name in staying_sources if not other_connections.readers_by_output.get(name)}
+    if change_kind == "removed":
+        # What is gone as well is an item of its own.
+        told_anyway |= {name for name in source_ids if versions.is_removed("output", name)}
     shown_ids = [shown_id("output", name, versions) for name in source_ids if name not in told_anyway]
     outside_ids = [name for name in shown_ids if ("output", name) not in changed_keys]
     if outside_ids:
         yield f"it {'reads' if change_kind == 'added' else 'read'} {tick_names(outside_ids)}"
+    if change_kind == "removed":
+        yield from describe_lost_effects(common_inputs, versions)
 
 
 def _common_input(own_id: str, versions: VersionPair) -> str:

@@ -6,7 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from archgen.compare.comparison import Change
+from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
+from archgen.compare.text_differences import cut_text, describe_text_difference
 from archgen.diagnostics.common_wording import join_words
 
 _MAX_LENGTH = 80
@@ -17,6 +19,8 @@ _NAMED_SECTIONS = {
     "comments": "what is said of",
 }
 """What sentences call the keys of a section, by the section."""
+_ACCEPTED_PREFIX = "review.accepted."
+_CALLS_PREFIX = "timing.calls."
 
 
 def describe_key_change(change: Change) -> str:
@@ -31,7 +35,8 @@ def describe_key_change(change: Change) -> str:
         values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
         return f"{subject}: {spec.noun} {join_words(values)}"
     if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
-        return f"the {_spell_out(key)} of {subject} {_rewrite_phrase(before, after)}"
+        phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
+        return f"the {_spell_out(key)} of {subject} {phrase}"
     if change.element_kind in {"input", "output"} and key in {"type", "optional"}:
         return f"{subject} {_port_phrase(change, spec.verb)}"
     if spec.verb and _has_verb_form(key, before, after):
@@ -42,8 +47,14 @@ def describe_key_change(change: Change) -> str:
     else:
         noun = spec.noun or _key_noun(key)
     if isinstance(before, list) or isinstance(after, list):
-        return f"{subject}{_list_phrase(noun, spec.list_verbs, before, after)}"
+        fields_phrase = _fields_phrase(before, after) if (change.element_kind, key) == ("message", "fields") else ""
+        return subject + (fields_phrase or _list_phrase(noun, spec.list_verbs, before, after))
     return f"{subject}: {_value_phrase(noun, before, after)}"
+
+
+def name_key(kind: str, key: str) -> str:
+    """Return what sentences call a key of a kind of element."""
+    return find_key(kind, key).noun or _key_noun(key)
 
 
 def _has_verb_form(key: str, before: object, after: object) -> bool:
@@ -66,6 +77,10 @@ def _key_noun(key: str) -> str:
     if key.startswith("rules."):
         rule, _, option = key.removeprefix("rules.").partition(".")
         return f"`{option}` of the rule `{rule}`" if option else f"severity of the rule `{rule}`"
+    if key.startswith(_ACCEPTED_PREFIX):
+        return f"what is accepted of `{shorten_text(key.removeprefix(_ACCEPTED_PREFIX))}`"
+    if key.startswith(_CALLS_PREFIX):
+        return f"calls of `{shorten_text(key.removeprefix(_CALLS_PREFIX))}`"
     section, _, name = key.partition(".")
     if section in _NAMED_SECTIONS and name:
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
@@ -95,15 +110,31 @@ def _is_brief(text: object) -> bool:
 
 
 def _rewrite_phrase(before: object, after: object) -> str:
-    # Lines are counted, not quoted: a sentence must stay on one line.
-    if isinstance(before, str) and isinstance(after, str) and "\n" in before + after:
-        old_lines, new_lines = Counter(before.splitlines()), Counter(after.splitlines())
-        counts = ((new_lines - old_lines).total(), "added"), ((old_lines - new_lines).total(), "removed")
-        words = [f"{n} line{'s' if n > 1 else ''} {verb}" for n, verb in counts if n]
-        return f"changed: {' and '.join(words)}" if words else "has its lines in another order"
+    """Describe how a text that is too long for a sentence changed: by the words that differ."""
+    if before is None:
+        return f"is new: `{cut_text(str(after))}`"
+    if after is None:
+        return f"is gone: `{cut_text(str(before))}`"
+    # Where texts differ in nothing but lines, no word tells it.
+    return (
+        f"is rewritten: {difference}"
+        if (difference := describe_text_difference(str(before), str(after)))
+        else "has its lines broken in another way"
+    )
+
+
+def _count_lines(before: object, after: object) -> str:
+    """Describe how a chapter changed: its lines are counted, not quoted."""
     if before is None:
         return "is new"
-    return "is gone" if after is None else "is rewritten"
+    if after is None:
+        return "is gone"
+    if "\n" not in f"{before}{after}":
+        return "is rewritten"
+    old_lines, new_lines = Counter(str(before).splitlines()), Counter(str(after).splitlines())
+    counts = ((new_lines - old_lines).total(), "added"), ((old_lines - new_lines).total(), "removed")
+    words = [f"{n} line{'s' if n > 1 else ''} {verb}" for n, verb in counts if n]
+    return f"changed: {' and '.join(words)}" if words else "has its lines in another order"
 
 
 def _list_phrase(noun: str, verbs: tuple[str, str] | None, before: object, after: object) -> str:
@@ -128,6 +159,20 @@ def _list_phrase(noun: str, verbs: tuple[str, str] | None, before: object, after
         f" {join_words(_limit_items(items))} {verb}" for verb, items in (("added", gained), ("removed", lost)) if items
     ]
     return name + ",".join(words)
+
+
+def _fields_phrase(before: object, after: object) -> str:
+    """Describe which fields are other than before; empty if these are the same ones in another order."""
+    changes = compare_field_lines(before, after)
+    phrases = [
+        f"{format_value(name)} is {format_value(new_type)} instead of {format_value(old_type)}"
+        for name, (old_type, new_type) in changes.retyped.items()
+    ]
+    phrases += [f"{format_value(name)} is called {format_value(new)} now" for name, new in changes.renamed.items()]
+    phrases = _limit_items(phrases)
+    if changes.added or changes.removed:
+        phrases.append(_list_phrase("fields", None, changes.removed, changes.added).removeprefix(": "))
+    return f": {', '.join(phrases)}" if phrases else ""
 
 
 def _limit_items(items: Sequence[str]) -> list[str]:

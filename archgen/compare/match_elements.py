@@ -10,11 +10,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.element_likeness import Feature, FeatureMap, find_likely_pairs
+from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.reassigned_ids import REASSIGNABLE_KINDS, find_reassigned_ids
 from archgen.model.architecture import Architecture
 
 
@@ -23,13 +24,13 @@ def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
     matched_ids = MatchedIds()
     # Both look up `matched_ids` while it fills: features of later kinds see the matches of earlier ones. The order of
     # the calls below is therefore part of the algorithm.
-    old_relations, new_relations = (
-        ElementRelations(before, matched_ids.find_new_id),
-        ElementRelations(after, _matched_or_none(matched_ids)),
-    )
+    old_relations, new_relations = look_up_pair(before, after, matched_ids)
     matched_ids.add_pair("project", before.project.id, after.project.id)
     matcher = _Matcher(matched_ids, old_relations, new_relations)
     kinds = [ELEMENT_KINDS[name] for name in MATCHING_ORDER]
+    for kind in kinds:
+        if kind.name in REASSIGNABLE_KINDS:
+            matcher.pair_reassigned_ids(kind)
     for kind in kinds:
         if kind.parent_kind is None:
             matcher.pair_same_ids(kind)
@@ -38,6 +39,13 @@ def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
             matcher.pair_below_parents(kind, kind.parent_kind)
         matcher.pair_by_likeness(kind)
     return matched_ids
+
+
+def look_up_pair(
+    before: Architecture, after: Architecture, matched_ids: MatchedIds
+) -> tuple[ElementRelations, ElementRelations]:
+    """Return both versions with what describing their elements has to look up, under common ids."""
+    return ElementRelations(before, matched_ids.find_new_id), ElementRelations(after, _matched_or_none(matched_ids))
 
 
 def _matched_or_none(matched_ids: MatchedIds) -> Callable[[str, str], str | None]:
@@ -54,12 +62,25 @@ class _Matcher:
         self.old_relations = old_relations
         self.new_relations = new_relations
 
+    def pair_reassigned_ids(self, kind: KindSpec) -> None:
+        """Pair elements whose old id is another element's now, before the ids are taken at their word."""
+        relations = self.old_relations, self.new_relations
+        elements = _declared_elements(kind, self.old_relations), _declared_elements(kind, self.new_relations)
+        for old_id, new_id in find_reassigned_ids(kind.name, elements, relations):
+            self.matched_ids.add_pair(kind.name, old_id, new_id, CERTAIN)
+
     def pair_same_ids(self, kind: KindSpec) -> None:
         """Pair elements that have the same id in both versions."""
         new_ids = _declared_elements(kind, self.new_relations)
         for element_id in _declared_elements(kind, self.old_relations):
-            if element_id in new_ids:
+            if element_id in new_ids and not self._is_settled(kind, element_id, element_id):
                 self.matched_ids.add_pair(kind.name, element_id, element_id)
+
+    def _is_settled(self, kind: KindSpec, old_id: str, new_id: str) -> bool:
+        """Whether one of two ids belongs to another pair already."""
+        return self.matched_ids.find_new_id(kind.name, old_id) is not None or self.matched_ids.is_matched(
+            kind.name, new_id
+        )
 
     def pair_below_parents(self, kind: KindSpec, parent_kind: str) -> None:
         """Pair elements that have the same name below a matched parent: ids change when a parent is renamed."""
@@ -67,8 +88,9 @@ class _Matcher:
         for element_id in _declared_elements(kind, self.old_relations):
             parent, _, own_name = element_id.rpartition(".")
             new_parent = self.matched_ids.find_new_id(parent_kind, parent)
-            if new_parent is not None and f"{new_parent}.{own_name}" in new_ids:
-                self.matched_ids.add_pair(kind.name, element_id, f"{new_parent}.{own_name}")
+            new_id = f"{new_parent}.{own_name}"
+            if new_parent is not None and new_id in new_ids and not self._is_settled(kind, element_id, new_id):
+                self.matched_ids.add_pair(kind.name, element_id, new_id)
 
     def pair_by_likeness(self, kind: KindSpec) -> None:
         """Pair the remaining elements by likeness; ports only within each pair of components."""
@@ -77,7 +99,7 @@ class _Matcher:
             if self.matched_ids.find_new_id(kind.name, element_id) is None:
                 parent = self._new_parent(kind, element_id)
                 if parent is not None:
-                    features = _describe_element(kind, self.old_relations, element)
+                    features = describe_element(kind, self.old_relations, element)
                     unmatched_before.setdefault(parent, {})[element_id] = features
         if not unmatched_before:
             return
@@ -86,7 +108,7 @@ class _Matcher:
             parent = element_id.rpartition(".")[0] if kind.stays_in_parent else ""
             # Described only where something is left to pair.
             if parent in unmatched_after and not self.matched_ids.is_matched(kind.name, element_id):
-                unmatched_after[parent][element_id] = _describe_element(kind, self.new_relations, element)
+                unmatched_after[parent][element_id] = describe_element(kind, self.new_relations, element)
         for parent, elements in unmatched_before.items():
             for old_id, new_id, confidence in find_likely_pairs(elements, unmatched_after[parent]):
                 self.matched_ids.add_pair(kind.name, old_id, new_id, confidence)
@@ -104,13 +126,14 @@ def _declared_elements(kind: KindSpec, relations: ElementRelations) -> Mapping[s
     return {element_id: element for element_id, element in elements.items() if kind.is_declared(element)}
 
 
-def _describe_element(kind: KindSpec, relations: ElementRelations, element: object) -> FeatureMap:
+def describe_element(kind: KindSpec, relations: ElementRelations, element: object) -> FeatureMap:
     """Return the features of an element."""
     return {
         feature.name: Feature(
             feature.weight,
             feature.marks(relations, element),
             feature.is_generated is not None and feature.is_generated(element),
+            feature.is_decisive,
         )
         for feature in kind.features
     }

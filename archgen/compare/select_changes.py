@@ -9,6 +9,7 @@ from dataclasses import replace
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import ChainChange, Change, Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.figure_changes import BoundaryChange
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.selector_evaluation import Selection
 
@@ -27,6 +28,14 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
         change for change in comparison.changes if not wanted_keys.isdisjoint(_touched_keys(change, comparison))
     )
     wanted_ids = {element_id for _, element_id in wanted_keys}
+    chains = tuple(
+        _keep_causes(chain, wanted_keys, comparison)
+        for chain in comparison.chains
+        if not wanted_ids.isdisjoint(_activities_and_nodes(chain))
+    )
+    boundaries = tuple(
+        boundary for boundary in comparison.boundaries if _touches_selection(boundary, wanted_keys, comparison)
+    )
     return replace(
         comparison,
         changes=changes,
@@ -44,13 +53,30 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
                 comparison.silenced_findings,
             )
         ),
-        chains=tuple(
-            chain_change
-            for chain_change in comparison.chains
-            if not wanted_ids.isdisjoint(_activities_and_nodes(chain_change))
-        ),
-        concerned_owners=find_concerned_owners(changes, comparison.versions),
+        chains=chains,
+        boundaries=boundaries,
+        # A load is what all on a host or link add up to: of a part of them it says nothing.
+        loads=(),
+        concerned_owners=find_concerned_owners(changes, comparison.versions, (*boundaries, *chains)),
     )
+
+
+def _keep_causes(chain: ChainChange, wanted_keys: set[ElementKey], comparison: Comparison) -> ChainChange:
+    """Return a chain with those of its causes that touch what is selected."""
+    causes = tuple(cause for cause in chain.causes if not wanted_keys.isdisjoint(_touched_keys(cause, comparison)))
+    return replace(chain, causes=causes)
+
+
+def _touches_selection(boundary: BoundaryChange, wanted_keys: set[ElementKey], comparison: Comparison) -> bool:
+    """Whether a selected component gives what flows at a boundary, or reads it."""
+    versions = comparison.versions
+    readers = {
+        reader
+        for connections in (versions.connections_before, versions.connections_after)
+        for reader in connections.readers_by_output.get(boundary.interface_id, ())
+    }
+    ports = {boundary.interface_id, *readers}
+    return not wanted_keys.isdisjoint(("component", port.rpartition(".")[0]) for port in ports)
 
 
 def common_key(comparison: Comparison, kind: str, old_id: str) -> ElementKey:

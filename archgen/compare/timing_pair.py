@@ -23,16 +23,18 @@ class TimingPair:
 def analyse_timing_pair(
     old_version: ArchitectureVersion, new_version: ArchitectureVersion, changes: Sequence[Change]
 ) -> TimingPair | None:
-    """Analyse both versions if there are chains to compare, or an overloaded host or link; else return None."""
+    """Analyse both versions if there are chains or interfaces of partners to compare, or an overloaded host or link; else
+    return None.
+    """
     before, after = old_version.architecture, new_version.architecture
     if before.unread_keys or after.unread_keys:  # of what could not be read nobody knows how long it takes
         return None
-    has_chains = before.chains or after.chains
-    if not (has_chains or after.hosts or after.links) or not any(map(can_affect_timing, changes)):
+    has_figures = before.chains or after.chains or before.partners or after.partners
+    if not (has_figures or after.hosts or after.links) or not any(map(can_affect_timing, changes)):
         return None
     new_analysis = _analysis_of(new_version)
     loads: list[HostLoad | LinkLoad] = [*new_analysis.hosts.values(), *new_analysis.links.values()]
-    if not has_chains and not any(map(is_overloaded, loads)):
+    if not has_figures and not any(map(is_overloaded, loads)):
         return None
     return TimingPair(_analysis_of(old_version), new_analysis)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
@@ -29,6 +29,12 @@ class VersionPair:
     sound_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The files that were read without an error, before and after."""
 
+    link_users: Mapping[str, frozenset[str]] | None = None
+    """The partners whose data crosses each link in either version; None where timing does not know."""
+
+    partner_names: Mapping[str, str] = field(default_factory=dict)
+    """What people call each partner of either version (see `title_partners`)."""
+
     def may_be_unread(self, key: ElementKey) -> bool:
         """Whether an element that is missing in one version may be in a part of it that could not be read."""
         # The version in which it is missing: the first one for an added element, the second one for a removed element.
@@ -44,8 +50,11 @@ class VersionPair:
             word for part in key[1].split(".") for word in (part, part.rpartition(" ")[2])
         )
 
-    def value_may_be_unread(self, key: ElementKey, before: object, after: object) -> bool:
-        """Whether a value missing in one version may be in a part of it that could not be read."""
+    def value_may_be_unread(self, key: ElementKey, before: object, after: object, value_key: str = "") -> bool:
+        """Whether a value missing in one version may be in a part of it that could not be read; `value_key` names it."""
+        side = 0 if before is None else 1 if after is None else None
+        if side is not None and self.key_may_be_unread(key, value_key, side):
+            return True
         if isinstance(before, list) or isinstance(after, list):
             return any(self.lost_keys) and self._only_unread_references(before, after)
         lost_words = self.lost_keys[0] if before is None else self.lost_keys[1] if after is None else frozenset()
@@ -56,6 +65,15 @@ class VersionPair:
         return bool(lost_words) and (
             key[0] in {"project", "group"} or not lost_words.isdisjoint([*key[1].split("."), *referred_words])
         )
+
+    def key_may_be_unread(self, key: ElementKey, value_key: str, side: int) -> bool:
+        """Whether a key of an element was taken out of one version, since its value could not be read."""
+        element = (self.elements_before, self.elements_after)[side].get(key)
+        if element and element.file and element.file in self.sound_files[side]:
+            return False
+        name = value_key.rpartition(".")[2]
+        # A period is compared as a rate.
+        return not self.lost_keys[side].isdisjoint({name, "period"} if name == "rate" else {name})
 
     def _only_unread_references(self, before: object, after: object) -> bool:
         """Whether all that a list gained and lost are references to what could not be read."""

@@ -45,6 +45,13 @@ def place_for_group(checked_project: CheckedProject, name: str) -> ElementPlace:
     return ElementPlace(file, ("groups",), is_new_file=True)
 
 
+def place_for_partner(checked_project: CheckedProject) -> ElementPlace:
+    """Return the file with most of the partners."""
+    partner_counts = {file: len(table.entries) for file, table in _section_tables(checked_project, "partners")}
+    file = max(partner_counts, key=lambda name: partner_counts[name], default=first_file_of(checked_project))
+    return ElementPlace(file, ("partners",))
+
+
 def place_for_component(checked_project: CheckedProject, group: str) -> ElementPlace:
     """Return the file that says most about the group."""
     path = ("groups", group, "components")

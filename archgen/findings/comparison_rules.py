@@ -12,7 +12,8 @@ A change takes something from a partner who does not own what was changed, and n
 
 Why: Whoever reads an output, uses a message or relies on a deadline has to change or to test the own part again, and should
 know before the merge. `archgen review` and `archgen diff` find it by comparing two versions: `Reported` is what the change makes
-of `Not reported`. What was agreed is written down as accepted, with the reason, and is not reported.
+of `Not reported`. What was agreed is written down as accepted, with the reason, and is not reported. The message names the
+category of what is lost (`wire`, `promise`, `meaning`, `source`), and the severity is that of the category.
 
 Bad:
     partners: {north: {title: North}, south: {title: South}}
@@ -38,6 +39,6 @@ Good:
         components:
           screen: {inputs: {image: camera.image}}
 """,
-    setting="review: {breaking: error}  # off, note, warning or error",
+    setting="review: {breaking: {wire: error}}  # off, note, warning or error for each category, or one for all",
 )
 COMPARISON_RULES = (BREAKING_CHANGE,)

@@ -23,6 +23,19 @@ def find_revision(root: Path, files: Iterable[str]) -> str:
     return commit.strip() + ("+" if differs_from_head(root, file_names) else "")
 
 
+def find_revision_date(root: Path, files: Iterable[str]) -> str:
+    """Return the day of the last commit that touched these files, as YYYY-MM-DD in its committer's time zone.
+
+    Files are relative to `root`. Empty where `find_revision` is, and where a file differs from HEAD: what is not committed
+    has no date.
+    """
+    file_names = sorted(files)
+    if not file_names:
+        return ""
+    date = _run_git(root, "log", "-1", "--no-show-signature", "--format=%cs", "HEAD", "--", *file_names)
+    return date.strip() if date and not differs_from_head(root, file_names) else ""
+
+
 def differs_from_head(root: Path, file_names: Iterable[str]) -> bool:
     """Whether some file differs from HEAD's blob; differences that git's conversion of line ends makes do not count.
 

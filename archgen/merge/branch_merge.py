@@ -12,6 +12,8 @@ from archgen.diagnostics.finding_identity import FindingIdentity, identify_findi
 from archgen.git import GitError
 from archgen.git.tree_merge import MergeFolder, PathConflict, open_merge_folder
 from archgen.merge.file_merge import merge_contents
+from archgen.merge.slice_reading import read_normal_tree
+from archgen.merge.tree_merge import MergeConflictError, merge_values, read_value
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.project_files import MAX_BYTES
@@ -54,6 +56,7 @@ class _MergeState:
     branches: tuple[str, ...]
     commit: str
     known_findings: frozenset[FindingIdentity]
+    checked_project: CheckedProject | None
 
 
 class BranchMerger:
@@ -69,7 +72,7 @@ class BranchMerger:
         """Read a commit as it is; one without the project has no findings. Raise GitError for unknown revisions."""
         commit = self._tracked_project.resolve_commit(revision)
         checked_project = self._check_commit(commit, revision)
-        return _MergeState(branches, commit, _identify_findings(checked_project))
+        return _MergeState(branches, commit, _identify_findings(checked_project), checked_project)
 
     def _check_commit(self, commit: str, name: str) -> CheckedProject | None:
         try:
@@ -80,20 +83,25 @@ class BranchMerger:
             return None
         return pipeline.check_loaded_project(loaded_project, self._version_cache)
 
-    def merge_states(self, ours: _MergeState, theirs: _MergeState) -> tuple[BranchMerge, _MergeState | None]:
-        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one."""
+    def merge_states(
+        self, ours: _MergeState, theirs: _MergeState, *, finds_more: bool = True
+    ) -> tuple[BranchMerge, _MergeState | None]:
+        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one.
+
+        Without `finds_more` only conflicts are asked for: checking what was merged takes most of the time.
+        """
         branches = (*ours.branches, *theirs.branches)
         tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
         settled_contents, conflicts = {}, []
         for conflict in tree_merge.conflicts:
-            content, problem = self._settle_conflict(conflict)
+            content, problem = self._settle_conflict(conflict, ours, theirs)
             conflicts.append(FileConflict(conflict.path, problem))
             if problem is None:
                 settled_contents[conflict.path] = (conflict.mode, content)
         if any(conflict.problem for conflict in conflicts):
             return BranchMerge(branches, tuple(conflicts)), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches))
+        checked_project = self._check_commit(tree, " + ".join(branches)) if finds_more else ours.checked_project
         known_findings = ours.known_findings | theirs.known_findings
         new_findings = tuple(
             finding
@@ -101,13 +109,16 @@ class BranchMerger:
             if identify_finding(finding) not in known_findings
         )
         commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
-        merged_state = _MergeState(branches, commit, known_findings | _identify_findings(checked_project))
+        known_findings |= _identify_findings(checked_project)
+        merged_state = _MergeState(branches, commit, known_findings, checked_project)
         return BranchMerge(branches, tuple(conflicts), new_findings, checked_project), merged_state
 
-    def _settle_conflict(self, conflict: PathConflict) -> tuple[bytes, str | None]:
+    def _settle_conflict(
+        self, conflict: PathConflict, ours: _MergeState, theirs: _MergeState
+    ) -> tuple[bytes, str | None]:
         """Return the content of a file that git conflicts in, or why people have to settle it."""
         if not all(conflict.blobs[1:]):
-            return b"", "one side took it away or moved it, the other one changed it"
+            return b"", self._describe_absence(conflict, theirs if conflict.blobs[1] else ours)
         if not conflict.path.endswith(_SLICE_ENDINGS):
             return b"", "both sides changed the same lines"
         old_content, our_content, their_content = (self._read_blob(blob) if blob else b"" for blob in conflict.blobs)
@@ -118,6 +129,30 @@ class BranchMerger:
         except GitError as error:
             return b"", str(error)
         return merged.content, merged.problem
+
+    def _describe_absence(self, conflict: PathConflict, other_side: _MergeState) -> str:
+        """Return what happened to a file that one side changed and the other one does not have any more.
+
+        Whoever splits a file keeps what it says: then git conflicts, and the models do not.
+        """
+        base_blob, *blobs = conflict.blobs
+        old_table, new_table = (
+            read_normal_tree((self._read_blob(blob) or b"").decode("utf-8", "replace")) if blob else None
+            for blob in (base_blob, next(filter(None, blobs), ""))
+        )
+        if other_side.checked_project is None or old_table is None or new_table is None:
+            return "one side took it away or moved it, the other one changed it"
+        try:
+            merge_values(
+                read_value(old_table), read_value(other_side.checked_project.merged_table), read_value(new_table)
+            )
+        except MergeConflictError as merge_conflict:
+            what = ".".join(merge_conflict.path)
+            return f"one side took it away or moved it, the other one changed it; both sides changed `{what}`"
+        return (
+            "one side moved what is in it to other files, the other one changed it: git conflicts, what both sides say does "
+            "not; make the change where it stands now"
+        )
 
     def _read_blob(self, blob: str) -> bytes | None:
         size = self._merge_folder.objects.blob_size(blob)
@@ -173,7 +208,8 @@ def _find_partners(
     merger: BranchMerger, earlier_states: Sequence[_MergeState], state: _MergeState, branch_merge: BranchMerge
 ) -> Iterator[BranchMerge]:
     """Yield the pairs that do what a branch does with all earlier ones; where no pair does, all of them."""
-    pairs = [merger.merge_states(earlier, state)[0] for earlier in earlier_states]
+    finds_more = bool(branch_merge.new_findings)
+    pairs = [merger.merge_states(earlier, state, finds_more=finds_more)[0] for earlier in earlier_states]
     guilty_pairs = [pair for pair in pairs if pair.conflicts or pair.new_findings]
     shown_conflicts = {conflict for pair in guilty_pairs for conflict in pair.conflicts}
     shown_findings = {identify_finding(finding) for pair in guilty_pairs for finding in pair.new_findings}

@@ -10,9 +10,9 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_value
-from archgen.syntax import yaml_parser
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, YamlNode, node_to_data
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
 from archgen.syntax.yaml_writer import format_flow, format_scalar
 
 _LINE_BREAK = re.compile(r"\r\n?|\n")
@@ -65,6 +65,15 @@ class _PlacedText:
             first = self.line_start(first - 1)
         return first, rest.end()
 
+    def item_lines(self, item: YamlNode) -> tuple[int, int] | None:
+        """Return the range of the lines that an item of a block fills, None within brackets."""
+        start, end = self.value_range(item)
+        first = self.line_start(start)
+        rest = _REST_OF_LINE.match(self.text, end)
+        if self.text[first:start].strip() != "-" or rest is None:
+            return None
+        return first, rest.end()
+
 
 def _last_value(node: YamlNode) -> YamlNode:
     if isinstance(node, MappingNode) and node.entries:
@@ -100,11 +109,12 @@ class _TextEdits:
             old_value, target_value = base.get(entry.key), target.get(entry.key)
             if old_value is None and target_value is None:
                 self._insert_entry(entry, target, predecessor)
-            elif old_value is not None and target_value is not None:
-                self._collect_from_value(old_value, entry.value, target_value, (*path, entry.key))
-            elif target_value is not None and isinstance(entry.value, MappingNode):
-                self._collect_from_value(MappingNode({}, entry.key_span), entry.value, target_value, (*path, entry.key))
-            if target_value is not None:
+            elif target_value is not None:
+                # What both sides begin to write begins as nothing: a key that only one of them has, or a blank.
+                if _is_empty(old_value) and not _is_empty(target_value):
+                    old_value = _make_empty(entry.value)
+                if old_value is not None:
+                    self._collect_from_value(old_value, entry.value, target_value, (*path, entry.key))
                 predecessor = target.entries[entry.key]
         for entry in base:
             if entry.key not in changed.entries and entry.key in target.entries:
@@ -116,10 +126,42 @@ class _TextEdits:
         if isinstance(base, MappingNode) and isinstance(changed, MappingNode) and isinstance(target, MappingNode):
             self.collect_from_mapping(base, changed, target, path)
             return
+        if (
+            isinstance(changed, SequenceNode)
+            and isinstance(target, SequenceNode)
+            and target.items
+            and isinstance(read_value(target, path), ItemSet)
+        ):
+            self._collect_items(_items_of(base), changed.items, target, path)
+            return
         start, end = self.target.value_range(target)
         new_text = self._write_value(base, changed, target, path)
         if new_text is not None:
             self.replacements.append((start, end, new_text))
+
+    def _collect_items(
+        self, base: list[YamlNode], changed: list[YamlNode], target: SequenceNode, path: tuple[str, ...]
+    ) -> None:
+        """Collect what came into a list in which order says nothing, and what left it."""
+        old_items, new_items = ({read_value(item, path) for item in items} for items in (base, changed))
+        target_items = {read_value(item, path) for item in target.items}
+        for item in target.items:
+            if read_value(item, path) in old_items - new_items:
+                self._delete_range(self.target.value_range(item), self.target.item_lines(item))
+        for item in changed:
+            if read_value(item, path) not in old_items | target_items:
+                self._append_item(item, target.items[-1])
+
+    def _append_item(self, item: YamlNode, last_item: YamlNode) -> None:
+        source_lines, target_lines = self.changed.item_lines(item), self.target.item_lines(last_item)
+        item_text = self.changed.text[slice(*self.changed.value_range(item))]
+        if target_lines is None:
+            end = self.target.value_range(last_item)[1]
+            self.replacements.append((end, end, f", {item_text}"))
+            return
+        # With the comment behind it.
+        line = self.changed.text[slice(*source_lines)].strip() if source_lines else f"- {item_text}"
+        self._insert_lines(target_lines[1], line, _count_blanks(self.target.text[slice(*target_lines)]))
 
     def _write_value(self, base: YamlNode, changed: YamlNode, target: YamlNode, path: tuple[str, ...]) -> str | None:
         """Return the text of a new value: as it is written in the changed version, if it stands on one line there."""
@@ -130,7 +172,18 @@ class _TextEdits:
             return format_flow([data for value, data in items.items() if value in merged_items])
         start, end = self.changed.value_range(changed)
         text = self.changed.text[start:end]
+        if isinstance(changed, ScalarNode) and "\n" in text:
+            head, _, lines = text.partition("\n")
+            indented = textwrap.indent(textwrap.dedent(lines), " " * self._inner_indent(target))
+            return self._adopt_lines(f"{head}\n{indented}")
         return text if "\n" not in text or self.changed.is_flow(changed) else None
+
+    def _inner_indent(self, target: YamlNode) -> int:
+        """Return by how much further lines of a text are indented: as they are, else two more than its key."""
+        start, end = self.target.value_range(target)
+        key_line, *lines = self.target.text[self.target.line_start(start) : end].splitlines()
+        written_lines = [line for line in lines if line.strip()]
+        return min(map(_count_blanks, written_lines)) if written_lines else _count_blanks(key_line) + 2
 
     def _insert_entry(self, entry: MappingEntry, target: MappingNode, predecessor: MappingEntry | None) -> None:
         flow_text = f"{format_scalar(entry.key)}: {format_flow(node_to_data(entry.value))}"
@@ -151,16 +204,27 @@ class _TextEdits:
         block_text = flow_text
         if source_lines is not None:
             block_text = textwrap.dedent(self.changed.text[slice(*source_lines)])
-        indented = textwrap.indent(block_text, " " * (neighbour.key_span.column - 1)).rstrip("\r\n") + "\n"
-        before = "" if self.target.text[: neighbour_lines[1]].endswith(("\n", "\r")) else "\n"
-        self.replacements.append((neighbour_lines[1], neighbour_lines[1], before + indented))
+        self._insert_lines(neighbour_lines[1], block_text, neighbour.key_span.column - 1)
+
+    def _insert_lines(self, offset: int, block_text: str, indent: int) -> None:
+        indented = textwrap.indent(block_text, " " * indent).rstrip("\r\n") + "\n"
+        before = "" if self.target.text[:offset].endswith(("\n", "\r")) else "\n"
+        self.replacements.append((offset, offset, self._adopt_lines(before + indented)))
+
+    def _adopt_lines(self, text: str) -> str:
+        """Return a text with the line ends of the target, which the changed text need not share."""
+        return convert_lines(text, find_line_end(self.target.text))
 
     def _delete_entry(self, entry: MappingEntry) -> None:
         lines = self.target.entry_lines(entry, with_comments=self.with_comments)
+        self._delete_range(self.target.entry_range(entry), lines)
+
+    def _delete_range(self, value_range: tuple[int, int], lines: tuple[int, int] | None) -> None:
+        """Delete whole lines, else a part of a line with a comma beside it."""
         if lines is not None:
             self.replacements.append((*lines, ""))
             return
-        start, end = self.target.entry_range(entry)
+        start, end = value_range
         comma = _COMMA_BEHIND.match(self.target.text, end)
         if comma is not None:
             self.replacements.append((start, comma.end(), ""))
@@ -169,22 +233,33 @@ class _TextEdits:
             self.replacements.append((comma_before.start() if comma_before else start, end, ""))
 
 
+def _is_empty(node: YamlNode | None) -> bool:
+    return node is None or (isinstance(node, ScalarNode) and node.value is None)
+
+
+def _make_empty(node: YamlNode) -> YamlNode | None:
+    """Return what a node was before anything was written into it, None for a scalar."""
+    if isinstance(node, ScalarNode):
+        return None
+    return MappingNode({}, node.span) if isinstance(node, MappingNode) else SequenceNode([], node.span)
+
+
+def _count_blanks(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))
+
+
 def _items_of(node: YamlNode) -> list[YamlNode]:
     return node.items if isinstance(node, SequenceNode) else []
 
 
-def transfer_changes(base: str, changed: str, target: str) -> Iterator[str]:
+def transfer_changes(base: str, changed: str, target: str, read: TreeReader) -> Iterator[str]:
     """Yield the target's text with what changed between the other two, with and without the comments above entries.
 
-    Nothing is yielded where one of the texts cannot be parsed.
+    Nothing is yielded where one of the texts cannot be read.
     """
-    documents = [yaml_parser.parse_yaml("slice", text)[0] for text in (base, changed, target)]
-    placed = [
-        _PlacedText(text, document.root)
-        for text, document in zip((base, changed, target), documents, strict=True)
-        if document
-    ]
-    if len(placed) < len(documents):
+    texts = (base, changed, target)
+    placed = [_PlacedText(text, root) for text in texts if (root := read(text)) is not None]
+    if len(placed) < len(texts):
         return
     for with_comments in (True, False):
         edits = _TextEdits(placed[0], placed[1], placed[2], with_comments)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from archgen.git.text_merge import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
+from archgen.merge.slice_reading import read_tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,14 @@ def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7
     # without this driver. But where both sides can be said together, lines that say anything else are wrong.
     if merged_slice.is_settled:
         return FileMerge(line_merge.content, "its lines merge, but the result does not say what both sides say")
+    # One id at two places with two contents: lines of both sides merge into a key that is there twice.
+    if merged_slice.conflict_path and not _is_readable(line_merge.content):
+        return FileMerge(line_merge.content, f"{_describe_conflict(merged_slice)}, and git takes the lines of both")
     return FileMerge(line_merge.content)
+
+
+def _is_readable(content: bytes) -> bool:
+    return read_tree(content.decode()) is not None
 
 
 def _describe_conflict(merged_slice: UnmergedSlice) -> str:

@@ -11,22 +11,26 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from archgen.git import GitError
 from archgen.git.text_merge import merge_lines
 from archgen.merge.change_transfer import transfer_changes
 from archgen.merge.sequence_merge import ConflictingRun, MergedRun, merge_sequences
-from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_value
+from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree
+from archgen.merge.tree_merge import MergeConflictError, merge_values, read_value
 from archgen.syntax import yaml_parser
 
 _WORD = re.compile(r"[^\S\n]+|\n|[\w./-]+|.", re.DOTALL)
 _MARKER_SIZE = 61
 """The length of the markers that are asked of git here: no line of a slice looks like one by accident."""
 _CONFLICT = re.compile(
-    rf"<{{{_MARKER_SIZE}}} ours\n(?P<ours>.*?)\|{{{_MARKER_SIZE}}} base\n(?P<base>.*?)={{{_MARKER_SIZE}}}\n"
-    rf"(?P<theirs>.*?)>{{{_MARKER_SIZE}}} theirs\n",
+    rf"<{{{_MARKER_SIZE}}} ours\r?\n(?P<ours>.*?)\|{{{_MARKER_SIZE}}} base\r?\n(?P<base>.*?)={{{_MARKER_SIZE}}}\r?\n"
+    rf"(?P<theirs>.*?)>{{{_MARKER_SIZE}}} theirs\r?\n",
     re.DOTALL,
 )
+_REMEMBERED_TEXTS = 32
+"""Texts whose comments are remembered: open branches are merged in pairs, so that each text comes up again and again."""
 _MAX_PROPOSALS = 64
 """Proposals for the text as a whole: each place in conflict has up to six, and they multiply."""
 _MAX_COMPARED = 5_000
@@ -56,28 +60,47 @@ class UnmergedSlice:
 
 def merge_slices(versions: SliceVersions) -> str | UnmergedSlice:
     """Return the merged text, or why there is none."""
+    versions = _align_line_ends(versions)
+    merged_slice = _merge_texts(versions, read_tree)
+    if isinstance(merged_slice, str) or not merged_slice.conflict_path:
+        return merged_slice
+    # What one side writes in its short form and the other side adds keys to contradicts only in writing. The normal form
+    # comes second: it has no empty entries, which people leave as blanks to fill in.
+    merged_in_full = _merge_texts(versions, read_normal_tree)
+    is_merged = isinstance(merged_in_full, str) or merged_in_full.is_settled
+    return merged_in_full if is_merged else merged_slice
+
+
+def _align_line_ends(versions: SliceVersions) -> SliceVersions:
+    """Give all versions the line ends of the side that changed them: otherwise every line of it is another one."""
+    base_end, our_end, their_end = map(find_line_end, (versions.base, versions.ours, versions.theirs))
+    if base_end == our_end == their_end or not versions.base:
+        return versions
+    line_end = their_end if our_end == base_end else our_end
+    return SliceVersions(*(convert_lines(text, line_end) for text in (versions.base, versions.ours, versions.theirs)))
+
+
+def _merge_texts(versions: SliceVersions, read: TreeReader) -> str | UnmergedSlice:
     texts = (versions.base, versions.ours, versions.theirs)
-    base, ours, theirs = (_read_text(text) for text in texts)
+    base, ours, theirs = (read(text) for text in texts)
     if base is None or ours is None or theirs is None:
         return UnmergedSlice()
     try:
-        expected_value = merge_values(base, ours, theirs)
+        expected_value = merge_values(read_value(base), read_value(ours), read_value(theirs))
     except MergeConflictError as conflict:
         return UnmergedSlice(conflict.path)
-    comments = _CommentBalance(*(Counter(yaml_parser.list_comments(text)) for text in texts))
-    for proposal in _propose_texts(versions):
-        if comments.accepts(proposal) and _read_text(proposal) == expected_value:
-            return proposal
+    comments = _CommentBalance(*map(_count_comments, texts))
+    for proposal in _propose_texts(versions, read):
+        if comments.accepts(proposal):
+            tree = read(proposal)
+            if tree is not None and read_value(tree) == expected_value:
+                return proposal
     return UnmergedSlice(is_settled=True)
 
 
-def _read_text(text: str) -> MergedValue | None:
-    """Return what a text says, None where it cannot be read as a whole."""
-    document, diagnostics = yaml_parser.parse_yaml("slice", text)
-    # A duplicate key costs only itself, so that a document alone does not mean that everything was read.
-    if document is None or any(diagnostic.rule != "swallowed-text" for diagnostic in diagnostics):
-        return None
-    return read_value(document.root)
+@lru_cache(maxsize=_REMEMBERED_TEXTS)
+def _count_comments(text: str) -> Counter[str]:
+    return Counter(yaml_parser.list_comments(text))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +113,7 @@ class _CommentBalance:
 
     def accepts(self, text: str) -> bool:
         """Whether a text holds each comment as often as the changes of both sides leave it."""
-        counts = Counter(yaml_parser.list_comments(text))
+        counts = _count_comments(text)
         return all(
             self._least(comment) <= counts[comment] <= self._most(comment)
             for comment in self.base | self.ours | self.theirs | counts
@@ -105,13 +128,13 @@ class _CommentBalance:
         return self._most(comment) - max(0, common)
 
 
-def _propose_texts(versions: SliceVersions) -> Iterator[str]:
+def _propose_texts(versions: SliceVersions, read: TreeReader) -> Iterator[str]:
     yield from _merge_lines(versions)
     # Where one side reformatted the text, lines have nothing in common: the other side's changes are carried over into
     # the text that changed more.
     sides = sorted((versions.ours, versions.theirs), key=lambda text: -_count_changed_lines(versions.base, text))
-    yield from transfer_changes(versions.base, sides[1], sides[0])
-    yield from transfer_changes(versions.base, sides[0], sides[1])
+    yield from transfer_changes(versions.base, sides[1], sides[0], read)
+    yield from transfer_changes(versions.base, sides[0], sides[1], read)
 
 
 def _count_changed_lines(base: str, changed: str) -> int:
@@ -139,7 +162,7 @@ def _merge_lines(versions: SliceVersions) -> Iterator[str]:
 
 def _end_last_line(text: str) -> str:
     """End the last line, so that lines can be put in any order."""
-    return text if not text or text.endswith("\n") else text + "\n"
+    return text if not text or text.endswith("\n") else text + find_line_end(text)
 
 
 def _split_conflicts(text: str) -> Iterator[str | ConflictingRun[str]]:

@@ -12,11 +12,17 @@ from typing import NamedTuple
 from archgen.merge.sequence_merge import MergedRun, merge_sequences
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
-UNORDERED_KEYS = frozenset({"connects", "from", "implements", "requirements", "tags", "use_cases"})
+_GATHERING_KEYS = frozenset(
+    {"backends", "interfaces", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
+)
+"""Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
+UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner"}
 """Keys whose lists say the same in any order: what both sides add to one is no conflict."""
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
 _FREE_SECTION = "parameters"
+_CHAIN_SECTION = "chains"
+"""Its keys are ids of chains, and a list is the short form of `through`, in which order counts."""
 _PORT_SECTION = "inputs"
 """Its keys are ids of inputs, and a list is the short form of `from`."""
 
@@ -49,6 +55,8 @@ class MappingValue(NamedTuple):
 MergedValue = ScalarValue | ItemSet | ItemList | MappingValue
 """What a node says, comparable and hashable."""
 EMPTY_MAPPING = MappingValue(())
+_EMPTY_ENTRY = ScalarValue(type(None).__name__, "")
+"""`key:` without a value counts as not written."""
 
 
 class MergeConflictError(Exception):
@@ -72,7 +80,7 @@ def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
 def _is_unordered(path: tuple[str, ...]) -> bool:
     # What stands below `parameters` is the nodes' own data, whatever its keys are called.
     is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
-    return is_named and _FREE_SECTION not in path
+    return is_named and _FREE_SECTION not in path and path[:-1] != (_CHAIN_SECTION,)
 
 
 def merge_values(
@@ -87,11 +95,14 @@ def merge_values(
     if ours == base:
         return theirs
     # What both sides add under one id is merged, too: a section, or a component that both begin to describe.
-    old_value = EMPTY_MAPPING if base is None and isinstance(ours, MappingValue) else base
+    is_begun = base is None or base == _EMPTY_ENTRY
+    old_value = EMPTY_MAPPING if is_begun and isinstance(ours, MappingValue) else base
+    if is_begun and path and path[-1] in _GATHERING_KEYS:
+        old_value = ItemSet(())
     if isinstance(old_value, MappingValue) and isinstance(ours, MappingValue) and isinstance(theirs, MappingValue):
         return _merge_mappings(dict(old_value.items), dict(ours.items), dict(theirs.items), path)
-    if isinstance(base, ItemSet) and isinstance(ours, ItemSet) and isinstance(theirs, ItemSet):
-        return _merge_item_sets(base.items, ours.items, theirs.items)
+    if isinstance(old_value, ItemSet) and isinstance(ours, ItemSet) and isinstance(theirs, ItemSet):
+        return _merge_item_sets(old_value.items, ours.items, theirs.items)
     if isinstance(base, ItemList) and isinstance(ours, ItemList) and isinstance(theirs, ItemList):
         return _merge_lists(base.items, ours.items, theirs.items, path)
     raise MergeConflictError(path)

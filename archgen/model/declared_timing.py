@@ -12,6 +12,8 @@ from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 
 ActivityBehaviour = Literal["periodic", "event", "on_demand", "once"]
+SchedulingOrder = Literal["fixed_priority", "non_preemptive", "fifo", "round_robin", "ros2_executor", "edf"]
+"""In which order the cores of a host, or the threads of a container, take what is ready."""
 
 
 @dataclass(frozen=True, slots=True)

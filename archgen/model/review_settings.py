@@ -2,17 +2,66 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from typing import Literal
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
+BreakCategory = Literal["wire", "promise", "meaning", "source"]
+"""What a partner loses: what programs send each other, what was promised of it, what it means, or only the ids and files
+that its own files name."""
+BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source")
 
 
 def agreement_file(partner_id: str) -> str:
     """Return the file in which a partner says what it agrees on, from the project's folder."""
     return f"{AGREEMENT_FOLDER}/{partner_id}{AGREEMENT_SUFFIX}"
+
+
+def is_agreement_file(file: str) -> bool:
+    """Whether a file is one in which a partner says what it agrees on."""
+    folder, _, name = file.rpartition("/")
+    return folder == AGREEMENT_FOLDER and name.endswith(AGREEMENT_SUFFIX)
+
+
+@dataclass(frozen=True, slots=True)
+class BreakPolicy:
+    """How serious it is to break a partner, for each category; the defaults are those of a project that says nothing."""
+
+    wire: Severity = Severity.WARNING
+    promise: Severity = Severity.WARNING
+    meaning: Severity = Severity.WARNING
+    source: Severity = Severity.NOTE
+
+    @classmethod
+    def from_severity(cls, severity: Severity) -> BreakPolicy:
+        """Return what a single severity means: texts and ids count no more than they do by default.
+
+        Files that say `error` may be older than these categories: no job may turn red over a text because of them.
+        """
+        return cls(severity, severity, min(severity, cls().meaning), min(severity, cls().source))
+
+    @property
+    def gravest(self) -> Severity:
+        """Return the severity of the category that counts most."""
+        return max(self.severity_of(category) for category in BREAK_CATEGORIES)
+
+    def severity_of(self, category: BreakCategory) -> Severity:
+        """Return how serious a loss of a category is."""
+        severity: Severity = getattr(self, category)
+        return severity
+
+    def combine_stricter(self, other: BreakPolicy) -> BreakPolicy:
+        """Return the stricter severity of both policies for each category."""
+        return BreakPolicy(*(max(getattr(self, each.name), getattr(other, each.name)) for each in fields(self)))
+
+    def __str__(self) -> str:
+        """Return the policy as files write it, in the shorter form where that says the same."""
+        if self == BreakPolicy.from_severity(self.wire):
+            return str(self.wire)
+        return f"{{{', '.join(f'{category}: {self.severity_of(category)}' for category in BREAK_CATEGORIES)}}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,23 +79,22 @@ class AcceptedChange:
     @property
     def partner(self) -> str | None:
         """Return the partner in whose own file the entry stands, None if it stands in any other file."""
-        folder, _, name = self.at.file.rpartition("/")
-        return (
-            name.removesuffix(AGREEMENT_SUFFIX)
-            if folder == AGREEMENT_FOLDER and name.endswith(AGREEMENT_SUFFIX)
-            else None
-        )
+        if not is_agreement_file(self.at.file):
+            return None
+        return self.at.file.removeprefix(f"{AGREEMENT_FOLDER}/").removesuffix(AGREEMENT_SUFFIX)
 
 
 @dataclass(frozen=True, slots=True)
 class ReviewSettings:
     """The section `review`. `main` is the branch that changes are compared with, None to ask git.
 
-    `breaking` is the severity of a change that breaks another partner's part, None if not written. `backends` are the
-    project's own backends that may run in the review of a pull request.
+    `breaking` is the severity of a change that breaks another partner's part, by category, None if not written.
+    `guards_margins`: promises have a severity of their own, so that a promise breaks as soon as it is weaker. `backends` are
+    the project's own backends that may run in the review of a pull request.
     """
 
     main: str | None = None
-    breaking: Severity | None = None
+    breaking: BreakPolicy | None = None
+    guards_margins: bool = False
     accepted: tuple[AcceptedChange, ...] = ()
     backends: tuple[str, ...] = ()

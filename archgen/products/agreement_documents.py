@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 from typing import Literal
 
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
-from archgen.git.project_revision import find_revision
+from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.pipeline import CheckedProject
-from archgen.products import project_views
+from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.output_options import OutputOptions
 from archgen.products.picture_drawing import draw_or_warn
@@ -41,19 +42,38 @@ class PartnersError(ValueError):
     """Two partners cannot have an agreement; the text says why and what can be done."""
 
 
-def make_project_agreement(
+def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of what git says
     checked_project: CheckedProject,
     first: str,
     second: str,
     earlier_version: ProjectVersion | None = None,
     printed_revision: str | None = None,
+    *,
+    issue_date: str | None = None,
+    signed_version: ProjectVersion | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
-    Changes since `earlier_version` are marked; `printed_revision` is printed instead of git's last commit. Raise
+    Changes since `earlier_version` are marked; `printed_revision` and `issue_date` are printed instead of git's last commit
+    and its day. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
     PartnersError where there can be no agreement.
     """
     _check_partners(checked_project, first, second)
+    signed_tags = signed_agreements.find_signed_tags(checked_project.root, first, second)
+    if signed_version is None and signed_tags:
+        signed_version = signed_agreements.read_signed_version(checked_project, signed_tags[0])
+    is_readable = signed_version is not None and not signed_version.checked_project.structural_errors
+    earlier_revision = (
+        (earlier_version.title, _make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
+    )
+    signed_revision = None
+    if signed_version and is_readable:
+        is_earlier = signed_version is earlier_version
+        signed_revision = (
+            earlier_revision
+            if is_earlier
+            else (signed_version.title, _make_timed_lookup(signed_version.checked_project))
+        )
     partner_agreement = make_agreement(
         _make_timed_lookup(checked_project),
         first,
@@ -61,10 +81,16 @@ def make_project_agreement(
         revision=find_revision(checked_project.root, checked_project.input_files)
         if printed_revision is None
         else printed_revision,
-        earlier_revision=(earlier_version.title, _make_timed_lookup(earlier_version.checked_project))
-        if earlier_version
-        else None,
-        notices=tuple(_error_notices(checked_project, earlier_version)),
+        earlier_revision=earlier_revision,
+        issue_date=find_revision_date(checked_project.root, checked_project.input_files)
+        if issue_date is None
+        else issue_date,
+        signed_tags=signed_tags,
+        signed_revision=signed_revision,
+        notices=(
+            *_error_notices(checked_project, earlier_version),
+            *([] if is_readable or not signed_tags else [_unreadable_notice(signed_tags[0].name)]),
+        ),
     )
     # Without interfaces there may still be removed ones to agree on.
     if not partner_agreement.interface_count and not (
@@ -72,6 +98,19 @@ def make_project_agreement(
     ):
         raise PartnersError(_explain_no_interfaces(checked_project, first, second))
     return partner_agreement
+
+
+def parse_issue_date(text: str) -> str:
+    """Return a day as `2026-03-31`, if it is one. Raise ValueError with what to write."""
+    try:
+        # Other forms that Python reads (20260331, 2026-W14) are not what people write below a contract.
+        is_day = len(text) == len("2026-03-31") and date.fromisoformat(text).isoformat() == text
+    except ValueError:
+        is_day = False
+    if not is_day:
+        msg = f"`{text}` is no date: write year, month and day, such as 2026-03-31"
+        raise ValueError(msg)
+    return text
 
 
 def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
@@ -114,7 +153,7 @@ def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: 
         neighbours = [
             partner_id
             for partner_id in architecture.partners
-            if partner_id != name and find_interfaces_between(lookup, name, partner_id)
+            if partner_id != name and find_interfaces_between(lookup.architecture, name, partner_id)
         ]
         sentences.append(f"`{name}` has interfaces with {', '.join(neighbours) or 'nobody'}")
     return f"nothing flows between `{first}` and `{second}`; {'; '.join(sentences)}"
@@ -129,6 +168,11 @@ def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVers
         if noticed_project.has_errors:
             message = f"The architecture{version_suffix} has errors ({describe_severities(noticed_project.findings)}). What is sound is shown all the same."
             yield Paragraph(inline_text.to_inlines(message), "error")
+
+
+def _unreadable_notice(tag_name: str) -> Paragraph:
+    message = f"What was signed at {tag_name} cannot be read, so nothing is said of its versions."
+    return Paragraph(inline_text.to_inlines(message), "warning")
 
 
 def render_agreement_markdown(partner_agreement: PartnerAgreement) -> str:

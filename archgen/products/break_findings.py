@@ -5,12 +5,13 @@ from __future__ import annotations
 from archgen.compare import Change, Comparison
 from archgen.compare.change_spans import find_change_span, find_old_file
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.findings.comparison_rules import BREAKING_CHANGE
 from archgen.link.interface_sources import interface_name_of
 from archgen.pipeline import CheckedProject
-from archgen.views.changes.breaking_verdict import describe_refusal
+from archgen.views.changes.breaking_verdict import describe_remedy, join_categories
+from archgen.views.changes.partner_names import name_each, name_partners
 
 
 def find_breaks(comparison: Comparison, checked_project: CheckedProject) -> tuple[Diagnostic, ...]:
@@ -18,21 +19,22 @@ def find_breaks(comparison: Comparison, checked_project: CheckedProject) -> tupl
 
     `checked_project` is the second version: the findings stand in its files.
     """
-    if comparison.breaking_severity is Severity.OFF:
-        return ()
     return tuple(
         _describe_break(change, comparison, checked_project) for change in comparison.changes if change.unheard_partners
     )
 
 
 def _describe_break(change: Change, comparison: Comparison, checked_project: CheckedProject) -> Diagnostic:
-    reasons = dict.fromkeys(partner_break.reason for partner_break in change.breaks if partner_break.agreement is None)
+    unheard_breaks = [each for each in change.breaks if each.agreement is None]
+    reasons = dict.fromkeys(each.reason for each in unheard_breaks)
+    categories = join_categories(each.category for each in unheard_breaks)
+    partners = name_each(change.unheard_partners, name_partners(comparison))
     return Diagnostic(
         BREAKING_CHANGE.name,
-        f"breaks {join_words(change.unheard_partners)}: {change.text}; this {join_words(list(reasons))}",
+        f"breaks {join_words(partners)} ({categories}): {change.text}; this {join_words(list(reasons))}",
         _find_span(change, comparison, checked_project),
-        comparison.breaking_severity,
-        help=describe_refusal([change], comparison.matched_ids, is_refused=True),
+        comparison.break_severity(change),
+        help=describe_remedy(change, comparison),
         element=change.element_id,
     )
 

@@ -55,10 +55,10 @@ def read_versions(
         after = read_version(right or "HEAD", path, version_cache)
         if dots == "...":
             return read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache, after), after
-        return _read_earlier(left or "HEAD", path, version_cache, after), after
+        return read_earlier_version(left or "HEAD", path, version_cache, after), after
     if first is not None:
         after = read_version(second, path, version_cache)
-        return _read_earlier(first, path, version_cache, after), after
+        return read_earlier_version(first, path, version_cache, after), after
     # The newer version first here: it names the main line that the older one is found by.
     after = read_version(second, path, version_cache)
     main_line = after.checked_project.architecture.review.main
@@ -106,10 +106,10 @@ def read_at_base(
         return ProjectVersion(base.description, _check_moved(base.commit_id, path, version_cache, later))
 
 
-def _read_earlier(
+def read_earlier_version(
     version_text: str, path: Path | None, version_cache: VersionCache, later: ProjectVersion
 ) -> ProjectVersion:
-    """Read a version, also where the project lay in another folder than in a later version."""
+    """Read a version as `read_version` does, also where the project lay in another folder than in a later version."""
     try:
         return read_version(version_text, path, version_cache)
     except project.NotAtRevisionError:
@@ -144,7 +144,19 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
     comparison = compare_versions(
         make_comparison_input(before.checked_project), make_comparison_input(after.checked_project)
     )
+    comparison = replace(comparison, left_out_files=_find_left_out_files(before.checked_project, after.checked_project))
     return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
+
+
+def _find_left_out_files(before: CheckedProject, after: CheckedProject) -> tuple[str, ...]:
+    """Return the files that an earlier project read, and that a later one has and does not read."""
+    if before.loaded_project.first_file != after.loaded_project.first_file:
+        return ()  # two projects of one file each beside each other
+    # A file that could not be parsed, or says nothing any more, was read.
+    read_files = {*after.sources.file_names(), *after.loaded_project.interface_files}
+    later_files = after.loaded_project.files
+    old_files = (*before.yaml_files, *before.loaded_project.interface_files)
+    return tuple(file for file in old_files if file not in read_files and later_files.has_path(file))
 
 
 def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:

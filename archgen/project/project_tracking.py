@@ -29,6 +29,10 @@ class NotAtRevisionError(ProjectNotFoundError):
     """The project does not exist in a commit."""
 
 
+class UnclearMoveError(NotAtRevisionError):
+    """Several projects of a commit are gone, and nobody can say which of them the project was."""
+
+
 @dataclass(frozen=True, slots=True)
 class TrackedProject:
     """Where a project is in its repository.
@@ -71,7 +75,7 @@ def find_moved_project(
     """Find a project that lay in another folder at a revision: the one with its id, else the only one that is gone.
 
     Only those count that are not there any more, on disk or at a later revision: what is still there did not move.
-    Raises `NotAtRevisionError` if there is none, or nobody can say which of several it is.
+    Raises `NotAtRevisionError` if there is none, `UnclearMoveError` where nobody can say which of several it is.
     """
     objects = tracked_project.objects
     tree = objects.list_tree(tracked_project.resolve_commit(revision)) or {}
@@ -89,7 +93,10 @@ def find_moved_project(
         return TrackedProject(objects, ((posixpath.dirname(candidates[0]), PROJECT_FILE),))
     folder, first_file = tracked_project.locations[0]
     msg = f"the project `{posixpath.join(folder, first_file)}` does not exist in `{revision}`"
-    raise NotAtRevisionError(f"{msg}, and which of {len(candidates)} others it was is not clear" if candidates else msg)
+    if not candidates:
+        raise NotAtRevisionError(msg)
+    msg += f", and which of {len(candidates)} others it was is not clear"
+    raise UnclearMoveError(msg)
 
 
 def _read_project_id(objects: GitObjects, blob_id: str) -> str | None:

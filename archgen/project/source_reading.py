@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.model.review_settings import agreement_file, is_agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys, parse_slice
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
 from archgen.syntax.project_files import ProjectFiles, read_text_file
-from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -57,6 +58,13 @@ def _parse_file(state: ReadingState, file: str) -> Slice:
         message = f"a file's name cannot be read as text: {file!a}"
         diagnostic = Diagnostic("syntax-error", message, Span.of_file(PROJECT_FILE), help="rename the file")
         return Slice(file, "", None, (diagnostic,))
+    if is_agreement_file(file) and state.files.is_behind_link(file):
+        # Whoever may write the file that the link leads to would agree for this partner.
+        message = (
+            "a partner's agreements stand behind a symbolic link: whoever may write there could agree for the partner"
+        )
+        diagnostic = Diagnostic("syntax-error", message, Span.of_file(file), help="write them into the file itself")
+        return Slice(file, "", None, (diagnostic,))
     file_text = read_text_file(state.files, file)
     state.sources.add_text(file, file_text.text)
     return (
@@ -95,8 +103,18 @@ def read_sources(state: ReadingState) -> None:
             for file in expand_source_pattern(state, pattern, unmatched_patterns):
                 if file not in state.seen_files:
                     _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
+        _read_agreements(state)
         # Last, when it is known which files no pattern names.
         _report_missing_sources(state, unmatched_patterns)
+
+
+def _read_agreements(state: ReadingState) -> None:
+    """Read the partners' own files, whatever `sources` names: an agreement in one that is not read would count for nothing."""
+    partner_tables = [document.root.get("partners") for document in state.documents]
+    partner_ids = {key: None for table in partner_tables if isinstance(table, MappingNode) for key in table.entries}
+    for file in map(agreement_file, partner_ids):
+        if file not in state.seen_files and state.files.has_path(file):
+            _read_listed_slice(state, file, is_named=False)
 
 
 def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> None:

@@ -83,7 +83,7 @@ def _mend_keys(
     for element in list(elements) if isinstance(elements, MappingNode) else ():
         above = previous.value if previous else None
         strange_keys = _list_strange_keys(element.value, element_part)
-        if strange_keys and element.key in element_part["properties"] and _lacks(above, element.key):
+        if strange_keys and element.key in element_part["properties"] and _lacks_key(above, element.key):
             owner_part, owner_path = element_part, (*path, name, *([previous.key] if previous else ()))
             help_line = f"indent it below `{owner_path[-1]}`"
             _lower_entry(elements, element, strange_keys, above)
@@ -170,7 +170,7 @@ def _list_strange_keys(node: YamlNode, element_part: SchemaPart) -> set[str]:
     return strange_keys
 
 
-def _lacks(node: YamlNode | None, key: str) -> bool:
+def _lacks_key(node: YamlNode | None, key: str) -> bool:
     return isinstance(node, MappingNode) and key not in node.entries
 
 
@@ -183,5 +183,5 @@ def _lower_entry(elements: YamlNode, entry: MappingEntry, strange_keys: set[str]
     """Move a key into the element above it, and with it what stood behind it there: that element's other keys."""
     _move_entry(elements, entry.key, above)
     for key in sorted(_list_keys(entry.value) - strange_keys):
-        if _lacks(above, key):
+        if _lacks_key(above, key):
             _move_entry(entry.value, key, above)

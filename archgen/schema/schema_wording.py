@@ -34,6 +34,7 @@ SECTIONS_BY_ID = frozenset(
     | {"views", "policies"}
 )
 """The top-level sections that hold elements by id."""
+_UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)
 _TYPE_PHRASES = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}
 
 
@@ -92,7 +93,10 @@ def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any])
         if node.value is None:
             return "wrong-type", f"{name} is empty, but must be {expected}", None
         help_line = _find_scalar_help(node.text, schema_part)
-        return "wrong-type", f"{name} is `{clip_text(node.text)}`, but must be {expected}", help_line
+        # Without this note `8` would read as if nothing were wrong with it.
+        is_quoted = not node.is_plain and _UNQUOTED_VALUE.fullmatch(node.text)
+        quotes_note = " in quotes, which is a text," if is_quoted else ""
+        return "wrong-type", f"{name} is `{clip_text(node.text)}`{quotes_note or ','} but must be {expected}", help_line
     actual = "a list" if isinstance(node, SequenceNode) else "a mapping"
     return "wrong-type", f"{name} is {actual}, but must be {expected}", _find_container_help(name, node, schema_part)
 

@@ -46,5 +46,4 @@ def upper_bound(value: TimingValue | None) -> Fraction | None:
 def bound_utilisation(analysis: Analysis, host: str) -> Fraction | None:
     """Return the bound on a host's load as a share of all its cores, None where it is unknown."""
     load = analysis.hosts.get(host)
-    all_cores = upper_bound(load.utilisation) if load else None
-    return None if load is None or all_cores is None else all_cores / load.cores
+    return upper_bound(load.share_of_cores) if load else None

@@ -11,6 +11,7 @@ import jinja2
 import yaml as pyyaml
 
 from archgen import resources
+from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.text.template_filters import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
 from archgen.syntax import yaml_writer
@@ -67,6 +68,13 @@ def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
         distro=answers.distro,
         partners=answers.partners,
         sources=sources,
+    )
+
+
+def fill_agreements(partner_title: str, *, has_schema: bool = True) -> bytes:
+    """Return the file in which a partner writes what it agrees on, without any agreement yet."""
+    return fill_template(
+        "agreements.yaml.j2", title=make_visible(" ".join(partner_title.split())), has_schema=has_schema
     )
 
 

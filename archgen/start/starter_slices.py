@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from archgen.model.review_settings import agreement_file
 from archgen.products.schema_renewal import SCHEMA_FILE
 from archgen.project import PROJECT_FILE
 from archgen.start import start_templates
@@ -30,7 +31,12 @@ def example_files(answers: StartAnswers, has_other_yaml: bool) -> dict[str, byte
     return {
         PROJECT_FILE: _fill_project_file(answers, sections, has_other_yaml=has_other_yaml),
         **start_templates.fill_group_files(answers),
+        **_agreement_files(answers),
     }
+
+
+def _agreement_files(answers: StartAnswers) -> dict[str, bytes]:
+    return {agreement_file(partner.id): start_templates.fill_agreements(partner.title) for partner in answers.partners}
 
 
 def imported_files(answers: StartAnswers, data: Mapping[str, Any], has_other_yaml: bool) -> dict[str, bytes]:  # noqa: FBT001 - as above
@@ -43,7 +49,7 @@ def imported_files(answers: StartAnswers, data: Mapping[str, Any], has_other_yam
             key: node for key, node in data.get("nodes", {}).items() if _first_implemented(node).startswith(id_prefix)
         }
         files[f"groups/{name}.yaml"] = _write_slice(name, group, nodes).encode()
-    return files
+    return files | _agreement_files(answers)
 
 
 def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any], *, has_other_yaml: bool) -> bytes:

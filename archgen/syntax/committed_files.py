@@ -53,6 +53,10 @@ class CommittedFiles:
             or self._find_submodule(resolved_path) is not None
         )
 
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path leads to a file through a symbolic link."""
+        return self._follow_links(path) != posixpath.normpath(path)
+
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
         """Walk as `os.walk` does; a submodule is an empty folder. Callers may remove folders from the list in place."""
         start = self._follow_links(top)

@@ -32,6 +32,11 @@ class FolderFiles:
         """Whether there is anything at a path, even a broken link."""
         return os.path.lexists(self.root / path)
 
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path leads to a file through a symbolic link."""
+        parts = path.split("/")
+        return any((self.root / "/".join(parts[:end])).is_symlink() for end in range(1, len(parts) + 1))
+
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
         """Walk as `os.walk` does, with folders relative to `top`; links to folders are not entered."""
         # `os.walk` of Python 3.11 calls itself for each level, and a branch may nest folders deeper than Python calls.

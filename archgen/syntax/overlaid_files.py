@@ -28,6 +28,10 @@ class OverlaidFiles:
         """Whether there is anything at a path."""
         return path in self.contents or (self.base_files is not None and self.base_files.has_path(path))
 
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path of the base files leads to a file through a symbolic link."""
+        return path not in self.contents and self.base_files is not None and self.base_files.is_behind_link(path)
+
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
         """Walk down from a folder, as the base files do: callers may remove folders from the list to skip them."""
         overlay_folders = self._list_overlay_folders(top)

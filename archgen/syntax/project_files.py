@@ -48,6 +48,10 @@ class ProjectFiles(Protocol):
         """Whether there is anything at a path, even a broken link."""
         ...
 
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path leads to a file through a symbolic link, at its end or on its way."""
+        ...
+
     def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
         """Walk down from a folder as `os.walk` does: yield (folder relative to `top`, its folders, its files).
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -18,6 +18,12 @@ ResponseTier = Literal["declared", "dedicated", "host", "priorities", "executor"
 """How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
 of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
 single-threaded; `cores`, several.
+"""
+
+
+ChainVerdict = Literal["met", "missed", "not proven", "open"]
+"""What is known of a chain's deadline: it is `met` at all times; it can be `missed` (an overload, a best case above it);
+it is `not proven`, since the bound is above it, or none was found; it is `open`, since figures are missing.
 """
 
 
@@ -92,14 +98,25 @@ class HostLoad:
     """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
     utilisation: TimingValue
-    cores: int
+    cores: int | None
+    """None where nobody wrote how many there are, and it matters."""
     rate_monotonic_bound: TimingValue
     verdict: Literal["schedulable", "overload", "undecided", "unknown"]
     activity_shares: tuple[tuple[str, TimingValue], ...]
     """What each activity adds."""
     core_loads: tuple[tuple[str, int, TimingValue], ...] = ()
-    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation."""
+    """The cores to which something is pinned, and those that everything else shares: name, cores, utilisation.
+
+    Cores that nobody wrote the number of are left out.
+    """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
+
+    @property
+    def share_of_cores(self) -> TimingValue | None:
+        """Return the utilisation as a share of all cores; None where nobody knows how many there are."""
+        if self.cores is None or self.utilisation.value is None:
+            return None if self.cores is None else self.utilisation
+        return replace(self.utilisation, value=self.utilisation.value / self.cores)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,15 +195,6 @@ class Analysis:
     """The runs that end at each activity that something on its own core fires."""
     notes: tuple[Reason, ...] = ()
 
-    @property
-    def boundless_on_cores(self) -> tuple[str, ...]:
-        """The activities that share several cores and for which no bound was found there."""
-        return tuple(
-            name
-            for name, response in self.responses.items()
-            if response.tier == "cores" and "unbounded" in response.worst.assumptions
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class ChainTerm:
@@ -212,4 +220,4 @@ class ChainResult:
     reduced_reaction: TimingValue
     reduced_age: TimingValue
     deadline: TimingValue | None
-    verdict: Literal["met", "missed", "open"]
+    verdict: ChainVerdict

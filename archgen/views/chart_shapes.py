@@ -10,7 +10,7 @@ from typing import Literal
 
 from archgen.views.graph_shapes import Graph
 
-SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "open", "best"]
+SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -144,6 +144,11 @@ def link_urls(named_urls: Iterable[tuple[str, str]]) -> Inlines:
 
 def format_qos(qos: Qos) -> str:
     """Describe a quality of service: the profile's name, then its settings."""
+    return f"{qos.profile.replace('_', ' ')}: {', '.join(list_qos_settings(qos))}"
+
+
+def list_qos_settings(qos: Qos) -> list[str]:
+    """Return the settings of a quality of service in words, those that are as always left out."""
     parts = [qos.reliability.replace("_", " ")]
     if qos.durability == "transient_local":
         parts.append("transient local (latched)")
@@ -152,8 +157,7 @@ def format_qos(qos: Qos) -> str:
     if qos.liveliness != "automatic":
         parts.append("manual liveliness")
     parts.append(f"lease {qos.lease_duration}" if qos.lease_duration else "")
-    settings_text = ", ".join(part for part in parts if part)
-    return f"{qos.profile.replace('_', ' ')}: {settings_text}"
+    return [part for part in parts if part]
 
 
 def format_qos_cell(qos: Qos) -> Inlines:

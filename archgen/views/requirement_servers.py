@@ -11,7 +11,7 @@ from archgen.views.shapes import Inlines, Text
 
 
 def describe_chain_state(lookup: Lookup, chain: Chain) -> str:
-    """Return whether a chain meets its deadline: met, missed, open or without a deadline; empty if nothing was analysed."""
+    """Return whether a chain meets its deadline: met, missed, not proven, open or without a deadline; empty if nothing was analysed."""
     results = lookup.timing.chains if lookup.timing else ()
     verdict = next((result.verdict for result in results if result.id == chain.id), "")
     return "without a deadline" if verdict and chain.deadline is None else verdict
@@ -21,7 +21,7 @@ def chain_link(lookup: Lookup, chain: Chain) -> Inlines:
     """Link to a chain by its title, with its state behind it; a deadline that is not met stands out."""
     state = describe_chain_state(lookup, chain)
     link = Text(chain.title, ref=f"chain:{chain.id}")
-    return (link, Text(f" ({state})", strong=state == "missed")) if state else (link,)
+    return (link, Text(f" ({state})", strong=state in {"missed", "not proven"})) if state else (link,)
 
 
 def name_chain(lookup: Lookup, chain: Chain) -> str:

@@ -32,7 +32,7 @@ def _messages(rule: str, example: str, setting: str = "") -> list[str]:
             "late-chain",
             "margin: 43 %",
             "margin: 43.1 %",
-            "the chain `see_and_stop` may take 57 ms, its deadline is 100 ms with a margin of 43.1 %",
+            "nothing proves that the chain `see_and_stop` meets its deadline of 100 ms with a margin of 43.1 %: it may take 57 ms",
         ),
         (
             "overloaded-host",

@@ -55,13 +55,16 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
     ran = run("diff")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (
-        "sensing: Sensing\n"
+        "sensing: Sensing (CERTH)\n"
         "  ~ `sensing.camera`: rate `10 Hz` → `5 Hz`\n"
+        "\n"
+        "Between partners\n"
+        "  ~ `sensing.camera.image` from CERTH to SSSA: rate 10 Hz → 5 Hz; largest gap 107 ms → 207 ms\n"
         "\n"
         "Latency of chains\n"
         "  see: 114 ms → 214 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
-        "1 change (1 changed); concerns certh, sssa\n"
+        "1 change (1 changed); concerns CERTH, SSSA\n"
     )
     assert run("diff", "main", "-C", robot).out == ran.out
     assert run("diff", "main..slow").out == ran.out
@@ -107,7 +110,7 @@ def test_consequences_and_cured_findings(run: Run, robot: Path) -> None:
     )
     assert "  warning[unread-output]: nobody reads `image` of `sensing.camera` (archgen.yaml:8:26)\n" in out
     assert "Latency of chains\n  see: 114 ms → 102 ms (-12 ms), deadline 300 ms: met\n" in out
-    assert out.rstrip().endswith("; concerns certh, sssa")
+    assert out.rstrip().endswith("; concerns CERTH, SSSA")
 
 
 def test_json_follows_its_schema(run: Run, robot: Path) -> None:
@@ -196,9 +199,9 @@ def test_names_from_strangers_move_no_terminal(run: Run, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("form", "start"),
     [
-        ("text", "sensing: Sensing\n  ~ `sensing.camera`: rate"),
+        ("text", "sensing: Sensing (CERTH)\n  ~ `sensing.camera`: rate"),
         ("json", '{\n  "version": 1,'),
-        ("markdown", "### 1 change of the architecture: concerns `certh` and `sssa`\n\n`where this branch left main ("),
+        ("markdown", "### 1 change of the architecture: concerns CERTH and SSSA\n\n`where this branch left main ("),
         ("html", "<!DOCTYPE html>\n"),
         ("svg", '<?xml version="1.0" encoding="UTF-8"?>\n<svg class="archgen"'),
     ],

@@ -342,3 +342,31 @@ def test_a_title_is_kept_as_it_is_typed(run: Run, tmp_path: Path) -> None:
     assert (found.project.id, found.project.title) == ("my_robot_aeoe", "My Robot ÄÖ")
     assert {name: partner.title for name, partner in found.partners.items()} == {"robo_corp": "RoboCorp"}
     assert found.groups["g"].owner == "robo_corp"
+
+
+def test_a_second_project_says_that_code_owners_lack_its_files(run: Run, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    words = ("--partner", "eye=Eye @eye/x", "--yes")
+    first, second = (run("init", tmp_path / name, *words) for name in ("one", "two"))
+    hint = (
+        "That CODEOWNERS does not name this project's files yet: add what `archgen owners --format codeowners` prints."
+    )
+    assert (hint in first.out, hint in second.out) == (False, True)
+
+
+@pytest.mark.parametrize("lists_sources", [True, False])
+def test_each_partner_gets_a_file_for_its_agreements_that_codeowners_gives_to_it(
+    run: Run, tmp_path: Path, *, lists_sources: bool
+) -> None:
+    if lists_sources:  # other YAML lies there
+        (tmp_path / "params.yaml").write_text("speed: 1\n")
+    ran = run("init", tmp_path, "--partner", "eye=Eye Lab @eye/x", "--partner", "arm=Arm @arm/y", "--yes")
+    assert (ran.status, "archgen check says: no findings." in ran.out) == (0, True)
+    assert ("sources:" in (tmp_path / "archgen.yaml").read_text()) is lists_sources
+    assert findings(tmp_path) == []
+    for name in ("eye", "arm"):
+        with (tmp_path / f"review/{name}.yaml").open("a", encoding="utf-8") as stream:
+            stream.write("    sensing.camera: {key: removed, reason: agreed}\n")
+    assert {entry.partner for entry in check_project(tmp_path).architecture.review.accepted} == {"eye", "arm"}
+    owners = (tmp_path / "CODEOWNERS").read_text(encoding="utf-8").splitlines()
+    assert {"/archgen.yaml @eye/x @arm/y", "/review/arm.yaml @arm/y", "/review/eye.yaml @eye/x"} <= set(owners)

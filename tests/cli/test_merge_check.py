@@ -91,6 +91,46 @@ def test_conflicts_of_the_models_are_named_and_the_branch_is_left_out_of_the_res
     ]
 
 
+SPLIT = {
+    "groups/eyes.yaml": "groups:\n  sense: {components: {eye: {outputs: {image: Image}}}}\n",
+    "groups/ears.yaml": "groups:\n  sense: {components: {ear: {outputs: {sound: Sound}}}}\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("new_eye", "reason"),
+    [
+        (
+            "image: Image",
+            (
+                "one side moved what is in it to other files, the other one changed it: git conflicts, what both sides say does"
+                " not; make the change where it stands now"
+            ),
+        ),
+        (
+            "image: Colour",
+            (
+                "one side took it away or moved it, the other one changed it; both sides changed"
+                " `groups.sense.components.eye.outputs.image.type`"
+            ),
+        ),
+    ],
+)
+def test_a_file_that_one_side_split_says_whether_the_models_conflict(
+    run: Run, robot: Path, new_eye: str, reason: str
+) -> None:
+    both = {"groups/sense.yaml": BASE["groups/sense.yaml"] + "      ear: {outputs: {sound: Sound}}\n"}
+    repositories.commit(robot, both)
+    branch(robot, "edit", {"groups/sense.yaml": ("image: Image", "image: Depth")})
+    repositories.git(robot, "checkout", "-q", "-b", "split", "main")
+    (robot / "groups/sense.yaml").unlink()
+    repositories.commit(robot, {name: text.replace("image: Image", new_eye) for name, text in SPLIT.items()})
+    repositories.git(robot, "checkout", "-q", "main")
+    ran = run("merge-check", "-C", robot, "main", "edit", "split")
+    assert ran.status == 1
+    assert ran.out.splitlines()[2:] == ["main + edit + split: conflicts", f"  groups/sense.yaml: {reason}"]
+
+
 def test_warnings_count_where_they_are_asked_to(run: Run, robot: Path) -> None:
     # Each branch takes one of two readers away; only together nobody is left.
     repositories.commit(

@@ -36,6 +36,14 @@ def test_markers_stand_where_both_sides_changed_one_thing(run: Run, tmp_path: Pa
     )
 
 
+def test_one_id_that_lines_merge_into_twice_is_no_clean_merge(run: Run, tmp_path: Path) -> None:
+    base = "hosts:\n  a: 1\n  b: 2\n  c: 3\n  d: 4\n"
+    files = write_versions(tmp_path, base, base.replace("  a", "  x: {cores: 1}\n  a"), base + "  x: {cores: 2}\n")
+    ran = run("merge-driver", *files, "hosts.yaml")
+    assert ran.status == 1
+    assert ran.err == "archgen: hosts.yaml: both sides changed `hosts.x.cores`, and git takes the lines of both\n"
+
+
 def test_what_is_no_text_is_left_to_people(run: Run, tmp_path: Path) -> None:
     files = write_versions(tmp_path, b"\x00", b"\x00\x01", b"\x00\x02")
     ran = run("merge-driver", *files, "a\x1b.yaml")

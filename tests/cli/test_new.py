@@ -190,3 +190,26 @@ def test_sources_that_do_not_name_the_new_file(run: Run, ramcip: Path) -> None:
         == "Error: `sources` of archgen.yaml has no pattern for groups/garden.yaml: add `groups/*.yaml` there first\n"
     )
     assert not (ramcip / "groups/garden.yaml").exists()
+
+
+def test_a_partner_gets_a_file_for_its_agreements_that_is_read_whatever_sources_names(run: Run, ramcip: Path) -> None:
+    before = contents(ramcip)
+    ran = run("new", "partner", "inria", "--title", "Inria: Nancy", "--reviewers", "@inria/nancy", "-C", ramcip)
+    assert (ran.status, ran.err) == (0, "")
+    assert "`archgen owners --format codeowners` makes CODEOWNERS anew" in ran.out
+    added = changed(before, ramcip)
+    assert added["archgen.yaml"] == '  inria: {title: "Inria: Nancy", reviewers: "@inria/nancy"}'
+    assert added["review/inria.yaml"].startswith("# What Inria: Nancy agrees on. ")
+    assert added["review/inria.yaml"].endswith("\nreview:\n  accepted:")
+    assert [finding for finding in check_project(ramcip).findings if "inria" in str(finding)] == []
+    with (ramcip / "review/inria.yaml").open("a", encoding="utf-8") as stream:
+        stream.write("    human_state: {key: removed, reason: it did not help}\n")
+    assert [entry.partner for entry in check_project(ramcip).architecture.review.accepted] == ["inria"]
+
+
+def test_a_partner_of_a_single_file_gets_no_other_file(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text("archgen: 1\n")
+    assert run("new", "partner", "a", "-C", tmp_path / "robot.yaml").status == 0
+    assert list(contents(tmp_path)) == ["robot.yaml"]
+    again = run("new", "partner", "a", "-C", tmp_path / "robot.yaml")
+    assert (again.status, "there is a partner 'a' already" in again.err) == (2, True)

@@ -33,12 +33,12 @@ nodes:
 """
 BROKEN = ROBOT.replace("msg/Image", "msg/CompressedImage")
 MESSAGE = (
-    "breaks south: `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; "
-    "it is read by `display.screen.image`; this gives south, who reads `sensing.camera.image` as `display.screen.image`, "
-    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+    "breaks South (wire): `sensing.camera.image` now carries `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; "
+    "it is read by `display.screen.image`; this gives "
+    "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; `display.screen.image` of South reads it"
 )
 ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}"
-HELP = f"mend it, or south says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
+HELP = f"mend it, or South says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
 UNUSED = "types: {Old: {message: std_msgs/msg/Empty}}\n"
 """Makes an `unused-type`."""
 
@@ -104,7 +104,7 @@ def test_sarif_and_junit_hold_a_break_with_the_severity_of_the_policy(
     assert (region["startLine"], region["startColumn"]) == (11, 26)
     tree = ET.parse(folder / "archgen-out/review/findings.xml")  # noqa: S314 - archgen wrote it
     assert len(tree.findall(".//failure")) == (1 if policy == "error" else 0)
-    assert next(case.get("name", "")[:30] for case in tree.iter("testcase")) == "breaking-change: breaks south:"
+    assert next(case.get("name", "")[:37] for case in tree.iter("testcase")) == "breaking-change: breaks South (wire):"
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_uncommitted_changes_are_in_the_comment_and_the_title_says_so(run: Run, 
     (folder / "archgen.yaml").write_text(BROKEN, encoding="utf-8")
     assert run("review", folder, "--base", "main", "--no-build").status == 1
     assert f"`main ({main})` → `the working tree, with changes that are not committed`" in comment(folder)
-    assert "breaks `south`" in comment(folder).splitlines()[0]
+    assert "breaks South" in comment(folder).splitlines()[0]
 
 
 def test_a_file_that_is_not_committed_yet_is_a_change_of_the_working_tree(run: Run, tmp_path: Path) -> None:

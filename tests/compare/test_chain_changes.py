@@ -42,7 +42,7 @@ def test_a_deadline_that_changed(compared: Compared) -> None:
     (change,) = compared(ROBOT, ROBOT.replace("300 ms", "100 ms")).chains
     assert change.deadline is not None
     assert change.deadline.value == 100 * MS
-    assert [side and side.verdict for side in (change.before, change.after)] == ["met", "missed"]
+    assert [side and side.verdict for side in (change.before, change.after)] == ["met", "not proven"]
 
 
 def test_chains_that_came_went_or_were_renamed(compared: Compared) -> None:
@@ -110,3 +110,41 @@ def test_a_finding_with_another_figure_is_the_same(compared: Compared) -> None:
     late = ROBOT.replace("300 ms", "50 ms")
     assert said(compared, ROBOT, late) == (["late-chain see"], [])
     assert said(compared, late, late.replace("wcet: 5 ms", "wcet: 6 ms")) == ([], [])
+
+
+SLOW = """\
+groups:
+  g:
+    components:
+      a: {outputs: {x: sensor_msgs/msg/Image}}
+      b: {inputs: {x: a.x}, outputs: {y: sensor_msgs/msg/Image}}
+      c: {inputs: {y: b.y}}
+nodes:
+  na: {implements: a, timing: {rate: 10 Hz, wcet: 2 ms}, host: pc}
+  nb: {implements: b, timing: {behaviour: event, wcet: 5 ms}, host: pc}
+  nc: {implements: c, timing: {behaviour: event, wcet: 5 ms}, host: far}
+hosts: {pc: {cores: 2}, far: {cores: 1}, idle: {cores: 1}}
+chains: {see: {through: [a, c], deadline: 900 ms}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "causes"),
+    [
+        ("rate: 10 Hz", "rate: 5 Hz", ["g.a timing.rate"]),
+        ("rate: 10 Hz", "rate: 20 Hz", ["g.a timing.rate"]),
+        ("event, wcet: 5 ms}, host: pc", "event, wcet: 2 ms}, host: pc", ["g.b timing.wcet"]),
+        ("chains: {see: {through: [a, c]", "chains: {see: {through: [a, b]", ["see through"]),
+    ],
+)
+def test_a_chain_says_what_made_it_longer_or_shorter(compared: Compared, old: str, new: str, causes: list[str]) -> None:
+    # The other change has nothing to do with it.
+    after = SLOW.replace(old, new).replace("idle: {cores: 1}", "idle: {cores: 2}")
+    (chain,) = compared(SLOW, after).chains
+    assert [f"{change.element_id} {change.key}" for change in chain.causes] == causes
+
+
+def test_a_chain_that_is_new_has_no_cause(compared: Compared) -> None:
+    after = SLOW.replace("chains: {", "chains: {look: {through: [a, b]}, ").replace("10 Hz", "5 Hz")
+    causes = {chain.id: len(chain.causes) for chain in compared(SLOW, after).chains}
+    assert causes == {"look": 0, "see": 1}

@@ -36,7 +36,7 @@ project: {id: robot, title: Robot}
     [
         ("wcet: 2 ms", "wcet: 3 ms", "component g.a", "timing.wcet", "2 ms", "3 ms", None),
         ("host: pc\n    p", "host: arm\n    p", "node na", "host", "pc", "arm", "node `na` now runs on `arm` instead of `pc`"),
-        ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` now belongs to `sssa` instead of `certh`"),
+        ("owner: certh", "owner: sssa", "group g", "owner", "certh", "sssa", "group `g` belongs to SSSA now, not to CERTH"),
         ("owner: certh", "owner: [certh, sssa]", "group g", "co_owners", None, ["sssa"], "group `g`: further owners `sssa` added"),
         ("Does it.", "Does that.", "component g.b", "functionality", "Does it.", "Does that.", "`g.b`: functionality `Does it.` → `Does that.`"),
         ("cores: 4", "cores: 2", "host pc", "cores", 4, 2, "host `pc`: cores 4 → 2"),
@@ -99,7 +99,7 @@ def test_the_fields_of_a_message_concern_who_carries_it(compared: Compared) -> N
     (change,) = found.changes
     assert (change.element_kind, change.element_id, change.key) == ("message", "own_msgs/msg/Image", "fields")
     assert (change.before, change.after) == (["int32 a", "int32 b"], ["int32 a", "int64 b"])
-    assert change.text == "message `own_msgs/msg/Image`: fields `int64 b` added, `int32 b` removed; it carries `T`"
+    assert change.text == "message `own_msgs/msg/Image`: `b` is `int64` instead of `int32`; it carries `T`"
     assert found.concerned_owners == ("certh",)
     (change,) = compared(text, text.replace("int32 x\\n---", "---\\nint32 x")).changes
     assert (change.before, change.after) == (["int32 x", "---", "int32 y"], ["---", "int32 x", "int32 y"])

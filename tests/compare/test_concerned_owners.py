@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from archgen.compare import Change
+from archgen.compare import Change, PartnerBreak
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.concerned_owners import find_concerned_owners
 from tests.compare.elements import by_key, element, pair
@@ -13,7 +15,7 @@ WORLD = by_key(
     element("output a.c.x", owner="A", type="T"),
     element("output a.c.y", owner="A", type="U"),
     element("input b.d.i", owner="B", type="U"),
-    element("component c.e", owner="C", requirements=frozenset({"R"})),
+    element("component c.e", owner="C", co_owners=frozenset({"K"}), requirements=frozenset({"R"})),
     element("component d.f", owner="D", requirements=frozenset({"S"})),
     element("type T", message="m/msg/M"),
     element("type U", message="m/msg/N"),
@@ -32,6 +34,7 @@ WORLD = by_key(
     element("chain nothing"),
     element("port n.publishes.x", owner="N", refs="a.c.x"),
     element("group g", owner="G"),
+    element("group a"),
     element("component a.c", owner="A", refs="a.c"),
     element("node sender", owner="N", refs="a.c c.e"),
     element("policy p"),
@@ -44,8 +47,15 @@ READS = "b.d.i <- a.c.x"
     ("change", "owners"),
     [
         ("group g", "G"),
+        ("group a owner", "B"),
+        ("component a.c owner", "A B"),
+        ("component a.c title", "A"),
+        ("node sender co_owners", "B N"),
+        ("component c.e title", "C K"),
+        ("chain c title", ""),
+        ("host pc title", ""),
         ("policy p", ""),
-        ("project robot distro", "A B C D G M N O"),
+        ("project robot distro", "A B C D G K M N O"),
         ("project robot title", ""),
         ("connection b.d.i", "A B"),
         ("output a.c.x", "A B"),
@@ -57,12 +67,12 @@ READS = "b.d.i <- a.c.x"
         ("component a.c timing.wcet", "A"),
         ("component a.c timing.outputs.x.conditional", "A B"),
         ("component a.c timing.outputs.y.conditional", "A"),
-        ("component c.e timing.rate", "C"),
+        ("component c.e timing.rate", "C K"),
         ("node sender timing.rate", "B N"),
         ("node sender timing.outputs.x.max_gap", "B N"),
         ("input b.d.i type", "B"),
         ("port n.publishes.x qos", "B N"),
-        ("chain c deadline", "A C N"),
+        ("chain c deadline", "A C K N"),
         ("chain nothing deadline", ""),
         ("host pc cores", "M N"),
         ("host arm cores", "O"),
@@ -72,9 +82,8 @@ READS = "b.d.i <- a.c.x"
         ("link wan bandwidth", ""),
         ("type T size", "A B"),
         ("type U size", "A B"),
-        ("requirement R title", "C"),
+        ("requirement R title", "C K"),
         ("message m/msg/M fields", "A B"),
-        ("node n host", "N"),
         ("host gone", ""),
     ],
 )
@@ -85,6 +94,42 @@ def test_owners(change: str, owners: str) -> None:
     # One version is enough: who read it before is concerned as much as who reads it now.
     assert find_concerned_owners(changes, pair(WORLD, {}, (READS, ""))) == tuple(owners.split())
     assert find_concerned_owners(changes, pair({}, WORLD, ("", READS))) == tuple(owners.split())
+
+
+@pytest.mark.parametrize(("kind", "name"), [("component", "a.c"), ("group", "a"), ("output", "a.c.x")])
+@pytest.mark.parametrize("change_kind", ["renamed", "moved"])
+def test_who_reads_what_has_another_name_or_place_is_concerned(change_kind: str, kind: str, name: str) -> None:
+    change = Change(change_kind, kind, name, old_id="a.old")  # type: ignore[arg-type]
+    assert "B" in find_concerned_owners([change], pair(WORLD, WORLD, (READS, READS)))
+
+
+def test_who_has_a_node_on_the_host_that_another_comes_to_is_concerned() -> None:
+    before = WORLD | by_key(element("node o", owner="O", host="other"))
+    change = Change("changed", "node", "o", key="host")
+    after = WORLD | by_key(element("node o", owner="O", container="box"))
+    assert find_concerned_owners([change], pair(before, after)) == ("M", "N", "O")
+    # Where it left there is more room than before.
+    assert find_concerned_owners([change], pair(WORLD, WORLD)) == ("O",)
+
+
+def test_a_link_concerns_those_whose_data_crosses_it_where_timing_knows() -> None:
+    users = replace(pair(WORLD, WORLD), link_users={"lan": frozenset({"A"})})
+    assert find_concerned_owners([Change("changed", "link", "lan", key="bandwidth")], users) == ("A",)
+    assert find_concerned_owners([Change("changed", "link", "lan", key="title")], users) == ()
+    assert find_concerned_owners([Change("added", "link", "wan")], users) == ()
+
+
+def test_the_owner_of_a_group_is_concerned_by_what_comes_into_it_and_leaves_it() -> None:
+    old = ComparedElement("component", "new.c", "old.c", {}, parent_key=("group", "old"), owner="A")
+    new = ComparedElement("component", "new.c", "new.c", {}, parent_key=("group", "new"), owner="A")
+    groups = by_key(element("group old", owner="O"), element("group new", owner="N"))
+    change = Change("moved", "component", "new.c", old_id="old.c")
+    assert find_concerned_owners([change], pair(groups | by_key(old), groups | by_key(new))) == ("A", "N", "O")
+
+
+def test_who_loses_something_is_concerned() -> None:
+    change = Change("changed", "chain", "gone", key="deadline", breaks=(PartnerBreak("Z", "relaxes it"),))
+    assert find_concerned_owners([change], pair(WORLD, WORLD)) == ("Z",)
 
 
 def test_a_type_called_like_a_requirement_concerns_nobody_who_serves_that() -> None:

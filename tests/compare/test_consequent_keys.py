@@ -164,3 +164,19 @@ def test_only_a_project_goes_without_a_name_and_ports_are_reported_themselves() 
     assert not follows("title", element("host a", title="A"), element("host a"))
     assert follows("carried", element("port n.publishes.x", carried=True), element("port n.publishes.x"))
     assert not follows("topic", element("port n.publishes.x", topic="/a"), element("port n.publishes.x"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "present", "follows_removal"),
+    [
+        ("g.a g.b g.c", "g.a g.c", "component g.a, component g.c", True),
+        ("g.a n g.c", "g.a g.c", "component g.a, component g.c", True),
+        ("g.a n g.c", "g.a g.c", "component g.a, node n, component g.c", False),
+        ("g.a g.b g.c", "g.c g.a", "component g.a, component g.c", False),
+        ("g.a g.b", "g.a g.d", "component g.a, component g.d", False),
+        ("g.a g.b", "g.b g.a", "component g.a, component g.b", False),
+    ],
+)
+def test_a_chain_that_leads_past_what_was_removed(old: str, new: str, present: str, follows_removal: bool) -> None:  # noqa: FBT001
+    before, after = (with_values("chain c", {"through": tuple(text.split())}) for text in (old, new))
+    assert follows("through", before, after, after=tuple(map(element, present.split(", ")))) is follows_removal

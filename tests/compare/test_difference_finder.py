@@ -73,7 +73,7 @@ CASES: dict[str, tuple[str, list[tuple[str, str]], list[str]]] = {
     "an internal port of a node that stays": (
         ROBOT,
         [("publishes: {x: {topic: /x}}", "publishes: {x: {topic: /x}}, internal: {publishes: {s: {topic: /s}}}")],
-        ["changed port na.internal.publishes.s"],
+        ["added port na.internal.publishes.s"],
     ),
     "a type that is only used is not there by itself": (ROBOT, [("y: T}", "y: U}")], ["changed output g.a.y"]),
     "a group with all it has": (

@@ -348,7 +348,7 @@ def test_no_key_is_listed_twice() -> None:
             Effect.TEXT,
             (
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
-                "component performance.p.accuracy, type comment, input external, output description, chapter text, "
+                "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
                 "project layout, partner description, host tags, node urls.x"
             ),
@@ -356,7 +356,7 @@ def test_no_key_is_listed_twice() -> None:
         (
             Effect.SYSTEM,
             (
-                "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, "
+                "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
                 "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "

@@ -30,7 +30,8 @@ ros:
       uint8 what
 """
 ROBOT_2, ROBOT_1 = ROBOT.replace("DISTRO", "jazzy"), ROBOT.replace("DISTRO", "noetic")
-USES = "of `m_msgs/msg/Stop`, which b uses; what was built before"
+SAYS = "says of `offset` in `m_msgs/msg/Stop`"
+USES = "of `m_msgs/msg/Stop`, which B uses; what was built before"
 
 
 def test_constants_that_swap_their_values_break_who_uses_them(compared: Compared) -> None:
@@ -67,8 +68,14 @@ def test_constants_that_swap_their_values_break_who_uses_them(compared: Compared
             f"changes the constant `PAUSE` {USES} cannot talk to what is built after",
         ),
         (ROBOT_2, "uint8 what", "uint8 what 1", None),
-        (ROBOT_2, "# m, positive to the left", "# mm, positive to the left", None),
-        (ROBOT_2, "# m, positive to the left", "", None),
+        (
+            ROBOT_2,
+            "# m, positive to the left",
+            "# mm, positive to the left",
+            f"{SAYS} `mm, positive to the left` instead of `m, positive to the left`; B uses it",
+        ),
+        (ROBOT_2, "# m, positive to the left", "", f"{SAYS} no longer `m, positive to the left`; B uses it"),
+        (ROBOT_2, "# m, positive to the left", "# m: Positive to the left.", None),
         (ROBOT_2, "uint8 what", "# Of the base.\n\n      uint8 what", None),
     ],
 )
@@ -85,7 +92,7 @@ def test_a_changed_default_breaks_who_relies_on_it(compared: Compared) -> None:
         (change,) = compared(robot, robot.replace("uint8 what 1", new)).changes
         (loss,) = change.breaks
         assert loss.reason == (
-            f"{verb} the default of `what` in `m_msgs/msg/Stop`, which b uses: what does not set it sends something else"
+            f"{verb} the default of `what` in `m_msgs/msg/Stop`, which B uses: what does not set it sends something else"
         )
 
 

@@ -76,16 +76,16 @@ CASES = (
             "component `seeing.trunks` is added with 1 input and 1 output; it reads `seeing.camera.image`",
             "input `arm.planner.rows` is added; it reads `seeing.trunks.rows`",
         ),
-        ("agri", "cnr"),
+        ("agri", "bor", "cnr"),
     ),
     Case(
         "a component and its only reader removed",
         (("      weather: {outputs: {report: Weather}}\n", ""), (", weather: weather.report", "")),
         (
             "component `seeing.weather` is removed with 1 output",
-            "input `arm.planner.weather` is removed; it read `seeing.weather.report`",
+            "input `arm.planner.weather` is removed",
         ),
-        ("agri", "cnr"),
+        ("agri", "bor", "cnr"),
     ),
     Case(
         "a requirement dropped by all who served it",
@@ -97,7 +97,7 @@ CASES = (
             "`shop.counter` no longer serves `R-5`; no component serves `R-5` any more",
             "`shop.screen` no longer serves `R-5`",
         ),
-        ("bor",),
+        ("agri", "bor", "cnr"),
     ),
     Case(
         "a requirement removed",
@@ -123,7 +123,7 @@ CASES = (
             "node `net`: worst case execution time `30 ms` → `20 ms`",
             "node `net` no longer has `publishes.apples` on /apples: `lift` has it now",
         ),
-        ("agri", "cnr"),
+        ("agri", "bor", "cnr"),
     ),
     Case(
         "a rename, and other words beside it",
@@ -135,10 +135,10 @@ CASES = (
             ("wcet: 30 ms", "wcet: 40 ms"),
         ),
         (
-            "component `seeing.detector` is called `finder` now (recognised with 84 % confidence)",
+            "component `seeing.detector` is called `finder` now",
             "`seeing.finder`: worst case execution time `30 ms` → `40 ms`",
         ),
-        ("agri",),
+        ("agri", "cnr"),
     ),
     Case(
         "into a container on the same host",
@@ -156,7 +156,7 @@ CASES = (
         "a host with fewer cores",
         (("front: {cores: 4}", "front: {cores: 1}"),),
         ("host `front`: cores 4 → 1",),
-        ("agri",),
+        ("agri", "cnr"),
     ),
     Case(
         "a tighter deadline",

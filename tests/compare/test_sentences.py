@@ -97,6 +97,7 @@ PORTS = ("input g.i", "output g.x", "output g.y")
 @pytest.mark.parametrize(
     ("sign", "key", "values", "text"),
     [
+        ("+", "partner tum", {}, "partner `tum` is added; what it agrees on stands in `review/tum.yaml`"),
         ("+", "host pc", {}, "host `pc` is added"),
         ("-", "host pc", {}, "host `pc` is removed"),
         ("+", "use_case UC", {"title": ElementTitle("See", generated=False)}, "use case `UC` (See) is added"),
@@ -251,7 +252,14 @@ def test_what_nodes_say_of_ports() -> None:
     internal = element("port m.internal.publishes.x", parent="node m")
     assert (
         describe_port_change("removed", bare, pair({}, by_key(internal)))
-        == "node `n` no longer has `internal.publishes.x`"
+        == "node `n` no longer publishes `x`; no component knows of it"
+    )
+    heard = element(
+        "port n.internal.subscribes.x", parent="node n", topic=frozenset({"/x"}), message="std_msgs/msg/String"
+    )
+    assert (
+        describe_port_change("added", heard, pair({}, {}))
+        == "node `n` now subscribes to `/x`, a `std_msgs/msg/String`; no component knows of it"
     )
 
 

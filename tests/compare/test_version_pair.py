@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tests.compare.elements import by_key, element, pair, some
@@ -77,3 +79,29 @@ def test_added_and_removed() -> None:
     versions = pair(some("host a", "host b"), some("host b", "host c"))
     assert [versions.is_removed("host", name) for name in "abc"] == [True, False, False]
     assert [versions.is_added("host", name) for name in "abc"] == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("value_key", "before", "after", "lost", "unread"),
+    [
+        ("cores", 4, None, ("", "cores"), True),
+        ("cores", 4, None, ("cores", ""), False),
+        ("cores", None, 4, ("cores", ""), True),
+        ("cores", 4, 8, ("", "cores"), False),
+        ("timing.wcet", "1 ms", None, ("", "wcet"), True),
+        ("timing.rate", "1 Hz", None, ("", "period"), True),
+        ("timing.jitter", "1 ms", None, ("", "period"), False),
+    ],
+)
+def test_a_key_that_was_taken_out_is_not_read(
+    value_key: str, before: object, after: object, lost: tuple[str, str], unread: bool  # noqa: FBT001
+) -> None:  # fmt: skip
+    assert pair({}, {}, lost=lost).value_may_be_unread(("host", "pc"), before, after, value_key) is unread
+
+
+def test_a_key_is_gone_from_a_file_that_was_read_well() -> None:
+    host = replace(element("host pc"), file="good.yaml")
+    versions = replace(
+        pair(by_key(host), by_key(host), lost=("", "cores")), sound_files=(frozenset(), frozenset({"good.yaml"}))
+    )
+    assert not versions.value_may_be_unread(("host", "pc"), 4, None, "cores")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from hypothesis import given, settings
@@ -10,12 +11,14 @@ from hypothesis import strategies as st
 
 from archgen.compare import Change, Comparison
 from archgen.compare.comparison import PartnerBreak
+from archgen.compare.figure_changes import BoundaryChange, FigureChange, FigureKey, LoadChange, TravelPath
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
 from archgen.model.review_settings import AcceptedChange
+from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
@@ -84,6 +87,13 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
     return comparison(tmp_path_factory.mktemp("hostile"), ROBOT, after)[0]
 
 
+_HALF = TimingValue(Fraction(1, 2))
+_FIGURES = (
+    FigureChange(FigureKey("rate", "n"), _HALF, None),
+    FigureChange(FigureKey("hosts"), None, TravelPath(("a",), ("b",), ("c",))),
+)
+
+
 def comment(found: Comparison, text: str) -> str:
     """Write a comment with one text wherever it can hold one."""
     said = f"{text} `{text}` {text}"
@@ -113,25 +123,44 @@ def comment(found: Comparison, text: str) -> str:
     return comparison_markdown.write_comparison_markdown(document, text)
 
 
+def figure_comment(found: Comparison, text: str) -> str:
+    """Return a comment in which a text stands wherever figures name something, and nothing else."""
+    here = replace(
+        _titled(found, text),
+        changes=(),
+        new_findings=(),
+        chains=(),
+        concerned_owners=(text, *found.concerned_owners),
+        boundaries=(
+            BoundaryChange("changed", text, text, (text,), ("sssa",), _FIGURES, frozenset(), (text,)),
+            BoundaryChange("added", text, None, ("sssa",), (text,), (), frozenset()),
+        ),
+        loads=(LoadChange("link", text, None, _HALF, frozenset({text})),),
+    )
+    return comparison_markdown.write_comparison_markdown(describe_comparison(here, "main", "arm"))
+
+
 def _titled(found: Comparison, text: str) -> Comparison:
-    """Call every group, component and type by a text."""
+    """Call every group, component, partner and type by a text."""
     known = found.after.architecture
     groups = {name: replace(each, title=text) for name, each in known.groups.items()}
     components = {name: replace(each, title=text) for name, each in known.components.items()}
     outputs = {name: replace(each, type=text) for name, each in known.outputs.items()}
-    known = replace(known, groups=groups, components=components, outputs=outputs)
+    partners = {name: replace(each, title=text) for name, each in known.partners.items()}
+    known = replace(known, groups=groups, components=components, outputs=outputs, partners=partners)
     return replace(found, after=replace(found.after, architecture=known))
 
 
 def check(found: Comparison, text: str) -> None:
     """Hold a comment with a hostile text against one with a harmless text."""
-    made = comment(found, text)
-    parsed = tokens(made)
-    assert shape(parsed) == shape(tokens(comment(found, "word")))
-    assert {token.type for token in inner(parsed)} <= LINES
-    assert {token.content for token in inner(parsed) if token.type == "html_inline"} <= {"<sub>", "</sub>"}
-    assert not CALLS.search(words(parsed)), CALLS.search(words(parsed))
-    assert len(made) <= MAX_COMMENT_SIZE
+    for write in (comment, figure_comment):
+        made = write(found, text)
+        parsed = tokens(made)
+        assert shape(parsed) == shape(tokens(write(found, "word")))
+        assert {token.type for token in inner(parsed)} <= LINES
+        assert {token.content for token in inner(parsed) if token.type == "html_inline"} <= {"<sub>", "</sub>"}
+        assert not CALLS.search(words(parsed)), CALLS.search(words(parsed))
+        assert len(made) <= MAX_COMMENT_SIZE
 
 
 @given(TEXTS)

@@ -65,6 +65,62 @@ def merge(base: str, ours: str, theirs: str) -> str | UnmergedSlice:
             "a:\n  p: 1\n  q: 2\n", "a:\n  q: 2\n", "a:\n  p: 1\n  q: 3\n", "a:\n  q: 3\n", id="removed beside changed"
         ),
         pytest.param(
+            "a: {x: 1}\n",
+            "a: {x: 1, tags: [p]}\n",
+            "a: {x: 1, tags: [q]}\n",
+            "a: {x: 1, tags: [p, q]}\n",
+            id="new tags",
+        ),
+        pytest.param(
+            "sources:\n  - a.yaml\n",
+            "sources:\n  - a.yaml\n  - b.yaml\n",
+            'sources:\n  - a.yaml\n  - "c/*.yaml"   # all\n',
+            'sources:\n  - a.yaml\n  - b.yaml\n  - "c/*.yaml"   # all\n',
+            id="both add a source",
+        ),
+        pytest.param(
+            "nodes:\n  n: {kind: driver, package: p}\n",
+            "nodes:\n  n: {kind: [driver, lifecycle], package: p}\n",
+            "nodes:\n  n: {kind: driver, package: q}\n",
+            "nodes:\n  n: {kind: [driver, lifecycle], package: q}\n",
+            id="a list of kinds",
+        ),
+        pytest.param(
+            "g:\n  inputs:   # from where?\n  x: 1\n",
+            "g:\n  inputs:   # from where?\n    a: b.c\n  x: 1\n",
+            "g:\n  inputs: {d: e.f}   # from where?\n  x: 1\n",
+            "g:\n  inputs: {d: e.f, a: b.c}   # from where?\n  x: 1\n",
+            id="both fill in a blank",
+        ),
+        pytest.param(
+            "types:\n  T: p/msg/A\n",
+            "types:\n  T: {message: p/msg/A, comment: in metres}\n",
+            "types:\n  T: p/msg/B\n",
+            "types:\n  T: {message: p/msg/B, comment: in metres}\n",
+            id="short form against long form",
+        ),
+        pytest.param(
+            "types:\n  T: p/msg/A\n",
+            "types:\n  T: {message: p/msg/A, comment: in metres}\n",
+            "types:\n  T: {message: p/msg/A, size: 8 B}\n",
+            "types:\n  T: {message: p/msg/A, size: 8 B, comment: in metres}\n",
+            id="both write the long form",
+        ),
+        pytest.param(
+            "a: 1\r\nb: 2\r\n",
+            "a: 1\r\nb: 2\r\nc: 3\r\n",
+            "a: 1\r\nb: 2\r\nd: 4\r\n",
+            "a: 1\r\nb: 2\r\nc: 3\r\nd: 4\r\n",
+            id="line ends of Windows",
+        ),
+        pytest.param(
+            "a: {p: 1}\nb: 2\n",
+            "a: {p: 1}\r\nb: 2\r\n",
+            "a: {p: 1}\nb: 2\nc:\n  - 3\n",
+            "a: {p: 1}\r\nb: 2\r\nc:\r\n  - 3\r\n",
+            id="one side changed the line ends",
+        ),
+        pytest.param(
             "a: 1  # why\n", "a: 2  # why\n", "a: 1  # because\n", "a: 2  # because\n", id="a comment changed"
         ),
     ],
@@ -124,6 +180,41 @@ def test_a_small_change_is_carried_into_a_reformatted_text(
     assert merge(base, *sides) == merged
 
 
+LISTED = """\
+c:
+  requirements:
+    - R-1
+    - R-2   # since March
+    - "No dust, ever"
+  text: >-
+    One line,
+    and another.
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param("    - R-1\n", "", id="an item removed"),
+        pytest.param('ever"\n', 'ever"\n    - R-3   # since May\n', id="an item added with its comment"),
+        pytest.param("and another.\n", "and another,\n    and a third.\n", id="a folded text"),
+    ],
+)
+@pytest.mark.parametrize("is_ours_reformatted", [True, False])
+def test_a_change_of_a_few_lines_is_carried_into_a_text_indented_anew(
+    old: str, new: str, *, is_ours_reformatted: bool
+) -> None:
+    reindented, edited = LISTED.replace("    ", "      "), LISTED.replace(old, new)
+    sides = (reindented, edited) if is_ours_reformatted else (edited, reindented)
+    assert merge(LISTED, *sides) == edited.replace("    ", "      ")
+
+
+def test_an_item_is_added_to_a_list_that_now_stands_in_brackets() -> None:
+    base = "requirements:\n  - R-1\n  - R-2\n"
+    ours, theirs = 'requirements: [R-1, R-2, "a b"]\n', base + "  - R-3\n"
+    assert merge(base, ours, theirs) == 'requirements: [R-1, R-2, "a b", R-3]\n'
+
+
 @pytest.mark.parametrize(
     ("base", "ours", "theirs", "path"),
     [
@@ -132,6 +223,9 @@ def test_a_small_change_is_carried_into_a_reformatted_text(
         ("a: 1\n", "a: 1\nn: {r: 1}\n", "a: 1\nn: {r: 2}\n", ("n", "r")),
         ("c: {through: [a, b]}\n", "c: {through: [a, x, b]}\n", "c: {through: [a, y, b]}\n", ("c", "through")),
         ("v: 1.1\n", "v: 1.10\n", "v: 1.2\n", ("v",)),
+        ("chains: {from: [a]}\n", "chains: {from: [a, b]}\n", "chains: {from: [a, c]}\n", ("chains", "from")),
+        ("l: 1\n", "l: 1\nk: {connects: [a, b]}\n", "l: 1\nk: {connects: [a, c]}\n", ("k", "connects")),
+        ("types: {T: p/msg/A}\n", "types: {T: {message: p/msg/B}}\n", "types: {T: p/msg/C}\n", ("types", "T")),
         (
             "parameters: {tags: [1]}\n",
             "parameters: {tags: [1, 2]}\n",

@@ -151,7 +151,7 @@ def test_since_a_revision(tmp_path: Path) -> None:
     project.write_agreement(target, "north", "south", since="HEAD~1")
     text = target.read_text(encoding="utf-8")
     assert f"- **Changes since:** HEAD\\~1 ({first[:7]})" in text
-    assert "| Rate | \\~ changed | 30 Hz · 33.333 ms (written) | 20 Hz · 50 ms (written) |" in text
+    assert "| Rate (promised) | \\~ changed | 30 Hz · 33.333 ms | 20 Hz · 50 ms |" in text
     project.write_agreement(target, "north", "south", since=first)
     assert f"- **Changes since:** {first}\n" in target.read_text(encoding="utf-8")
 

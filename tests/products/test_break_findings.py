@@ -59,16 +59,22 @@ def project(folder: Path, **replaced: tuple[str, str]) -> ProjectVersion:
     ("changes", "places"),
     [
         # The key of timing, also where the comparison calls it by another name.
-        ({"a": ("period: 100 ms", "period: 400 ms")}, ["a.yaml:6:26 sense.eye"]),
-        ({"a": ("period: 100 ms", "rate: 2 Hz")}, ["a.yaml:6:24 sense.eye"]),
+        ({"a": ("period: 100 ms", "period: 400 ms")}, ["a.yaml:6:26 sense.eye breaks B (promise)"]),
+        ({"a": ("period: 100 ms", "rate: 2 Hz")}, ["a.yaml:6:24 sense.eye breaks B (promise)"]),
         # The value of a type, of a topic, of the quality of service.
-        ({"a": ("outputs: {stop: Stop}", "outputs: {stop: std_msgs/msg/Empty}")}, ["a.yaml:7:25 sense.eye.stop"]),
-        ({"a": ("topic: /stop", "topic: /halt")}, ["a.yaml:9:52 eye.publishes.stop"]),
-        ({"a": ("reliability: reliable", "reliability: best_effort")}, ["a.yaml:9:64 eye.publishes.stop"]),
+        (
+            {"a": ("outputs: {stop: Stop}", "outputs: {stop: std_msgs/msg/Empty}")},
+            ["a.yaml:7:25 sense.eye.stop breaks B (wire)"],
+        ),
+        ({"a": ("topic: /stop", "topic: /halt")}, ["a.yaml:9:52 eye.publishes.stop breaks B (wire)"]),
+        (
+            {"a": ("reliability: reliable", "reliability: best_effort")},
+            ["a.yaml:9:64 eye.publishes.stop breaks B (wire)"],
+        ),
         # What is gone stood in its component, in its group, or in its file.
-        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, ["a.yaml:5:7 sense.eye.stop"]),
+        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, ["a.yaml:5:7 sense.eye.stop breaks B (wire, promise)"]),
         # A message is a file.
-        ({"Stop": ("uint8 what", "uint16 what")}, ["msg/m_msgs/msg/Stop.msg:1:1 m_msgs/msg/Stop"]),
+        ({"Stop": ("uint8 what", "uint16 what")}, ["msg/m_msgs/msg/Stop.msg:1:1 m_msgs/msg/Stop breaks B (wire)"]),
         ({"b": ("rate: 50 Hz", "rate: 40 Hz")}, []),
     ],
 )
@@ -77,5 +83,25 @@ def test_a_break_stands_where_the_change_is(
 ) -> None:
     before, after = project(tmp_path / "before"), project(tmp_path / "after", **changes)
     breaks = find_breaks(compare_named_versions(before, after), after.checked_project)
-    assert [f"{finding.span} {finding.element}" for finding in breaks] == places
-    assert all(finding.help and finding.message.startswith("breaks b: ") for finding in breaks)
+    assert [f"{finding.span} {finding.element} {finding.message.split(':')[0]}" for finding in breaks] == places
+    assert all(finding.help for finding in breaks)
+
+
+@pytest.mark.parametrize(
+    ("change", "severity", "category"),
+    [
+        ({"a": ("topic: /stop", "topic: /halt")}, "warning", "wire"),
+        ({"a": ("period: 100 ms", "period: 400 ms")}, "error", "promise"),
+        # Of one change that breaks in two categories the graver counts.
+        ({"a": ("outputs: {stop: Stop}", "outputs: {}")}, "error", "wire, promise"),
+        ({"Stop": ("uint8 what", "uint8 what  # 0 is left")}, None, ""),
+    ],
+)
+def test_a_break_has_the_severity_of_its_category(
+    tmp_path: Path, change: dict[str, tuple[str, str]], severity: str | None, category: str
+) -> None:
+    policy = ("project: {id: mini}\n", "project: {id: mini}\nreview: {breaking: {promise: error}}\n")
+    before, after = project(tmp_path / "before"), project(tmp_path / "after", archgen=policy, **change)
+    breaks = find_breaks(compare_named_versions(before, after), after.checked_project)
+    assert [str(finding.severity) for finding in breaks] == ([severity] if severity else [])
+    assert all(finding.message.startswith(f"breaks B ({category}): ") for finding in breaks)

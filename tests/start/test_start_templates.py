@@ -7,8 +7,10 @@ from dataclasses import replace
 import pytest
 import yaml
 
+from archgen.schema import validate_document
 from archgen.start import start_answers, start_plan, start_templates, starter_slices
 from archgen.start.start_answers import GroupAnswer
+from archgen.syntax import yaml_parser
 
 
 @pytest.mark.parametrize(
@@ -72,3 +74,12 @@ def test_only_one_project_publishes() -> None:
 def test_a_folder_is_no_variable_of_a_pipeline(folder: str, written: str) -> None:
     assert written in start_templates.fill_pipeline(folder).decode()
     yaml.safe_load(start_templates.fill_pipeline(folder))
+
+
+def test_agreements_load_whatever_the_partner_is_called() -> None:
+    text = start_templates.fill_agreements("A: B # {{ c }}\u2028- d\x1b").decode()
+    document, diagnostics = yaml_parser.parse_yaml("review/a.yaml", text)
+    assert document is not None
+    assert (diagnostics, validate_document(document)) == ((), ())
+    assert "$schema=" in text.splitlines()[0]
+    assert "$schema=" not in start_templates.fill_agreements("A", has_schema=False).decode()

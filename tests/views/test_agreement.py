@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from pathlib import Path
 
 import pytest
 
 from archgen import pipeline, resources
 from archgen.link.interface_sources import load_interfaces
+from archgen.model.partner_interfaces import find_all_interfaces, find_interfaces_between
+from archgen.products import agreement_documents
 from archgen.views.agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.message_fields import field_table, list_field_rows
-from archgen.views.agreement.partner_interfaces import find_interfaces_between
-from archgen.views.shapes import Inlines, Table
+from archgen.views.shapes import Outline, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
 
 
@@ -29,7 +32,9 @@ def changed(folder: Path, *edits: tuple[str, str]) -> PartnerAgreement:
 
 
 def keys(folder: Path, first: str, second: str, source: str = DUO) -> list[tuple[str, str, str]]:
-    return [(each.key, *each.pair) for each in find_interfaces_between(view(checked(folder, source)), first, second)]
+    return [
+        (each.key, *each.pair) for each in find_interfaces_between(checked(folder, source).architecture, first, second)
+    ]
 
 
 def test_both_directions_those_of_the_first_partner_first(tmp_path: Path) -> None:
@@ -63,7 +68,7 @@ def test_a_node_of_two_partners_components_makes_neither_answer_for_the_other(tm
     shared = DUO.replace("planner_node: {implements: planner,", "planner_node: {implements: [planner, finder],")
     shared = shared.replace("implements: finder\n", "implements: finder\n    owner: south\n")
     assert ("seeing.camera.image", "south", "north") in keys(tmp_path, "north", "south", shared)
-    found = find_interfaces_between(view(checked(tmp_path, shared)), "north", "south")
+    found = find_interfaces_between(checked(tmp_path, shared).architecture, "north", "south")
     assert [port.id for each in found if each.key == "seeing.camera.image" for port in each.inputs] == [
         "moving.calibration.image"
     ]
@@ -75,7 +80,8 @@ def test_topics_without_a_connection_are_interfaces_too(tmp_path: Path) -> None:
     source = DUO.replace("hosts: {pc", f"{nodes}hosts: {{pc")
     assert ("/tf", "north", "south") in keys(tmp_path, "north", "south", source)
     said = lines(section(made(tmp_path, source=source).outline, "/tf").blocks)
-    assert said[0] == "Topic: /tf"
+    assert said[1:3] == ["Topic: /tf", "Message: tf2_msgs/msg/TFMessage"]
+    assert not any("type of what flows" in line for line in said), "the message says it"
     assert "publishes | North Robotics | north_frames | default (not written)" in said
 
 
@@ -87,13 +93,23 @@ def test_a_physical_flow_needs_no_message(tmp_path: Path) -> None:
         "inputs: {image: camera.image, planner", "inputs: {felt: moving.arm.grip, image: camera.image, planner"
     )
     source = source.replace(", owner: west", "")
-    assert lines(section(made(tmp_path, source=source).outline, "Arm · grip").blocks) == [
+    assert lines(section(made(tmp_path, source=source).outline, "Arm · grip").blocks)[1:] == [
         "Kind: physical: neither message nor topic",
         "Type: Force",
         "Requirements: R-1 The arm grasps what lies on the table (Finder)",
         "gives | North Robotics | Arm · grip",
         "takes | South Vision | Finder · felt",
     ]
+
+
+@pytest.mark.parametrize("name", ["example_ramcip", "duo"])
+def test_all_interfaces_are_those_of_each_pair(tmp_path: Path, name: str) -> None:
+    architecture = (
+        checked(tmp_path) if name == "duo" else pipeline.check_project(resources.resource_path(name))
+    ).architecture
+    pairs = itertools.combinations(sorted(architecture.partners), 2)
+    of_pairs = [each for pair in pairs for each in find_interfaces_between(architecture, *pair)]
+    assert list(find_all_interfaces(architecture)) == of_pairs != []
 
 
 def test_every_connection_between_owners_is_in_their_agreement() -> None:
@@ -103,7 +119,7 @@ def test_every_connection_between_owners_is_in_their_agreement() -> None:
         (each.key, port.id): each.pair
         for at, first in enumerate(partners)
         for second in partners[at + 1 :]
-        for each in find_interfaces_between(found, first, second)
+        for each in find_interfaces_between(architecture, first, second)
         for port in each.inputs
     }
     for edge in architecture.edges:
@@ -114,16 +130,19 @@ def test_every_connection_between_owners_is_in_their_agreement() -> None:
 
 
 def test_what_an_interface_says(tmp_path: Path) -> None:
-    assert lines(section(made(tmp_path).outline, "Finder · objects").blocks) == [
+    said = lines(section(made(tmp_path).outline, "Finder · objects").blocks)
+    assert re.fullmatch("Version: [0-9a-f]{6}", said[0])
+    assert said[1:] == [
         "Topic: /objects",
         "Type: Found objects",
         "Message: geometry_msgs/msg/PoseArray",
-        "Rate: 30 Hz · 33.333 ms, event (derived from camera_driver)",
-        "Largest gap: 56.333 ms (derived)",
-        "Size: 12 kB (written)",
-        "Traffic: 360 kB/s",
-        "QoS offered: default: reliable, depth 10",
+        "When late or missing: nothing is promised for this case",
         "Requirements: R-1 The arm grasps what lies on the table (Finder, Planner)",
+        "Rate | nothing | 30 Hz · 33.333 ms, event-driven, follows from the rate of camera_driver",
+        "Largest gap | nothing | 56.333 ms, follows from when finder_node is activated and how long it takes",
+        "Size | 12 kB | ",
+        "Traffic | nothing | 360 kB/s, follows from rate and size",
+        "QoS offered | default: reliable, depth 10 | ",
         "publishes | South Vision | Finder · objects | finder_node\non Pc | default: reliable, depth 10",
         "reads | North Robotics | Planner · objects | planner_node\non Pc | default (not written)",
         "header | std_msgs/msg/Header",
@@ -132,20 +151,20 @@ def test_what_an_interface_says(tmp_path: Path) -> None:
         "poses | geometry_msgs/msg/Pose[]",
         "poses[].position | geometry_msgs/msg/Point",
         "poses[].orientation | geometry_msgs/msg/Quaternion",
-        "See And Move | 66.333 ms | 300 ms | met",
+        "See And Move | 300 ms | 66.333 ms | met",
     ]
 
 
 def test_a_service_runs_from_its_server_and_says_how_soon_it_answers(tmp_path: Path) -> None:
     found = made(tmp_path)
     said = lines(section(found.outline, "Planner · plan").blocks)
-    assert said[:4] == [
+    assert said[1:4] == [
         "Service: /moving/planner/plan",
         "Type: Plan on request",
         "Message: example_interfaces/srv/Trigger",
-        "Answers within: 10 ms (derived)",
     ]
-    assert "The definition of example_interfaces/srv/Trigger is not held: its fields cannot be shown." in said
+    assert "Answers within | nothing | 10 ms, follows from the load of its host" in said
+    assert "Open points: The fields of the message are not stated here: its definition is not at hand." in said
     assert not any(line.startswith("See And Move") for line in said), "the chain goes by the topic"
     arrow = next(each for each in found.graph.arrows if each.style == "service")
     assert (arrow.tail, arrow.head) == ("seeing.finder", ">moving.planner"), "drawn from client to server"
@@ -173,14 +192,31 @@ def test_open_points(tmp_path: Path) -> None:
         "trigger: [objects]}, host: pc, subscribes: {objects: {qos: {reliability: reliable}}}}",
     )
     outline = made(tmp_path, source=source).outline
-    clash = (
-        "error: planner_node receives nothing from finder_node on /objects: it asks for reliable delivery, and is "
-        "offered best effort only"
-    )
+    clash = "planner_node asks for reliable delivery, and finder_node offers best effort only: nothing arrives."
     assert f"Open points: {clash}" in lines(section(outline, "Finder · objects").blocks)
     points = lines(section(outline, "Open points").blocks)
-    assert points[0] == "Planner · plan | definition of the message"
-    assert any("planner_node receives nothing" in line and "incompatible-qos" in line for line in points)
+    no_definition = "The fields of the message are not stated here: its definition is not at hand."
+    assert points == [f"Planner · plan | {no_definition}", f"Finder · objects | {clash}"]
+    assert [text(row[-1]) for row in _table(outline, "At a glance").rows] == [
+        "definition of the message",
+        "",
+        "1 contradiction",
+    ]
+
+
+def test_the_project_s_own_business_is_no_part_of_an_agreement(tmp_path: Path) -> None:
+    """Findings (a requirement that nobody declared, an output that nobody reads) concern neither of the two."""
+    source = DUO.replace(
+        "        requirements: [R-1]\n        inputs: {objects", "        requirements: [R-9]\n        inputs: {objects"
+    )
+    assert source != DUO
+    project = checked(tmp_path, source)
+    assert {finding.rule for finding in project.findings} >= {"unknown-requirement", "unread-output"}
+    words = agreement_documents.render_agreement_markdown(
+        make_agreement(view(project), "north", "south", revision="r1")
+    )
+    for rule in ("unknown-requirement", "unread-output", "archgen.yaml", "warning", "finding"):
+        assert rule not in words
 
 
 def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
@@ -190,7 +226,7 @@ def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
     assert facts == {
         "Between": "North Robotics, ada@north.example\nSouth Vision",
         "Project": "Duo Arm",
-        "Version": "0.3",
+        "Project version": "0.3",
         "Revision": "r1",
         "ROS distribution": "jazzy",
     }
@@ -213,18 +249,21 @@ def test_nothing_changed(tmp_path: Path) -> None:
 def test_what_changed_stands_side_by_side(tmp_path: Path) -> None:
     found = changed(tmp_path, ("rate: 30 Hz", "rate: 25 Hz"), ("deadline: 300 ms", "deadline: 60 ms"))
     said = lines(section(found.outline, "Finder · objects").blocks)
-    assert said[0] == "~ changed since v1"
-    assert said[1:5] == [
-        "Rate | ~ changed | 30 Hz · 33.333 ms, event (derived from camera_driver) | 25 Hz · 40 ms, event (derived from camera_driver)",
-        "Largest gap | ~ changed | 56.333 ms (derived) | 63 ms (derived)",
-        "Traffic | ~ changed | 360 kB/s | 300 kB/s",
-        "Chain See And Move | ~ changed | 66.333 ms; deadline 300 ms; met | 73 ms; deadline 60 ms; missed",
+    assert said[:4] == [
+        "Rate (expected) | ~ changed | 30 Hz · 33.333 ms, event-driven | 25 Hz · 40 ms, event-driven",
+        "Largest gap (expected) | ~ changed | 56.333 ms | 63 ms",
+        "Traffic (expected) | ~ changed | 360 kB/s | 300 kB/s",
+        "Deadline of See And Move | ~ changed | 300 ms | 60 ms, not proven",
     ]
-    assert [text(row[1]) for row in _summary(found)] == [
-        "",
+    assert said[4] == "Chain See And Move (expected) | ~ changed | 66.333 ms; met | 73 ms; not proven"
+    log = _table(found.outline, "Changes since v1")
+    assert [text(row[1]) for row in log.rows] == [
         "~ changed: rate, largest gap, traffic",
         "~ changed: rate, largest gap, traffic, chains",
     ]
+    camera_step, objects_step = (text(row[2]) for row in log.rows)
+    assert re.fullmatch("[0-9a-f]{6} → [0-9a-f]{6}", camera_step), "its rate is promised"
+    assert objects_step.endswith(", as before"), "that its rate follows from the camera's nobody promises"
 
 
 def test_added_and_removed(tmp_path: Path) -> None:
@@ -233,7 +272,8 @@ def test_added_and_removed(tmp_path: Path) -> None:
         (", planner: moving.planner.plan", ""),
         ("{image: camera.image}, outputs: {offset", "{info: camera.info}, outputs: {offset"),
     )
-    assert [(text(row[0]), text(row[1])) for row in _summary(found)] == [
+    log = _table(found.outline, "Changes since v1")
+    assert [(text(row[0]), text(row[1])) for row in log.rows] == [
         ("Camera · info", "+ added"),
         ("Finder · objects", "~ changed: chains"),
         ("Planner · plan", "\u2212 removed"),
@@ -241,8 +281,9 @@ def test_added_and_removed(tmp_path: Path) -> None:
     ]
     assert text(found.outline.notices[0].inlines) == "Interfaces since v1: 1 added, 1 changed, 2 removed."
     gone = section(found.outline, "Removed").sections[0]
-    assert lines(gone.blocks)[:2] == ["\u2212 removed", "Service: /moving/planner/plan"]
-    assert {run.change for row in _summary(found) for run in row[1]} >= {"added", "removed"}
+    assert lines(gone.blocks)[0] == "\u2212 removed"
+    assert lines(gone.blocks)[2] == "Service: /moving/planner/plan"
+    assert {run.change for row in log.rows for run in row[1]} >= {"added", "removed"}
 
 
 def test_a_new_name_on_the_same_topic_is_a_change(tmp_path: Path) -> None:
@@ -272,10 +313,10 @@ def test_a_reader_more_and_a_field_less(tmp_path: Path) -> None:
     assert "Field format | + added |  | string" in said
 
 
-def _summary(found: PartnerAgreement) -> tuple[tuple[Inlines, ...], ...]:
-    table = section(found.outline, "At a glance").blocks[0]
+def _table(outline: Outline, title: str) -> Table:
+    table = section(outline, title).blocks[0]
     assert isinstance(table, Table)
-    return table.rows
+    return table
 
 
 @pytest.mark.parametrize(("first", "second"), [("certh", "sssa"), ("accrea", "tum"), ("forth", "certh")])

@@ -44,7 +44,7 @@ def test_the_table_of_requirements_names_chains_with_their_state(tmp_path: Path)
     table = make_requirement_table(lookup, lookup.architecture.requirements.values())
     assert table is not None
     assert ["".join(part.text for part in row[-1]) for row in table.rows] == [
-        "chain Late (missed), chain In good time (met), chain Free (without a deadline)",
+        "chain Late (not proven), chain In good time (met), chain Free (without a deadline)",
         "Eye, chain In good time (met)",
         "no component yet",
     ]
@@ -55,7 +55,7 @@ def test_the_page_of_a_requirement_lists_its_chains(tmp_path: Path) -> None:
     blocks = pages["requirement:R-1"].section.blocks
     assert [
         "".join(part.text for part in item) for block in blocks if isinstance(block, Bullets) for item in block.items
-    ] == ["Late (missed)", "In good time (met)", "Free (without a deadline)"]
+    ] == ["Late (not proven)", "In good time (met)", "Free (without a deadline)"]
     assert not [block for block in blocks if isinstance(block, Paragraph) and block.kind == "warning"]
     assert Bullets not in {type(block) for block in pages["requirement:R-3"].section.blocks}
 
@@ -65,7 +65,7 @@ def test_a_card_names_what_serves_a_requirement_and_what_a_chain_serves(tmp_path
     assert make_card(lookup, "requirement", "R-2").lists == (("served by", ("g.eye", "the chain good (met)")),)
     assert make_card(lookup, "chain", "late").facts == (
         ("deadline", "10 ms"),
-        ("state", "missed"),
+        ("state", "not proven"),
         ("requirements", "R-1"),
     )
 

@@ -46,7 +46,7 @@ GROUP = KindSpec(
     features=(
         *NAME_FEATURES,
         # The names of its components outweigh all else: a group is what it holds.
-        FeatureSpec("components", 8, lambda _, group: frozenset(group.components)),
+        FeatureSpec("components", 8, lambda _, group: frozenset(group.components), is_decisive=True),
         text_feature(2, "description"),
         FeatureSpec("owner", 0.5, lambda relations, group: relations.common_ids("partner", [group.owner])),
     ),
@@ -133,7 +133,7 @@ COMPONENT = KindSpec(
         KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
         URLS,
-        KeySpec("performance.", _read_performance, Effect.TEXT),
+        KeySpec("performance.", _read_performance, Effect.SYSTEM),
         timing_key(_read_timing),
         KeySpec(MAPPED_KEY, _is_mapped, Effect.SYSTEM),
     ),

@@ -127,6 +127,8 @@ class FeatureSpec:
     weight: float
     marks: Callable[[ElementRelations, Any], frozenset[str]]
     is_generated: Callable[[Any], bool] | None = None
+    is_decisive: bool = False
+    """Whether it decides alone where most marks of both sides are the same: a group is what it holds."""
 
 
 def _nothing(_element: object, _context: ReadContext) -> None:

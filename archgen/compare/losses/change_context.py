@@ -3,31 +3,40 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import shorten_text
+from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
+from archgen.compare.losses.wire_heirs import find_wire_heirs
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.partner_titles import name_partner
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
-
-_MAX_NAMES = 4
-"""Maximal number of elements named in one sentence; the rest is counted."""
+from archgen.model.review_settings import BreakCategory
 
 
 @dataclass(frozen=True, slots=True)
 class PartnerLoss:
-    """What a partner loses by the change at an index of `ChangeContext.changes`. `reason` is that of `PartnerBreak`."""
+    """What a partner loses by the change at an index of `ChangeContext.changes`; the rest is that of `PartnerBreak`."""
 
     change_index: int
     partner: str
     reason: str
+    category: BreakCategory = "wire"
+
+
+class LastingOutput(NamedTuple):
+    """An output that is there in both versions, by its common id before and after: these differ if it has an heir."""
+
+    id: str
+    new_id: str
+    inputs_by_partner: Mapping[str, list[str]]
 
 
 @dataclass
@@ -106,31 +115,83 @@ class ChangeContext:
         return frozenset(owner for owner in owner_ids if owner and len(owner_ids) == 1)
 
     def shared_losses(
-        self, indices: Iterable[int], parts_by_partner: Mapping[str, Sequence[str]], reason_template: str, verb: str
+        self,
+        indices: Iterable[int],
+        parts_by_partner: Mapping[str, Collection[str]],
+        reason_template: str,
+        verb: str,
+        category: BreakCategory = "promise",
     ) -> Iterator[PartnerLoss]:
-        """Yield one loss for each partner who does not own a change; `{}` in `why` becomes their parts and `verb`."""
-        for change_index in indices:
-            other_parts = {
-                partner: parts_by_partner[partner]
-                for partner in sorted(parts_by_partner)
-                if partner not in self.owners_of_change(change_index)
-            }
-            part_phrases = [
-                f"{tick_sorted_names(part_names)} of {partner}" for partner, part_names in other_parts.items()
-            ]
-            has_many = sum(map(len, other_parts.values())) != 1
-            reason_text = reason_template.replace(
-                "{}", f"{join_words(part_phrases)} {_plural_verb(verb, plural=has_many)}"
-            )
-            yield from (PartnerLoss(change_index, partner, reason_text) for partner in other_parts)
+        """Yield one loss for each partner who does not own a change; the last `{}` of the template becomes
+        their parts and `verb`.
 
-    def losses_of_partner(self, indices: Iterable[int], partner: str, reason_text: str) -> Iterator[PartnerLoss]:
-        """Yield a loss of a partner for each change that is not its own."""
-        yield from (
-            PartnerLoss(change_index, partner, reason_text)
-            for change_index in indices
-            if partner not in self.owners_of_change(change_index)
-        )
+        Most of what partners share are promises: deadlines, hosts, links.
+        """
+        # The last braces: what is quoted in front of them may have some of its own.
+        lead, _, rest = reason_template.rpartition("{}")
+
+        def write_reason(partners: Sequence[str]) -> str:
+            phrases = [
+                f"{tick_sorted_names(parts_by_partner[partner])} of {self.name_partner(partner)}"
+                for partner in partners
+            ]
+            has_many = sum(len(parts_by_partner[partner]) for partner in partners) != 1
+            return f"{lead}{join_words(phrases)} {decline_verb(verb, plural=has_many)}{rest}"
+
+        yield from self._losses_of_others(indices, parts_by_partner, write_reason, category)
+
+    def losses_of_readers(
+        self, indices: Iterable[int], parts_by_partner: Mapping[str, Collection[str]], lead: str, rest: str
+    ) -> Iterator[PartnerLoss]:
+        """Yield one loss for each partner who does not own a change: between `lead` and `rest` stand all of them with
+        their parts, as those from whom something is taken.
+        """
+
+        def write_reason(partners: Sequence[str]) -> str:
+            readers = [
+                f"{self.name_partner(partner)} ({tick_sorted_names(parts_by_partner[partner])})" for partner in partners
+            ]
+            return f"{lead} {join_words(readers)}{rest}"
+
+        yield from self._losses_of_others(indices, parts_by_partner, write_reason, "wire")
+
+    def losses_of_users(
+        self,
+        indices: Iterable[int],
+        partners: Iterable[str],
+        reason_template: str,
+        verb: str,
+        category: BreakCategory = "wire",
+    ) -> Iterator[PartnerLoss]:
+        """Yield one loss for each partner who does not own a change; the last `{}` of the template becomes all of them
+        and `verb`, if any.
+        """
+        lead, _, rest = reason_template.rpartition("{}")
+
+        def write_reason(users: Sequence[str]) -> str:
+            names = join_words([self.name_partner(user) for user in users])
+            return f"{lead}{f'{names} {decline_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
+
+        yield from self._losses_of_others(indices, partners, write_reason, category)
+
+    def _losses_of_others(
+        self,
+        indices: Iterable[int],
+        partners: Iterable[str],
+        write_reason: Callable[[Sequence[str]], str],
+        category: BreakCategory,
+    ) -> Iterator[PartnerLoss]:
+        """Yield the losses by each change of the partners who do not own it, all with the same reason."""
+        sorted_partners = sorted(partners)
+        for change_index in indices:
+            owners = self.owners_of_change(change_index)
+            others = [partner for partner in sorted_partners if partner not in owners]
+            reason_text = write_reason(others)
+            yield from (PartnerLoss(change_index, partner, reason_text, category) for partner in others)
+
+    def name_partner(self, partner: str) -> str:
+        """Return what people call a partner."""
+        return name_partner(partner, self.versions.partner_names)
 
     def owner_before(self, kind: str, name: str) -> str | None:
         """Return the partner who owned an element before the change; for a new element, who owns it."""
@@ -159,7 +220,19 @@ class ChangeContext:
         """Return what written nodes publish and serve, before and after, by common node and port ("" for internal
         ones).
         """
-        return self._collect_offered(self.before, self.matched_ids), self._collect_offered(self.after, MatchedIds())
+        old_endpoints = self._collect_offered(self.before, self.matched_ids)
+        # Where a program was, a plan offers nothing. What was only planned all along is held against its plan.
+        real_keys = {
+            key
+            for (node_id, port), ends in old_endpoints.items()
+            for key in (node_id, port)
+            if any(self.before.nodes[end.node].status != "planned" for end in ends)
+        }
+        return old_endpoints, {
+            (node_id, port): ends
+            for (node_id, port), ends in self._collect_offered(self.after, MatchedIds()).items()
+            if self.after.nodes[node_id].status != "planned" or real_keys.isdisjoint({node_id, port} - {""})
+        }
 
     def _collect_offered(
         self, architecture: Architecture, matched_ids: MatchedIds
@@ -170,6 +243,39 @@ class ChangeContext:
                 port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
+
+    @property
+    def guards_margins(self) -> bool:
+        """Whether a promise breaks as soon as it is weaker, though all that is asked of it is still kept."""
+        return self.before.review.guards_margins or self.after.review.guards_margins
+
+    @cached_property
+    def output_heirs(self) -> Mapping[str, str]:
+        """Return the removed outputs that live on as new ones on the same wire, with the ids of these."""
+        return find_wire_heirs(self.versions, (self.before, self.after), self.matched_ids)
+
+    @cached_property
+    def lasting_outputs(self) -> Sequence[LastingOutput]:
+        """Return the outputs that partners other than their owner needed, and that are still there or have an heir."""
+        outputs = (
+            LastingOutput(output, self.output_heirs.get(output, output), self.foreign_readers(output, readers))
+            for output, readers in sorted(self.versions.connections_before.readers_by_output.items())
+        )
+        return [
+            output
+            for output in outputs
+            if output.inputs_by_partner and ("output", output.new_id) in self.versions.elements_after
+        ]
+
+    def foreign_readers(self, output_id: str, readers: Iterable[str]) -> Mapping[str, list[str]]:
+        """Return those of the inputs that needed an output, by partner, without the partner who owns the output."""
+        lasting_owners = self.lasting_owners("output", output_id)
+        inputs_by_partner: dict[str, list[str]] = defaultdict(list)
+        for reader in sorted(filter(self.needs_source, readers)):
+            partner = self.owner_before("input", reader)
+            if partner and partner not in lasting_owners:
+                inputs_by_partner[partner].append(reader)
+        return dict(sorted(inputs_by_partner.items()))
 
     def port_change_indices(self, node_id: str, port_id: str, *keys: str) -> list[int]:
         """Return the indices of changes of what a node says of a component's port, or of its internal ones if `port` is
@@ -186,19 +292,3 @@ class ChangeContext:
             if is_asked_port and (not keys or change.key in keys or change.kind != "changed"):
                 indices.append(index)
         return list(dict.fromkeys(indices))
-
-
-def tick_name(name: object) -> str:
-    """Return a name in backticks, whatever it contains."""
-    return f"`{shorten_text(str(name))}`"
-
-
-def tick_sorted_names(names: Iterable[str]) -> str:
-    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
-    return tick_names(sorted(names), _MAX_NAMES)
-
-
-def _plural_verb(verb: str, *, plural: bool) -> str:
-    if not plural:
-        return verb
-    return "are" if verb == "is" else verb.removesuffix("s")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 from archgen.compare.comparison import Change
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
+from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
-from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import Interface
 from archgen.model.ros_distro import is_ros_1
 
@@ -17,7 +18,7 @@ _INNER_TYPE_KEYS = ("request", "response", "feedback")
 
 
 def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find outputs that another partner reads and that have another conceptual type or message."""
+    """Find outputs that another partner reads and that have another conceptual type or message, or carry none any more."""
     old_messages, new_messages = (
         _messages_by_output(context.before, context.matched_ids),
         _messages_by_output(context.after, MatchedIds()),
@@ -26,19 +27,19 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         new_element = context.versions.elements_after.get(("output", output))
         if new_element is None:
             continue
-        old_type = context.versions.elements_before["output", output].values.get("type")
+        old_element = context.versions.elements_before["output", output]
+        old_type = old_element.values.get("type")
         messages_before, messages_after = old_messages.get(output, frozenset()), new_messages.get(output, frozenset())
         indices, change = _type_change(
             context, output, (old_type, new_element.values.get("type")), (messages_before, messages_after)
         )
-        needing_readers = filter(context.needs_source, sorted(readers))
-        lost_inputs = (
-            _readers_by_partner(context, needing_readers, context.lasting_owners("output", output)) if change else {}
-        )
-        for partner, inputs in sorted(lost_inputs.items()):
-            name = context.old_id("output", output)
-            reason_text = f"gives {partner}, who reads `{name}` as {tick_sorted_names(inputs)}, {change}"
-            yield from context.losses_of_partner(indices, partner, reason_text)
+        if new_element.values.get("medium") and not old_element.values.get("medium"):
+            indices = context.change_indices("output", output, "medium")
+            change = "a physical quantity instead of a message"
+        if change:
+            reason_text = f"gives {change} as {tick_name(context.old_id('output', output))}; {{}} it"
+            readers_by_partner = context.foreign_readers(output, readers)
+            yield from context.shared_losses(indices, readers_by_partner, reason_text, "reads", "wire")
 
 
 def _type_change(
@@ -57,6 +58,10 @@ def _type_change(
         )
         replacement = f"{tick_name(new_type) if new_type else 'no type any more'} instead of {tick_name(old_type)}"
         return context.change_indices("output", output_id, "type"), replacement + message_note
+    if messages_before & messages_after:
+        renaming = _renamed_messages(context, messages_before & messages_after)
+        if renaming[0]:
+            return renaming
     if not messages_before or messages_before == messages_after:
         return [], ""
     node_ids = [node for node, port in context.offered_endpoints[1] if port == output_id]
@@ -65,6 +70,18 @@ def _type_change(
         f"{tick_sorted_names(messages_after) or 'no message any more'} instead of {tick_sorted_names(messages_before)}"
     )
     return indices or (context.change_indices("type", str(new_type), "message") if new_type else []), replacement
+
+
+def _renamed_messages(context: ChangeContext, message_names: frozenset[str]) -> tuple[list[int], str]:
+    """Return the indices of the changes that renamed messages of an output, and what it gives now.
+
+    Files follow; programs do not, since ROS tells messages apart by their names.
+    """
+    old_names = context.matched_ids.old_ids.get("message", {})
+    renamed = sorted(name for name in message_names if old_names.get(name, name) != name)
+    indices = [index for name in renamed for index in context.indices_by_change_kind("message", name, "renamed")]
+    old_text = tick_sorted_names(old_names[name] for name in renamed)
+    return indices, f"{tick_sorted_names(renamed)} instead of {old_text} (by another name it is another message to ROS)"
 
 
 def _messages_by_output(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[str, frozenset[str]]:
@@ -87,105 +104,55 @@ def _messages_by_output(architecture: Architecture, matched_ids: MatchedIds) -> 
 
 def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find changed message definitions and inner types, and the partners that are built against them."""
-    users_by_element = _users_by_element(context)
+    users = MessageUsers(context)
     for index, change in enumerate(context.changes):
         if change.kind not in {"changed", "removed"}:
             continue
         if change.element_kind == "message":
             common_id = context.common_id(change)
-            partners = _other_partners(
-                [
-                    user
-                    for message in _messages_containing(context, common_id)
-                    for user in users_by_element.get(("message", message), ())
-                ]
-            )
-            for partner in sorted(partners):
-                reason_text = _redefinition_reason(context, change, common_id, partner)
-                if reason_text:
-                    yield from context.losses_of_partner([index], partner, reason_text)
+            partners = users.partners_using_message(common_id)
+            if partners and (reason_text := _redefinition_reason(context, change, common_id)):
+                yield from context.losses_of_users([index], partners, reason_text, "uses")
         elif change.element_kind == "type" and change.key in _INNER_TYPE_KEYS and change.before is not None:
-            partners = _other_partners(users_by_element.get(("type", change.element_id), ()))
-            for partner in sorted(partners):
-                reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {partner} uses"
-                yield from context.losses_of_partner([index], partner, reason_text)
+            partners = users.partners_using_type(change.element_id)
+            reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {{}}"
+            yield from context.losses_of_users([index], partners, reason_text, "uses")
 
 
-def _users_by_element(context: ChangeContext) -> Mapping[tuple[str, str], list[tuple[bool, str]]]:
-    """Return for each message and type of the first version its users: whether they write it, and their partner."""
-    user_ids: dict[tuple[str, str], list[tuple[bool, str]]] = defaultdict(list)
-    for endpoint in context.before.endpoints:
-        node = context.before.nodes[endpoint.node]
-        component = context.before.components.get(endpoint.component or "")
-        partner = (component.owner if component else None) or node.owner
-        if not partner:
-            continue
-        writer_and_partner = endpoint.use in {"publishes", "serves"}, context.matched_ids.common_id("partner", partner)
-        if endpoint.message:
-            user_ids["message", context.matched_ids.common_id("message", endpoint.message)].append(writer_and_partner)
-        if endpoint.type:
-            user_ids["type", context.matched_ids.common_id("type", endpoint.type)].append(writer_and_partner)
-    return user_ids
-
-
-def _other_partners(users: Iterable[tuple[bool, str]]) -> frozenset[str]:
-    """Return the partners who are broken: all users but the one who alone writes what is defined, if there is one."""
-    all_users = list(users)
-    writers = {partner for is_writer, partner in all_users if is_writer}
-    return frozenset(partner for _, partner in all_users) - (writers if len(writers) == 1 else frozenset())
-
-
-def _messages_containing(context: ChangeContext, message_name: str) -> list[str]:
-    """Return a message of the second version and all that contain it, at any depth."""
-    packages = context.after.interfaces.project_packages
-    project_messages = [
-        interface_name
-        for interface_name in context.after.interfaces.names
-        if interface_name.partition("/")[0] in packages
-    ]
-    containers_by_type: dict[str, list[str]] = defaultdict(list)
-    for container_name in sorted(project_messages):
-        definition = context.after.interfaces.definitions.get(container_name)
-        for part in definition.parts if definition else ():
-            for field in part:
-                containers_by_type[field.type].append(container_name)
-    return list(find_reachable(containers_by_type, [message_name]))
-
-
-def _redefinition_reason(context: ChangeContext, change: Change, message_name: str, partner: str) -> str:
-    """Return what a partner loses by a changed key of a definition; empty if nothing: comments concern, constants that
-    are new break nobody.
+def _redefinition_reason(context: ChangeContext, change: Change, message_name: str) -> str:
+    """Return what the users lose by a changed key of a definition, `{}` for who uses it; empty if nothing: what comments
+    mean is judged elsewhere, constants that are new break nobody.
     """
     section, _, name = (change.key or "fields").partition(".")
     if section == "fields":
-        return _rebuild_reason(context, message_name, partner)
+        return _rebuild_reason(context, message_name)
     ticked_name = tick_name(message_name)
     # ROS 1 takes constants into the checksum that two programs compare before they talk.
     if section == "constants" and is_ros_1(context.after.distro):
         return (
-            f"changes the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before "
+            f"changes the constant {tick_name(name)} of {ticked_name}, which {{}}; what was built before "
             "cannot talk to what is built after"
         )
     verb = "takes away" if change.after is None else "changes"
     if section == "constants" and change.before is not None:
         return (
-            f"{verb} the constant {tick_name(name)} of {ticked_name}, which {partner} uses; what was built before means "
+            f"{verb} the constant {tick_name(name)} of {ticked_name}, which {{}}; what was built before means "
             "something else by the same bytes"
         )
     if section == "defaults" and change.before is not None:
-        return f"{verb} the default of {tick_name(name)} in {ticked_name}, which {partner} uses: what does not set it sends something else"
+        return f"{verb} the default of {tick_name(name)} in {ticked_name}, which {{}}: what does not set it sends something else"
     return ""
 
 
-def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> str:
-    """Describe what is different for a partner that was built against a message definition."""
+def _rebuild_reason(context: ChangeContext, message_name: str) -> str:
+    """Describe what is different for partners that were built against a message definition."""
     old_definition = context.before.interfaces.definitions.get(
         context.matched_ids.old_ids.get("message", {}).get(message_name, message_name)
     )
     new_definition = context.after.interfaces.definitions.get(message_name)
     ticked_name = tick_name(message_name)
     if new_definition is None or old_definition is None:
-        return f"takes the definition of {ticked_name} from {partner}, who uses it"
+        return f"takes away the definition of {ticked_name}, which {{}}"
     removed, added, retyped_fields = _compare_fields(old_definition, new_definition)
     clauses = [f"removes {tick_sorted_names(removed)}"] if removed else []
     clauses += [f"changes the type of {tick_sorted_names(retyped_fields)}"] if retyped_fields else []
@@ -196,7 +163,7 @@ def _rebuild_reason(context: ChangeContext, message_name: str, partner: str) -> 
     addition_note = (
         "even a field more makes another message to ROS: " if added and not (removed or retyped_fields) else ""
     )
-    return f"{difference} in {ticked_name}, which {partner} uses; {addition_note}what was built before cannot talk to what is built after"
+    return f"{difference} in {ticked_name}, which {{}}; {addition_note}what was built before cannot talk to what is built after"
 
 
 def _compare_fields(old_definition: Interface, new_definition: Interface) -> tuple[set[str], set[str], set[str]]:
@@ -218,14 +185,3 @@ def _compare_fields(old_definition: Interface, new_definition: Interface) -> tup
         {name for _, name in new_fields.keys() - old_fields.keys()},
         changed,
     )
-
-
-def _readers_by_partner(
-    context: ChangeContext, readers: Iterable[str], lasting_owners: frozenset[str]
-) -> Mapping[str, list[str]]:
-    readers_of_partner: dict[str, list[str]] = defaultdict(list)
-    for reader in readers:
-        partner = context.owner_before("input", reader)
-        if partner and partner not in lasting_owners:
-            readers_of_partner[partner].append(reader)
-    return readers_of_partner

@@ -1,36 +1,83 @@
-"""Connections that a partner loses because the output was removed or has another id than the one it reads."""
+"""Outputs that partners read and that were removed, or have another id than the one that their files name."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import NamedTuple
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_sorted_names
+
+_MAX_RENAMES = 2
+"""Maximal number of ids in one sentence; the rest is counted."""
 
 
 def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find outputs that were removed or renamed while a partner read them, whatever became of the reader.
+    """Find outputs that were removed while a partner read them, whatever became of the reader.
 
     A reader that turns away loses nothing as long as its source stays as it is.
     """
     for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
-        new_readers = context.versions.connections_after.readers_by_output.get(output, frozenset())
-        if context.versions.may_be_unread(("output", output)):
+        if not context.versions.is_removed("output", output) or output in context.output_heirs:
             continue
         indices = find_output_causes(context, output)
-        if not indices:
-            continue
-        lost_inputs: dict[str, list[str]] = defaultdict(list)
-        is_renamed = ("output", output) in context.versions.elements_after
-        for reader in readers - new_readers:
-            partner = context.owner_before("input", reader)
-            if not partner or partner in context.lasting_owners("output", output) or not context.needs_source(reader):
-                continue
-            # An output that only has another id is still there: who no longer asks for anything turned away by itself.
-            if not is_renamed or ("input", reader) in context.versions.elements_after:
-                lost_inputs[partner].append(reader)
-        for partner, inputs in sorted(lost_inputs.items()):
-            yield from context.losses_of_partner(indices, partner, _loss_reason(context, output, inputs, partner))
+        new_readers = context.versions.connections_after.readers_by_output.get(output, frozenset())
+        inputs_by_note: dict[str, dict[str, list[str]]] = defaultdict(dict)
+        for partner, inputs in context.foreign_readers(output, readers - new_readers).items():
+            inputs_by_note[_describe_aftermath(context, inputs)][partner] = inputs
+        lead = f"takes `{context.old_id('output', output)}` from"
+        for note, inputs_by_partner in inputs_by_note.items():
+            yield from context.losses_of_readers(indices, inputs_by_partner, lead, note)
+
+
+class _RenamedSource(NamedTuple):
+    """An output under another id."""
+
+    old_id: str
+    new_id: str
+
+
+def find_renamed_sources(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find outputs that partners read and that have another id now: their files have to follow, their programs do not.
+
+    What else became of the wire is told by the other losses.
+    """
+    sources: dict[tuple[int, str], dict[_RenamedSource, tuple[str, ...]]] = defaultdict(dict)
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
+        old_id = context.old_id("output", output)
+        for index in find_output_causes(context, output) if old_id != new_output else ():
+            for partner, inputs in inputs_by_partner.items():
+                # Who no longer asks for anything turned away by itself.
+                present_inputs = tuple(name for name in inputs if ("input", name) in context.versions.elements_after)
+                if present_inputs:
+                    sources[index, partner][_RenamedSource(old_id, new_output)] = present_inputs
+    partners_by_note: dict[tuple[int, str], list[str]] = defaultdict(list)
+    for (index, partner), inputs_by_source in sources.items():
+        partners_by_note[index, _describe_renames(context, inputs_by_source)].append(partner)
+    for (index, note), partners in partners_by_note.items():
+        for loss in context.losses_of_users([index], partners, "renames what {}", "reads", "source"):
+            yield replace(loss, reason=f"{loss.reason}: {note}")
+
+
+def _describe_renames(context: ChangeContext, inputs_by_source: Mapping[_RenamedSource, tuple[str, ...]]) -> str:
+    """Return what is called how now, and which inputs have to follow."""
+    connections: Mapping[str, frozenset[str]] = context.versions.connections_after.sources_by_input
+    pairs = [f"`{source.old_id}` is `{source.new_id}` now" for source in [*inputs_by_source][:_MAX_RENAMES]]
+    surplus = len(inputs_by_source) - _MAX_RENAMES
+    surplus_note = f", and {surplus} more" if surplus > 0 else ""
+    lagging_inputs = {
+        name
+        for source, inputs in inputs_by_source.items()
+        for name in inputs
+        if source.new_id not in connections.get(name, ())
+    }
+    verb = "has" if len(lagging_inputs) == 1 else "have"
+    follow_note = (
+        f"{tick_sorted_names(lagging_inputs)} {verb} to follow" if lagging_inputs else "files follow in this change"
+    )
+    return f"{', '.join(pairs)}{surplus_note}; {follow_note}"
 
 
 def find_output_causes(context: ChangeContext, output_id: str) -> list[int]:
@@ -45,15 +92,12 @@ def find_output_causes(context: ChangeContext, output_id: str) -> list[int]:
     ][:1]
 
 
-def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], partner: str) -> str:
-    input_names = tick_sorted_names(input_ids)
-    old_name = f"`{context.old_id('output', output_id)}`"
-    if ("output", output_id) in context.versions.elements_after:
-        return f"takes {old_name} from {partner}, who still reads it under that name as {input_names}"
+def _describe_aftermath(context: ChangeContext, input_ids: list[str]) -> str:
+    """Return what becomes of the inputs that read a removed output: a note behind their names, which may be empty."""
     gone_ids = [name for name in input_ids if context.versions.is_removed("input", name)]
     if gone_ids:
         gone_names = "" if len(gone_ids) == len(input_ids) else f" {tick_sorted_names(gone_ids)}"
-        return f"takes {old_name} from {partner}, who read it as {input_names}; the same change takes the reader{gone_names} away"
+        return f"; the same change takes the reader{gone_names} away"
     current_sources = {
         source for name in input_ids for source in context.versions.connections_after.sources_by_input.get(name, ())
     }
@@ -61,5 +105,4 @@ def _loss_reason(context: ChangeContext, output_id: str, input_ids: list[str], p
     gained_sources = existing_sources - {
         source for name in input_ids for source in context.versions.connections_before.sources_by_input.get(name, ())
     }
-    instead_note = f" (and is to read {tick_sorted_names(gained_sources)} instead)" if gained_sources else ""
-    return f"takes {old_name} from {partner}, who reads it as {input_names}{instead_note}"
+    return f"; it is to read {tick_sorted_names(gained_sources)} instead" if gained_sources else ""

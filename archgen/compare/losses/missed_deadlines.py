@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 
 from archgen.compare.comparison import ChainChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.overloaded_resources import find_link_causes
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.timing.analysis import ChainResult, ChainTerm
-from archgen.timing.chains.chain_bounds import judge_deadline
+from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.timing_system import TimingSystem
 
 
 def find_late_chains(
     context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
 ) -> Iterator[PartnerLoss]:
-    """Find chains that met their deadline and may no longer do so, or that were late and are later now.
+    """Find chains that met their deadline and need not do so any more, or that were late and are later now.
 
     The deadline of the first version counts, and that of the second one where it is stricter.
     """
@@ -25,8 +27,16 @@ def find_late_chains(
         old_result, new_result = chain_change.before, chain_change.after
         if old_result is None or new_result is None or not (reason_text := _lateness_reason(old_result, new_result)):
             continue
+        lost_step = _find_lost_step(causes, old_result, new_result)
         # A bound without terms means that the chain is cut: there is no sum to compare, only what took its steps away.
-        if new_result.terms:
+        if lost_step:
+            # Whoever is only on the way round had no part in the chain.
+            indices = causes.find_cuts(lost_step[1:])[0]
+            activities_of_owners = causes.old_activities_by_owner(old_result.through)
+            reason_text = (
+                f"cuts the chain `{new_result.id}`: `{lost_step[0]}` no longer reaches `{lost_step[1]}` directly"
+            )
+        elif new_result.terms:
             worse_activities = _grown_activities(causes, old_result.terms, new_result.terms)
             indices = causes.find_causes(worse_activities) + _link_causes(context, worse_activities, causes)
             activities_of_owners = causes.activities_by_owner(term.activity for term in new_result.terms)
@@ -40,6 +50,28 @@ def find_late_chains(
         )
         reason_text += "; {} on it"
         yield from context.shared_losses(dict.fromkeys(indices), activities_of_owners, reason_text, "is")
+
+
+def _find_lost_step(causes: TimingCauses, old_result: ChainResult, new_result: ChainResult) -> tuple[str, str] | None:
+    """Return two activities of the first version that followed each other on a chain, and are joined by a way round alone
+    now that was there before: nobody meant the chain to take it. Something new between the two is meant.
+    """
+    systems = causes.timing_pair.before.system, causes.timing_pair.after.system
+    path = [causes.old_activity(activity_id) or "" for activity_id in new_result.through] if new_result.terms else []
+    for step in pairwise(old_result.through if old_result.terms else ()):
+        if not set(step) <= set(path):
+            continue
+        first, last = (path.index(activity_id) for activity_id in step)
+        way_round = list(pairwise(path[first : last + 1]))
+        if len(way_round) > 1 and all(_are_joined(systems[0], *pair) for pair in way_round):
+            ends = new_result.through[first], new_result.through[last]
+            if not _are_joined(systems[1], *ends):
+                return step
+    return None
+
+
+def _are_joined(system: TimingSystem, source: str, target: str) -> bool:
+    return any(arc.target == target for arc in system.arcs_from.get(source, ()))
 
 
 def _binding_deadline(old_result: ChainResult, new_result: ChainResult) -> TimingValue | None:
@@ -60,26 +92,34 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
     limit = f"its deadline of {_format_bound(deadline)}"
     if new_result.deadline != deadline:
         # A chain without steps is cut, which is told in words of its own.
-        new_verdict = judge_deadline(new_result.bound, deadline) if new_result.terms else "open"
+        new_verdict = judge_deadline(new_result.bound, new_result.best, deadline) if new_result.terms else "open"
         limit = f"the deadline of {_format_bound(deadline)} that it had before"
-    if old_result.verdict == "met" and new_verdict == "missed":
-        growth = (
-            f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
-            if old_result.bound != new_result.bound
-            else f"it takes {_format_bound(new_result.bound)}"
-        )
-        return f"makes {chain_name} miss {limit} ({growth})"
-    if old_result.verdict == "met" and new_verdict == "open":
+    limit_value, bound_value = deadline.value if deadline else None, new_result.bound.value
+    is_above = limit_value is not None and bound_value is not None and bound_value > limit_value
+    # What is no longer proven is as much of a loss as what is missed: nobody can rely on it any more.
+    if old_result.verdict in {"met", "not proven"} and new_verdict == "missed":
+        return f"makes {chain_name} miss {limit} ({_format_growth(old_result, new_result)})"
+    if old_result.verdict == "met" and new_verdict == "not proven" and is_above:
+        growth = _format_growth(old_result, new_result)
+        return f"takes away the proof that {chain_name} meets {limit} ({growth})"
+    if old_result.verdict == "met" and new_verdict in {"open", "not proven"}:
         met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
         return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
     old_bound, new_bound = old_result.bound.value, new_result.bound.value
-    if (
-        old_result.verdict == new_verdict == "missed"
-        and old_bound is not None
-        and (new_bound is None or new_bound > old_bound)
-    ):
-        return f"makes {chain_name} miss {limit} by still more ({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
+    is_longer = old_bound is not None and (new_bound is None or new_bound > old_bound)
+    if is_longer and old_result.verdict == new_verdict and new_verdict in {"missed", "not proven"}:
+        consequence = "miss" if new_verdict == "missed" else "exceed"
+        return (
+            f"makes {chain_name} {consequence} {limit} by still more "
+            f"({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
+        )
     return ""
+
+
+def _format_growth(old_result: ChainResult, new_result: ChainResult) -> str:
+    if old_result.bound == new_result.bound:
+        return f"it takes {_format_bound(new_result.bound)}"
+    return f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
 
 
 def _format_bound(value: TimingValue | None) -> str:

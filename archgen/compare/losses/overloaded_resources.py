@@ -51,7 +51,8 @@ def _shared_cores(
 ) -> Iterator[tuple[tuple[str, str], ProcessingResource, Fraction]]:
     """Yield the cores that some activities share, by host and rest of their id, with their load in cores."""
     for resource in find_resources(analysis.system):
-        if resource.host is None:  # threads of a container, each with a core that nobody named
+        # Threads of a container, each with a core that nobody named; cores that nobody wrote the number of.
+        if resource.host is None or resource.missing:
             continue
         activity_loads = dict(analysis.hosts[resource.host].activity_shares)
         load = sum((activity_loads[name].value or Fraction(0) for name in resource.members), Fraction(0))

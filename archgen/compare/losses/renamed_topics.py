@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.model.node import Endpoint, FlowKind
 
 TopicKey = tuple[str, FlowKind]
@@ -15,14 +16,19 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find names that disappeared while other partners' nodes use them: their programs do not follow the files."""
     old_endpoints, new_endpoints = context.offered_endpoints
     topics_by_port: dict[str, set[TopicKey]] = defaultdict(set)
-    for (_, port), ends in new_endpoints.items():
-        topics_by_port[port].update((endpoint.name, endpoint.flow) for endpoint in ends)
-    readers = _readers_by_topic(context)
+    lasting_topics_by_port: dict[str, set[TopicKey]] = defaultdict(set)
+    for (node, port), ends in new_endpoints.items():
+        topics = {(endpoint.name, endpoint.flow) for endpoint in ends}
+        topics_by_port[port] |= topics
+        if context.after.nodes[node].status != "planned" or ("node", node) in context.versions.elements_before:
+            lasting_topics_by_port[port] |= topics
+    readers = list_topic_readers(context)
     for node, port in sorted(old_endpoints):
         if port and ("output", port) not in context.versions.elements_after:
             continue  # the connection itself is gone
         old_topics = {(endpoint.name, endpoint.flow) for endpoint in old_endpoints[node, port]}
-        new_topics = topics_by_port[port]
+        # A new node that is only planned keeps no topic alive which the program that had it gives another name.
+        new_topics = (lasting_topics_by_port if (node, port) in new_endpoints else topics_by_port)[port]
         indices = _find_causes(context, node, port) if old_topics - new_topics else []
         for name, flow in sorted(old_topics - new_topics):
             own_topics = {(endpoint.name, endpoint.flow) for endpoint in new_endpoints.get((node, port), ())}
@@ -34,13 +40,17 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
                 for endpoint in readers.get((name, flow), ())
                 if not port or not endpoint.sources or _reads_output(context, endpoint, port)
             ]
-            for partner, nodes in _users_by_partner(context, users).items():
-                yield from context.losses_of_partner(
-                    indices, partner, _loss_reason((name, flow), partner, nodes, replacements)
-                )
+            new_name_note = (
+                f"it is {tick_sorted_names(replacements)} now"
+                if replacements
+                else "nobody offers it under that name any more"
+            )
+            yield from context.losses_of_readers(
+                indices, group_users(context, users), f"takes the {flow} {tick_name(name)} from", f"; {new_name_note}"
+            )
 
 
-def _readers_by_topic(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
+def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
     """Return the readers of each name in the first version that can be broken: those of real nodes."""
     readers: dict[TopicKey, list[Endpoint]] = defaultdict(list)
     for endpoint in context.before.endpoints:
@@ -58,7 +68,8 @@ def _reads_output(context: ChangeContext, endpoint: Endpoint, output_id: str) ->
     return output_id in {context.matched_ids.common_id("output", source) for source in endpoint.sources}
 
 
-def _users_by_partner(context: ChangeContext, users: Iterable[Endpoint]) -> Mapping[str, set[str]]:
+def group_users(context: ChangeContext, users: Iterable[Endpoint]) -> Mapping[str, set[str]]:
+    """Return the nodes of endpoints by the partner who owns them."""
     nodes_by_partner: dict[str, set[str]] = defaultdict(set)
     for endpoint in users:
         node = context.before.nodes[endpoint.node]
@@ -84,15 +95,7 @@ def _find_causes(context: ChangeContext, node_id: str, port_id: str) -> list[int
         context.indices_by_change_kind("component", component_id, "renamed", "moved"),
         context.indices_by_change_kind("group", group_id, "renamed"),
         context.change_indices("node", node_id),
+        context.change_indices("output", port_id, "medium"),
         context.change_indices("output", port_id),
     )
     return next((indices for indices in candidate_indices if indices), [])
-
-
-def _loss_reason(topic_key: TopicKey, partner: str, node_ids: Iterable[str], replacements: list[str]) -> str:
-    name, flow = topic_key
-    verb = "subscribes to" if flow == "topic" else "calls"
-    new_name_note = (
-        f"it is {tick_sorted_names(replacements)} now" if replacements else "nobody offers it under that name any more"
-    )
-    return f"takes the {flow} {tick_name(name)} from {partner}, whose {tick_sorted_names(node_ids)} {verb} it; {new_name_note}"

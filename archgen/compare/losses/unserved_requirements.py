@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.diagnostics.common_wording import join_words
 
 
 def find_unserved_requirements(context: ChangeContext) -> Iterator[PartnerLoss]:
@@ -25,18 +24,12 @@ def find_unserved_requirements(context: ChangeContext) -> Iterator[PartnerLoss]:
         )
         for index in _find_causes(context, requirement, serving_before[requirement]):
             other_partners = partners - context.owners_of_change(index)
-            broken_partners = sorted(
-                other_partners or frozenset(context.after.partners) - context.owners_of_change(index)
-            )
+            broken_partners = other_partners or frozenset(context.after.partners)
             use_case_note = (
                 f", who serve{'s' if len(other_partners) == 1 else ''} the same use case" if other_partners else ""
             )
-            reason_text = (
-                f"leaves `{requirement}` without a component, also for {join_words(broken_partners)}{use_case_note}"
-            )
-            yield from (
-                loss for partner in broken_partners for loss in context.losses_of_partner([index], partner, reason_text)
-            )
+            reason_text = f"leaves `{requirement}` without a component, also for {{}}{use_case_note}"
+            yield from context.losses_of_users([index], broken_partners, reason_text, "", "promise")
 
 
 def _find_causes(context: ChangeContext, requirement: str, component_ids: frozenset[str]) -> list[int]:

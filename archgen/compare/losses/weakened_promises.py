@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import ChainChange
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_sorted_names
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration

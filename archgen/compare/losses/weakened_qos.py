@@ -9,12 +9,15 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.model.ros_distro import is_ros_1
 
+_OfferChange = tuple[tuple[int, ...], str, str]
+"""The indices of the changes, what is offered on which topic now, and what its readers asked for."""
 WriterKey = tuple[str, str]
 """A written node and its port (a topic's name for internal ones), by common ids."""
 
@@ -27,15 +30,23 @@ def find_weakened_publishers(context: ChangeContext) -> Iterator[PartnerLoss]:
     if is_ros_1(context.before.distro):
         return
     new_writers = _writers_by_key(context.after, MatchedIds())
+    nodes_by_cause: dict[_OfferChange, dict[str, dict[str, None]]] = {}
     for topic in context.before.topics.values():
         for old_writer, reader in _matching_pairs(context.before, topic):
             if reader.port and not context.needs_source(context.matched_ids.common_id("input", reader.port)):
                 continue
-            for writer in new_writers.get(_writer_key(old_writer, context.matched_ids), ()):
+            owner = context.before.nodes[reader.node].owner
+            for writer in new_writers.get(_writer_key(old_writer, context.matched_ids), ()) if owner else ():
                 # Nearly all offers are as they were: only the others are judged.
                 clashes = _find_clashes(writer, reader) if writer.qos != old_writer.qos else ()
                 if clashes:
-                    yield from _lost_publishers(context, writer, reader, clashes)
+                    cause = _describe_clashes(context, writer, clashes)
+                    partner = context.matched_ids.common_id("partner", owner or "")
+                    nodes = nodes_by_cause.setdefault(cause, {}).setdefault(partner, {})
+                    nodes[context.matched_ids.common_id("node", reader.node)] = None
+    for (indices, offer, request), nodes_by_partner in nodes_by_cause.items():
+        reason_template = f"offers {offer}, where {{}} for {request}: nothing arrives any more"
+        yield from context.shared_losses(indices, nodes_by_partner, reason_template, "asks", "wire")
 
 
 def _matching_pairs(architecture: Architecture, topic: Topic) -> Iterator[tuple[Endpoint, Endpoint]]:
@@ -65,23 +76,13 @@ def _writer_key(endpoint: Endpoint, matched_ids: MatchedIds) -> WriterKey:
     return matched_ids.common_id("node", endpoint.node), port
 
 
-def _lost_publishers(
-    context: ChangeContext, writer: Endpoint, reader: Endpoint, clashes: tuple[QosConflict, ...]
-) -> Iterator[PartnerLoss]:
-    owner = context.before.nodes[reader.node].owner
-    if not owner:
-        return
-    partner = context.matched_ids.common_id("partner", owner)
+def _describe_clashes(context: ChangeContext, writer: Endpoint, clashes: tuple[QosConflict, ...]) -> _OfferChange:
     indices = context.port_change_indices(writer.node, writer.port or "", "qos") or context.change_indices(
         "node", writer.node
     )
     offered = " and ".join(clash.offered for clash in clashes)
     requested = " and ".join(clash.requested for clash in clashes)
-    reader_node = context.matched_ids.common_id("node", reader.node)
-    request_note = f"where `{reader_node}` of {partner} asks for {requested}: it receives nothing any more"
-    yield from context.losses_of_partner(
-        indices, partner, f"offers {offered} on {tick_name(writer.name)}, {request_note}"
-    )
+    return tuple(indices), f"{offered} on {tick_name(writer.name)}", requested
 
 
 def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:

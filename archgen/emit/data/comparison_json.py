@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
+from archgen.compare.edits import list_edits
 from archgen.diagnostics.safe_text import format_json
+from archgen.emit.data.figures_json import boundary_record, load_record
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
+from archgen.model.review_settings import BREAK_CATEGORIES
 from archgen.timing.analysis import ChainResult
 from archgen.views.changes.comparison_document import sort_by_severity
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -25,15 +28,19 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
     return {
         "version": FORMAT_VERSION,
         "changes": [change_record(item) for item in comparison.changes],
+        "edits": _list_edit_records(comparison),
         "findings": {
             "new": [finding_to_json(item) for item in sort_by_severity(comparison.new_findings)],
             "cured": [finding_to_json(item) for item in sort_by_severity(comparison.cured_findings)],
             "silenced": [finding_to_json(item) for item in sort_by_severity(comparison.silenced_findings)],
         },
         "chains": [_chain_record(item) for item in comparison.chains],
+        "boundaries": [boundary_record(item) for item in comparison.boundaries],
+        "loads": [load_record(item) for item in comparison.loads],
         "owners": list(comparison.concerned_owners),
         "breaking": {
-            "severity": str(comparison.breaking_severity),
+            "severity": str(comparison.policy.gravest),
+            "policy": {category: str(comparison.policy.severity_of(category)) for category in BREAK_CATEGORIES},
             "fails": comparison.is_refused,
             "judged": comparison.is_judged,
             "idle": [
@@ -46,6 +53,23 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
             "after": [finding_to_json(item) for item in reading_errors[1]],
         },
     }
+
+
+def _list_edit_records(comparison: Comparison) -> list[dict[str, Any]]:
+    """Return what people are shown as one item each, with the positions of its changes."""
+    positions = {id(change): position for position, change in enumerate(comparison.changes)}
+    return [
+        {
+            "kind": edit.kind,
+            "sort": edit.element_kind,
+            "element": edit.element_id,
+            "related": list(edit.related_ids),
+            "confidence": edit.confidence,
+            "text": edit.text,
+            "changes": [positions[id(change)] for change in edit.changes],
+        }
+        for edit in list_edits(comparison)
+    ]
 
 
 def change_record(architecture_change: Change) -> dict[str, Any]:
@@ -62,7 +86,12 @@ def change_record(architecture_change: Change) -> dict[str, Any]:
         # The keys are the format, not the names of attributes: they stay when those change.
         "breaks": list(architecture_change.broken_partners),
         "because": [
-            {"partner": partner_break.partner, "why": partner_break.reason, "agreed": partner_break.agreement}
+            {
+                "partner": partner_break.partner,
+                "category": partner_break.category,
+                "why": partner_break.reason,
+                "agreed": partner_break.agreement,
+            }
             for partner_break in architecture_change.breaks
         ],
         "accepted": architecture_change.acceptance_reason,

@@ -19,14 +19,15 @@ _NUMBER_WIDTH = 30.0
 
 
 def write_contents(writer: DocxWriter, pages: Mapping[str, int]) -> Iterator[FlowPiece]:
-    """Write the three lists; one without entries is left out. `pages` has the page of each bookmark."""
+    """Write the three lists; that of a single figure or table, or of none, is left out. `pages` has the page of each bookmark."""
     # Switches (ECMA-376 17.16.5.68): \o by levels of headings, \h links, \z no numbers on a screen, \u outline levels of other
     # styles, \c the captions with a SEQ field of a name.
     headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= _MAX_LEVEL]
     yield from _write_list(writer, "Contents", f'TOC \\o "1-{_MAX_LEVEL}" \\h \\z \\u', headings, pages)
     for title, kind in (("Figures", "Figure"), ("Tables", "Table")):
         entries = [(entry, "table of figures") for entry in writer.find_contents(kind)]
-        yield from _write_list(writer, title, f'TOC \\h \\z \\c "{kind}"', entries, pages)
+        if len(entries) > 1:
+            yield from _write_list(writer, title, f'TOC \\h \\z \\c "{kind}"', entries, pages)
 
 
 def _write_list(

@@ -72,9 +72,11 @@ def write_table_rows(
     text_style = f'<w:pStyle w:val="{styles.find_style_id(frame.styles.text)}"/>'
     max_height = (frame.sheet or writer.paper.base).text_height * _MAX_WHOLE_SHARE
     last = len(body) - 1
+    # The last row is not alone on a page, unless the two would fill one.
+    kept_rows = {0, last - 1} if math.fsum(heights[-2:]) < max_height else {0}
     for index, row in enumerate(body):
         # The header row stays with the first row, a short table with all of them.
-        keep = "<w:keepNext/>" if index < last and (short or index == 0) else ""
+        keep = "<w:keepNext/>" if index < last and (short or index in kept_rows) else ""
         rows.append(_format_row(starts, row, text_style + keep, _KEEP_WHOLE if heights[index] < max_height else ""))
     xml = _format_opening(writer, frame, headed=bool(header)) + "".join(rows) + "</w:tbl>" + _format_spacer(writer)
     # What stays together is one row to the estimate of pages.

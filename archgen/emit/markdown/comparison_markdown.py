@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
@@ -16,22 +16,25 @@ from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
 from archgen.views.graphs.changes.group_folding import fits_budget
-from archgen.views.inline_text import count_noun
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
 """How many changes of one group, and of all of them, are not folded."""
 _MAX_ERRORS = 5
+_MAX_OPEN_LINES = 9
+"""How many lines of what partners write are not folded."""
 _MAX_COMMAND = 250
 _PLAIN_COMMAND = "archgen diff"
 # Escaped: at the beginning of an item "+" would start a list, and "~" a strike-through.
-_MARKDOWN_SIGNS = {**CHANGE_SIGNS, "added": "\\+", "changed": "\\~"}
+_MARKDOWN_SIGNS = {kind: f"\\{sign}" if sign in "+~" else sign for kind, sign in CHANGE_SIGNS.items()}
 
 
 def write_comparison_markdown(
@@ -47,6 +50,8 @@ def write_comparison_markdown(
         _add_reading_errors(comment, version)
     _add_breaking_changes(comment, document)
     _add_changes(comment, document)
+    _add_figures(comment, comparison_document.BOUNDARY_HEADING, document.boundary_lines)
+    _add_figures(comment, comparison_document.LOAD_HEADING, document.load_lines)
     _add_chains(comment, document.chain_rows)
     for group in document.finding_groups:
         _add_findings(comment, group)
@@ -65,14 +70,15 @@ def _heading_line(document: ComparisonDocument) -> str:
     broken, further = document.broken_partners, document.further_partners
     notes = [f"breaks {_join_partners(broken)}"] if broken else []
     notes += [f"{'also ' if broken else ''}concerns {_join_partners(further)}"] if further else []
-    return f"### {write_sentence(document.headline)}" + (f": {', '.join(notes)}" if notes else "")
+    # The obstacle has a colon of its own.
+    lead = ": " if not document.obstacle else ", "
+    return f"### {write_sentence(document.headline)}" + (f"{lead}{', '.join(notes)}" if notes else "")
 
 
-def _join_partners(partner_ids: Sequence[str]) -> str:
-    shown_names = [write_code(partner_id) for partner_id in partner_ids[:_SHOWN_PARTNERS]] + (
-        [f"{len(partner_ids) - _SHOWN_PARTNERS} more"] if len(partner_ids) > _SHOWN_PARTNERS else []
-    )
-    return join_words(shown_names)
+def _join_partners(partners: Sequence[str]) -> str:
+    shown_names = [write_sentence(name) for name in partners[:_SHOWN_PARTNERS]]
+    surplus = len(partners) - _SHOWN_PARTNERS
+    return join_words([*shown_names, *([f"{surplus} more"] if surplus > 0 else [])])
 
 
 def _count_line(document: ComparisonDocument) -> str:
@@ -93,19 +99,31 @@ def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
 def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
-        if document.refusal_help:
-            comment.add_block(write_sentence(comparison_document.REFUSAL_LEAD + document.refusal_help))
         comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
+        if document.refusal_help:
+            comment.add_block(write_sentence(document.refusal_lead + document.refusal_help))
+        for entries in document.missing_entries:
+            comment.add_block(_entries_block(entries))
     # Without any change the verdict is the headline.
     for line in document.verdict[1 if document.is_empty else 0 :]:
         comment.add_block(write_sentence(line))
 
 
+def _entries_block(entries: str) -> str:
+    """Return what partners write: a block to copy, folded where it is long. No line of it can end the block."""
+    block = f"```yaml\n{entries}\n```"
+    line_count = entries.count("\n") + 1
+    if line_count <= _MAX_OPEN_LINES:
+        return block
+    return f"<details><summary>{line_count} lines to copy</summary>\n\n{block}\n\n</details>"
+
+
 def _breaking_item(item: BreakingChange) -> str:
-    lines = [_change_item(item.change)]
-    for reason, partners in item.partners_by_reason.items():
-        lines.append(f"  - breaks {_join_partners(partners)}: {write_sentence(reason)}")
-    return "\n".join((*lines, *(f"  - {write_sentence(line)}" for line in item.agreements)))
+    losses = (
+        f"  - breaks {_join_partners(loss.partners)} ({loss.category}): {write_sentence(loss.reason)}"
+        for loss in item.losses
+    )
+    return "\n".join((_change_item(item.change), *losses, *(f"  - {write_sentence(line)}" for line in item.agreements)))
 
 
 def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
@@ -119,6 +137,8 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
             _MAX_OPEN_ITEMS if len(change_group.changes) > _MAX_OPEN_ITEMS + 1 else _MAX_OPEN_ITEMS + 1,
             max(open_left, 0),
         )
+        # A fold with one item hides no more than it says.
+        open_count += len(change_group.changes) - open_count == 1
         open_left -= open_count
         comment.add_items(
             f"**{_group_heading(change_group)}**",
@@ -127,22 +147,30 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
             open_count,
         )
     if document.textual_changes:
-        comment.add_items(
-            "",
-            [_change_item(change) for change in document.textual_changes],
-            f"{count_noun(len(document.textual_changes), 'change')} of texts and pictures only",
-            0,
-        )
+        items = [_change_item(change) for change in document.textual_changes]
+        if len(items) == 1:
+            comment.add_items("**Texts and pictures only**", items)
+        else:
+            comment.add_items("", items, f"{len(items)} changes of texts and pictures only", 0)
 
 
 def _group_heading(change_group: ChangeGroup) -> str:
     title = write_title(change_group.title) if change_group.title else ""
     group_code = write_code(change_group.group_id) if change_group.group_id else ""
-    return " · ".join(word for word in (title, group_code) if word)
+    heading = " · ".join(word for word in (title, group_code) if word)
+    return f"{heading} ({write_sentence(change_group.owner)})" if change_group.owner else heading
 
 
-def _change_item(change: Change) -> str:
+def _change_item(change: Edit) -> str:
     return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
+
+
+def _add_figures(comment: LimitedComment, heading: str, lines: Sequence[FigureLine]) -> None:
+    if lines:
+        comment.add_block(f"#### {heading}")
+        items = [f"- {_MARKDOWN_SIGNS[line.kind]} {write_sentence(line.text)}" for line in lines]
+        open_count = _MAX_OPEN_ITEMS if len(items) > _MAX_OPEN_ITEMS + 1 else len(items)
+        comment.add_items("", items, "{} more", open_count)
 
 
 def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None:
@@ -157,25 +185,35 @@ def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None
     if rows:
         comment.add_block(f"#### {comparison_document.CHAINS_HEADING}")
         comment.add_table(("chain", "before", "after", "difference", "deadline", "verdict"), rows)
+    reasons = [
+        f"- {write_code(shorten_name(row.id))} because of {write_sentence(row.reason)}"
+        for row in chain_rows
+        if row.reason
+    ]
+    if reasons:
+        open_count = len(reasons) if len(reasons) <= _MAX_OPEN_ITEMS + 1 else _MAX_OPEN_ITEMS
+        comment.add_items("", reasons, "{} more reasons", open_count)
 
 
 def _add_findings(comment: LimitedComment, group: FindingGroup) -> None:
     """Add findings. Notes are folded where they are new, and all that were cured."""
     items = [_finding_item(finding) for finding in group.findings]
-    if group.kind == "cured":
-        comment.add_items("", items, count_noun(len(items), "cured finding"), 0)
+    if group.kind == "cured" and len(items) > 1:
+        comment.add_items("", items, f"{len(items)} cured findings", 0)
         return
     open_count, noun = len(items), "finding"
     if group.kind == "new":
         # They are sorted by severity: what is grave comes first.
         open_count = sum(finding.severity is not Severity.NOTE for finding in group.findings)
-    if open_count:
-        comment.add_block(f"#### {group.heading}")
     if open_count > _MAX_OPEN_ITEMS + 1:
         open_count = _MAX_OPEN_ITEMS
     elif group.kind == "new":
         noun = "note"
-    summary = count_noun(len(items) - open_count, f"{'more' if open_count else 'new'} {noun}")
+    # A fold with one item hides no more than it says.
+    open_count += len(items) - open_count == 1
+    if open_count:
+        comment.add_block(f"#### {group.heading}")
+    summary = f"{len(items) - open_count} {'more' if open_count else 'new'} {noun}s"
     comment.add_items("", items, summary, open_count)
 
 

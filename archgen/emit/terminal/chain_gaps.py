@@ -5,20 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.timing.analysis import ChainResult
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.load.event_models import UNLINKED_NOTE
+from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
+from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 
 _HOST_SEPARATOR = " - "
 """What stands between the names of two hosts that no link joins, where a link's name would stand."""
 
 
-def describe_gaps(result: ChainResult, system: TimingSystem) -> str:
+def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
+    overloaded_hosts = find_overloaded_hosts(analysis, result.terms)
+    if overloaded_hosts:
+        return f"{join_words(overloaded_hosts)} {'is' if len(overloaded_hosts) == 1 else 'are'} overloaded"
     if result.bound.complete:
         return ""
+    system = analysis.system
     phrases = [*_describe_unknown_figures(result, system), *_describe_unlinked(result, system)]
     named_elements = {
         name
@@ -27,11 +33,17 @@ def describe_gaps(result: ChainResult, system: TimingSystem) -> str:
         for name in term_value.missing
     }
     # The bound is the maximum over all ways, the terms are those of one of them.
-    elsewhere = tuple(name for name in result.bound.missing if name not in named_elements)
+    elsewhere = tuple(
+        name for name in result.bound.missing if name not in named_elements and not is_missing_cores(name)
+    )
     if elsewhere and result.terms:
         phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
-    phrases += [text for text in result.bound.assumptions if not result.terms or text == "diverged"]
-    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}" if phrases else "no bound"
+    phrases += [text for text in result.bound.assumptions if not result.terms]
+    unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
+    if not phrases:
+        return f"{_describe_basis(result)}no bound found {unfound_text}" if unfound_text else "no bound"
+    phrases += [f"none found {unfound_text}"] if unfound_text else []
+    return f"{_describe_basis(result)}no bound: {'; '.join(phrases)}"
 
 
 def _describe_unknown_figures(result: ChainResult, system: TimingSystem) -> Iterable[str]:
@@ -51,11 +63,13 @@ def _describe_unknown_figures(result: ChainResult, system: TimingSystem) -> Iter
         if name not in links and name not in paced_names and name in system.activities
     ]
     times = [name for name in responses if name not in timed_names and name in system.activities]
+    cores = [name for name in dict.fromkeys([*responses, *links, *result.bound.missing]) if is_missing_cores(name)]
     latencies = dict.fromkeys([*links, *(name for name in responses if name not in system.activities)])
-    link_names = [name for name in latencies if _HOST_SEPARATOR not in name]
+    link_names = [name for name in latencies if _HOST_SEPARATOR not in name and not is_missing_cores(name)]
     for quantity, names in (("period or rate", periods), ("execution time", times), ("latency", link_names)):
         if names:
             yield f"{quantity} of {figure_wording.join_first_names(tuple(names))} unknown"
+    yield from (f"{name} not written" for name in cores)
 
 
 def _describe_unlinked(result: ChainResult, system: TimingSystem) -> Iterable[str]:

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit, EditKind
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
 
 # Plain ASCII, as terminals of build servers show it.
-_TERMINAL_SIGNS = {"added": "+", "removed": "-", "changed": "~", "renamed": ">", "moved": ">"}
-_SIGN_COLOURS = {"added": "32", "removed": "31", "changed": "33", "renamed": "36", "moved": "36"}
+_TERMINAL_SIGNS = {
+    **dict.fromkeys(("renamed", "moved", "split", "merged"), ">"),
+    "added": "+",
+    "copied": "+",
+    "removed": "-",
+    "changed": "~",
+}
+_SIGN_COLOURS = {">": "36", "+": "32", "-": "31", "~": "33"}
 _SEVERITY_COLOURS = {Severity.ERROR: "1;31", Severity.WARNING: "1;33", Severity.NOTE: "1;36"}
 
 
@@ -31,6 +39,7 @@ def write_comparison_lines(
         yield from map(make_visible, document.verdict[:1])
         if document.refusal_help:
             yield make_visible(f"  = help: {document.refusal_help}")
+            yield from _entry_lines(document)
         yield from map(make_visible, document.verdict[1:])
         return
     if document.is_empty:
@@ -41,6 +50,8 @@ def write_comparison_lines(
         for change in change_group.changes:
             yield _change_line(change, colour=colour)
         yield ""
+    yield from _figure_lines(comparison_document.BOUNDARY_HEADING, document.boundary_lines, colour=colour)
+    yield from _figure_lines(comparison_document.LOAD_HEADING, document.load_lines, colour=colour)
     yield from _chain_lines(document.chain_rows, colour=colour)
     for finding_group in document.finding_groups:
         yield from _finding_lines(finding_group, colour=colour)
@@ -64,24 +75,43 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
     told_reasons = set[str]()
     for item in document.breaking_changes:
         yield _change_line(item.change, _breaks_note(item, colour=colour), colour=colour)
-        reasons = item.partners_by_reason.keys()
+        reasons = dict.fromkeys(loss.reason for loss in item.losses).keys()
         yield from (make_visible(f"      {reason}") for reason in reasons if reason not in told_reasons)
         if not told_reasons.isdisjoint(reasons):
             yield "      as above" if told_reasons.issuperset(reasons) else "      and as above"
         told_reasons |= reasons
         yield from (make_visible(f"      {line}") for line in item.agreements)
     if document.refusal_help and not document.only_breaking:
-        yield make_visible(f"  {comparison_document.REFUSAL_LEAD}{document.refusal_help}")
+        yield make_visible(f"  {document.refusal_lead}{document.refusal_help}")
+        yield from _entry_lines(document)
     yield ""
 
 
+def _entry_lines(document: ComparisonDocument) -> Iterator[str]:
+    for entries in document.missing_entries:
+        yield from (make_visible(f"      {line}") for line in entries.splitlines())
+
+
 def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
-    return _paint_text(f"breaks {make_visible(', '.join(item.change.broken_partners))}: ", "1;31", colour=colour)
+    partners = make_visible(", ".join(item.partners))
+    return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
-def _change_line(change: Change, note: str = "", *, colour: bool) -> str:
-    sign = _paint_text(_TERMINAL_SIGNS[change.kind], _SIGN_COLOURS[change.kind], colour=colour)
-    return f"  {sign} {note}{make_visible(change.text)}"
+def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:
+    return f"  {_paint_sign(change.kind, colour=colour)} {note}{make_visible(change.text)}"
+
+
+def _paint_sign(kind: EditKind, *, colour: bool) -> str:
+    plain_sign = _TERMINAL_SIGNS[kind]
+    return _paint_text(plain_sign, _SIGN_COLOURS[plain_sign], colour=colour)
+
+
+def _figure_lines(heading: str, lines: Sequence[FigureLine], *, colour: bool) -> Iterator[str]:
+    if not lines:
+        return
+    yield _paint_text(heading, "1", colour=colour)
+    yield from (f"  {_paint_sign(line.kind, colour=colour)} {make_visible(line.text)}" for line in lines)
+    yield ""
 
 
 def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[str]:
@@ -93,6 +123,8 @@ def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[st
         verdict = f": {row.verdict}" if row.verdict else ""
         deadline = f", deadline {row.deadline}{verdict}" if row.deadline else ""
         yield make_visible(f"  {row.id}: {row.before} → {row.after}{growth}{deadline}")
+        if row.reason:
+            yield make_visible(f"      because of {row.reason}")
     yield ""
 
 

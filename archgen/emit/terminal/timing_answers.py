@@ -13,12 +13,11 @@ from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains.chain_sensitivity import ChainSensitivity
+from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
 from archgen.timing.chains.figure_explanations import ReasonLine
 from archgen.timing.chains.measured_comparison import MeasuredComparison
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.system.timing_system import TimingSystem
 
 ChainResults = Mapping[str, ChainResult]
 AnswerJson = dict[str, Any]
@@ -122,13 +121,14 @@ def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
 
 
 def format_sensitivity(
-    chain: ChainResult, system: TimingSystem, ranking: ChainSensitivity, width: int | None = None
+    chain: ChainResult, analysis: Analysis, ranking: ChainSensitivity, width: int | None = None
 ) -> Iterator[str]:
     """Yield a ranking of what decides a chain."""
     if not chain.terms:
-        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, system)}"
+        yield f"{chain.id}: {format_figure(chain.bound)}   {describe_gaps(chain, analysis)}"
         return
-    yield f"{chain.id}: {format_figure(chain.bound)}"
+    gaps_text = describe_gaps(chain, analysis)
+    yield f"{chain.id}: {format_figure(chain.bound)}{f'   {gaps_text}' if gaps_text else ''}"
     yield ""
     if ranking.gains:
         yield "Improved by 10 %, each figure takes off"
@@ -146,7 +146,7 @@ def format_sensitivity(
         yield "Not known; to be measured in this order"
         gap_rows = (
             (
-                f"{gap.what} of {gap.element}",
+                _format_lack(gap),
                 f"in {gap.terms} term{'s' if gap.terms != 1 else ''}",
                 f"of {gap.chains} chain{'s' if gap.chains != 1 else ''}",
                 f"works every {figure_wording.format_duration(gap.plausible)}" if gap.plausible else "",
@@ -154,6 +154,11 @@ def format_sensitivity(
             for gap in ranking.gaps
         )
         yield from align_rows(gap_rows, width)
+
+
+def _format_lack(gap: UnknownFigure) -> str:
+    first, is_pair, second = gap.element.partition(" - ")
+    return f"a link between {first} and {second}" if is_pair else f"{gap.what} of {gap.element}"
 
 
 def _span_text(span: object) -> str:

@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
+from archgen.emit.terminal import timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
+from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.system.timing_system import TimingSystem
-
-_VERDICT_WORDS = {"met": "met", "missed": "MISSED", "open": "open"}
+from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
 
 
 def format_timing(
@@ -23,15 +23,17 @@ def format_timing(
 ) -> Iterator[str]:
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
-        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis.system, chains.values())),
+        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
         ("Hosts", _host_rows(analysis)),
         ("Links", _link_rows(analysis)),
         ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
         ("Elements", _element_rows(analysis)),
         ("Loops: latency of one round", _loop_rows(loops)),
+        ("What is taken for granted", _assumption_rows(analysis)),
     )
-    for title, rows in sections:
-        yield from _section_lines(title, rows, width)
+    lines = [line for title, rows in sections for line in _section_lines(title, rows, width)]
+    yield from lines
+    yield from _section_lines("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
     yield from _fault_lines(analysis)
 
 
@@ -43,23 +45,39 @@ def _section_lines(title: str, rows: Iterable[TextRow], width: int | None) -> It
         yield ""
 
 
-def _chain_rows(system: TimingSystem, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
             result.id,
             format_figure(result.bound),
             deadline,
-            _VERDICT_WORDS[result.verdict] if result.deadline else "",
-            describe_gaps(result, system),
+            VERDICT_WORDS[result.verdict] if result.deadline else "",
+            describe_gaps(result, analysis),
         )
 
 
 def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.hosts.items():
-        cores = f"{load.cores} core{'s' if load.cores != 1 else ''}"
+        cores = "? cores" if load.cores is None else f"{load.cores} core{'s' if load.cores != 1 else ''}"
         load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
-        yield name, cores, load_text, load.verdict, format_missing(load.utilisation) or _format_bounds(load)
+        missing_text = format_missing(load.utilisation)
+        if load.cores is None:
+            missing_text = f"how many cores it has is not written{f'; {missing_text}' if missing_text else ''}"
+        yield (
+            name,
+            cores,
+            load_text,
+            load.verdict,
+            missing_text or _count_unfound(analysis, load) or _format_bounds(load),
+        )
+
+
+def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
+    """Return for how many elements of a host no bound was found: a low load alone would look as if all were well."""
+    names = [name for name, _ in load.activity_shares]
+    unfound_ids = [name for name in names if is_unfound(analysis.responses[name].worst)]
+    return f"no bound found for {len(unfound_ids)} of {len(names)} elements" if unfound_ids else ""
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -109,21 +127,26 @@ def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[TextRow]:
         yield " > ".join(loop.through), format_figure(loop.latency), group_note or format_missing(loop.latency)
 
 
+def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
+    """Yield what was left out and counts as nothing."""
+    clocked = [activity for activity in analysis.system.activities.values() if activity.behaviour == "periodic"]
+    unwritten_count = sum("jitter" not in activity.places for activity in clocked)
+    if unwritten_count:
+        yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+
+
 def _fault_lines(analysis: Analysis) -> Iterator[str]:
     for ring in analysis.endless:
         yield f"endless: every event circulates for ever in {' > '.join(ring)}"
     for ring in analysis.deadlocked:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
-        yield f"diverged: no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
-    if analysis.boundless_on_cores:
-        names = figure_wording.join_first_names(analysis.boundless_on_cores)
-        yield f"unbounded: no bound was found for {names}"
+        yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
 
 
 def format_chain(
     result: ChainResult,
-    system: TimingSystem,
+    analysis: Analysis,
     age: TimingValue,
     published: tuple[Fraction, Fraction] | None = None,
     width: int | None = None,
@@ -134,11 +157,11 @@ def format_chain(
         yield from align_rows(_term_rows(result.terms), width)
         yield ""
     rows: list[TextRow] = [
-        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, system))
+        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, analysis))
     ]
     if age != result.bound:
         rows = [
-            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, system))
+            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, analysis))
         ]
         rows.append(("largest data age, until the next event's comes", format_figure(age), format_missing(age)))
     rows += [
@@ -155,9 +178,11 @@ def format_chain(
         )
         rows.append(("    reduced data age", figure_wording.format_duration(published[1])))
     if result.deadline:
-        rows.append(("deadline", format_figure(result.deadline), _VERDICT_WORDS[result.verdict]))
+        rows.append(("deadline", format_figure(result.deadline), VERDICT_WORDS[result.verdict]))
     yield from align_rows(rows, width)
-    for assumption in result.bound.assumptions if result.terms else ():
+    if result.terms:
+        yield "  Hold the first of these against a deadline, the reduced reaction time against a trace that begins with the sample."
+    for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 
 

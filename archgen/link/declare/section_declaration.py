@@ -9,7 +9,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.review_settings import AcceptedChange, ReviewSettings
+from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")
@@ -182,10 +182,10 @@ def declare_views(root: MappingNode) -> dict[str, View]:
 def declare_review(root: MappingNode) -> ReviewSettings:
     """Declare how changes are judged, without accepted changes that lack a reason, which merging has reported."""
     body = mapping_values.get_mapping(root, "review")
-    breaking = mapping_values.get_text(body, "breaking")
     return ReviewSettings(
         main=mapping_values.get_text(body, "main"),
-        breaking=None if breaking is None else Severity(breaking),
+        breaking=_read_policy(body),
+        guards_margins=mapping_values.get_mapping(body, "breaking").get("promise") is not None,
         accepted=tuple(
             AcceptedChange(entry.key, reason, mapping_values.get_text(item, "key"), item.span)
             for entry in mapping_values.get_mapping(body, "accepted")
@@ -195,6 +195,17 @@ def declare_review(root: MappingNode) -> ReviewSettings:
         ),
         backends=mapping_values.get_texts(body, "backends"),
     )
+
+
+def _read_policy(review: MappingNode) -> BreakPolicy | None:
+    """Return how serious it is to break a partner: one severity for all categories, or one for each; None if not written."""
+    text = mapping_values.get_text(review, "breaking")
+    if text is not None:
+        return BreakPolicy.from_severity(Severity(text))
+    categories = mapping_values.get_mapping(review, "breaking")
+    severities = {category: mapping_values.get_text(categories, category) for category in BREAK_CATEGORIES}
+    written = {category: Severity(severity) for category, severity in severities.items() if severity is not None}
+    return BreakPolicy(**written) if written else None
 
 
 def declare_policies(root: MappingNode) -> dict[str, Policy]:

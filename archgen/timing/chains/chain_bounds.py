@@ -5,21 +5,28 @@ F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
 from archgen.timing.chains import chain_regions
+from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, sum_bounds
+from archgen.timing.figures.value_arithmetic import (
+    is_boundless,
+    is_known_bound,
+    largest_value,
+    smallest_value,
+    sum_bounds,
+)
 from archgen.timing.system.timing_system import Arc
 
 
@@ -34,10 +41,12 @@ class BoundedPath:
 
 @dataclass(frozen=True, slots=True)
 class LateChain:
-    """A chain that may miss its deadline: its bound, and the terms."""
+    """A chain that can miss its deadline, or is not proven to meet it: its bound, its best case, and the terms."""
 
     chain: Chain
     bound: TimingValue
+    best: TimingValue
+    verdict: ChainVerdict
     terms: tuple[ChainTerm, ...]
 
 
@@ -68,8 +77,8 @@ def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str
     }
 
 
-def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
-    """Yield the chains that may miss their deadlines; their other figures are left out.
+def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
+    """Yield the chains that can miss their deadlines, and those of which that cannot be excluded, without other figures.
 
     `margin` is the share of each deadline that must stay free.
     """
@@ -80,12 +89,19 @@ def find_missed_chains(analysis: Analysis, architecture: Architecture, margin: F
         regions = chain_regions.lay_out_chain(
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
-        # Only the bound: the three other aims would each cost a graph of their own, and rules need none of them.
+        # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
         extreme_path = _find_extreme_path(network, regions, "bound")
         if extreme_path is not None:
             view, path, bound = extreme_path
-            if judge_deadline(bound, TimingValue((1 - margin) * asked_chain.deadline.value)) == "missed":
-                yield LateChain(asked_chain, bound, build_terms(view, path))
+            deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
+            if is_known_bound(bound) and not may_be_late(bound, deadline):
+                continue
+            best = _extreme_value(network, regions, "best")
+            # The margin is for what is uncertain: nothing is missed as long as it is only used up.
+            can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
+            if can_be_missed or may_be_late(bound, deadline):
+                verdict: ChainVerdict = "missed" if can_be_missed else "not proven"
+                yield LateChain(asked_chain, bound, best, verdict, build_terms(view, path))
 
 
 def find_paths_between(
@@ -152,24 +168,25 @@ def _build_result(
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     view, path, path_bound = extreme_path
     bound = _note_event_start(network, path, path_bound)
+    best = _extreme_value(network, regions, "best")
+    event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
         id=asked_chain.id,
         through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
         terms=build_terms(view, path),
         bound=bound,
-        best=_extreme_value(network, regions, "best"),
+        best=best,
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
-        reduced_age=_extreme_value(network, regions, "reduced age"),
+        reduced_age=_limit_reduced_age(_extreme_value(network, regions, "reduced age"), bound, event_ages),
         deadline=deadline,
-        verdict=judge_deadline(bound, deadline),
+        verdict=judge_deadline(bound, best, deadline),
     )
 
 
 def _unresolved_value(words: tuple[str, ...]) -> TimingValue:
     """Return the value of a chain with words that name nothing."""
-    return TimingValue(
-        None, complete=False, missing=words, assumptions=tuple(f"`{word}` is not resolved" for word in words)
-    )
+    assumptions = tuple(f"`{word}` is not resolved" for word in words)
+    return TimingValue(None, complete=False, missing=words, assumptions=assumptions)
 
 
 def _unconnected_value(
@@ -214,15 +231,28 @@ def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:
     return sum_bounds((result.bound, network.steps.arrivals.activation_gap(result.through[0])))
 
 
-def judge_deadline(bound: TimingValue, deadline: TimingValue | None) -> Literal["met", "missed", "open"]:
-    """Compare a bound with a deadline. What is known may exceed it before everything is known."""
-    if deadline is None or deadline.value is None:
-        return "open"
-    if is_boundless(bound):
-        return "missed"
-    if bound.value is not None and bound.value > deadline.value:
-        return "missed"
-    return "met" if is_known_bound(bound) else "open"
+def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages: Iterable[TimingValue]) -> TimingValue:
+    """Return the age of what is sent: never more than it may become before the next output replaces it."""
+    if is_known_bound(reduced_age) and reduced_age.value is not None and reduced_age.value <= (bound.value or 0):
+        return reduced_age
+    data_ages = [bound, *event_ages]
+    if all(map(is_known_bound, data_ages)):
+        return smallest_value((reduced_age, max(data_ages, key=lambda value: value.value or 0)))
+    # A data age that is not known yet limits nothing but what has no bound at all.
+    can_limit = is_boundless(reduced_age) and not any(map(is_boundless, data_ages))
+    return largest_value(data_ages) if can_limit else reduced_age
+
+
+def _ages_from_events(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Iterable[str]
+) -> Iterator[TimingValue]:
+    """Yield the largest data age from each event that may be a chain's stimulus: until the result of the next one."""
+    for name in start_ids:
+        start = replace(regions[0], members=frozenset({network.vertex_of[name]}), inside=False)
+        is_event = network.steps.analysis.system.activities[name].behaviour != "periodic"
+        extreme_path = _find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
+        if extreme_path is not None:
+            yield sum_bounds((extreme_path.value, network.steps.arrivals.activation_gap(name)))
 
 
 def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:

@@ -15,6 +15,8 @@ from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_chain
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
+from archgen.timing.system.core_placement import is_missing_cores
 
 IMPROVED_SHARE = Fraction(9, 10)
 """What is left of a duration that is improved by a tenth."""
@@ -160,8 +162,11 @@ def _rank_unknown_figures(
             ("execution time", term.response),
             ("latency", term.link),
         ):
-            for name in () if value.complete else value.missing:
-                lacking_terms[name, figure_name] = lacking_terms.get((name, figure_name), 0) + 1
+            # Where no link joins two hosts, nothing of the elements on them is missing: the link is, and is named itself.
+            is_nameable = not value.complete and UNLINKED_NOTE not in value.assumptions
+            for name in value.missing if is_nameable else ():
+                if lack := _name_lack(analysis, name, figure_name):
+                    lacking_terms[name, lack] = lacking_terms.get((name, lack), 0) + 1
     gaps = [
         UnknownFigure(
             name,
@@ -173,6 +178,21 @@ def _rank_unknown_figures(
         for (name, figure_name), count in lacking_terms.items()
     ]
     return sorted(gaps, key=lambda gap: (-gap.terms, -(gap.plausible or 0), -gap.chains, gap.element))
+
+
+def _name_lack(analysis: Analysis, name: str, figure_name: str) -> str:
+    """Return which figure of an element is missing, most likely that of the term; empty where all are written."""
+    activity = analysis.system.activities.get(name)
+    if activity is None:
+        return "number" if is_missing_cores(name) else figure_name
+    pace = analysis.paces[name]
+    lacks = {
+        "execution time": activity.wcet is None and activity.response is None,
+        "period or rate": activity.period is None and (pace.gap.value is None or pace.rate.value is None),
+    }
+    return (
+        figure_name if lacks.get(figure_name) else next((lack for lack, is_lacking in lacks.items() if is_lacking), "")
+    )
 
 
 def _plausible_duration(analysis: Analysis, name: str) -> Fraction | None:

@@ -7,11 +7,12 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.timing.analysis import Analysis, ChainResult, EventPace, Reason
+from archgen.timing.analysis import Analysis, ChainResult, EventPace, HostLoad, Reason
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
 from archgen.timing.system.timing_system import Activity
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
@@ -50,14 +51,18 @@ def explain_activity(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
 def explain_chain(result: ChainResult) -> Iterator[ReasonLine]:
     """Explain a chain's bound: its terms in order."""
     yield ReasonLine(
-        0, f"{result.id}: {_format_figure(result.bound)} = S0 + R0 + sum of (link + S + R) along the chain"
+        0,
+        f"{result.id}: {_format_figure(result.bound)}, the sum of all that follows: what each step waits and takes, and links",
     )
     for term in result.terms:
         if term.link.value != 0:
             yield ReasonLine(1, f"link to {term.activity}: {_format_figure(term.link)}")
         yield ReasonLine(1, f"{term.activity} waits {_format_figure(term.sampling)}: {term.why}", term.at)
-        yield ReasonLine(1, f"{term.activity} takes {_format_figure(term.response)} at most")
-    for assumption in result.bound.assumptions:
+        takes_text = f"takes {_format_figure(term.response)} at most"
+        if term.response.value is None:
+            takes_text = f"takes a time that is not bounded: {_format_figure(term.response)}"
+        yield ReasonLine(1, f"{term.activity} {takes_text}")
+    for assumption in list_assumptions(result.bound):
         yield ReasonLine(1, f"assumes: {assumption}")
 
 
@@ -83,10 +88,14 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
     """Explain a host's load: what each activity adds."""
     load = analysis.hosts[name]
     yield ReasonLine(
-        0, f"{name}: load {_format_figure(load.utilisation, 'share')} of {load.cores} cores: {load.verdict}"
+        0, f"{name}: load {_format_figure(load.utilisation, 'share')} of {_count_cores(load)}: {load.verdict}"
     )
     for activity, part in load.activity_shares:
         yield ReasonLine(1, f"{activity} adds {_format_figure(part, 'share')}", _span_of_activity(analysis, activity))
+
+
+def _count_cores(load: HostLoad) -> str:
+    return "a core, and nobody wrote how many there are" if load.cores is None else f"{load.cores} cores"
 
 
 def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -112,9 +121,18 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
     if not rate_only:
         response_text = (
             f"response between {_format_figure(response.best)} and {_format_figure(response.worst)} ({response.tier})"
+            if not is_unfound(response.worst)
+            else _describe_unfound_response(analysis, name)
         )
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
+
+
+def _describe_unfound_response(analysis: Analysis, name: str) -> str:
+    """Describe a response for which no bound was found, with what was analysed."""
+    response = analysis.responses[name]
+    at_least = f"response of at least {_format_figure(response.best)}; " if response.best.value is not None else ""
+    return f"{at_least}no bound found {describe_unfound_places(group_by_host(analysis, [name]))}"
 
 
 def describe_behaviour(activity: Activity, pace: EventPace) -> str:

@@ -65,17 +65,22 @@ def join_first_names(names: tuple[str, ...], limit: int = 6) -> str:
     return first_names + (f" and {len(names) - limit} more" if len(names) > limit else "")
 
 
+_UNKNOWN_REASONS = {"overload": "overload", "unbounded": "unbounded", "diverged": "no bound found"}
+"""Words for a figure that is unknown though all figures are there, by the assumption that explains it."""
+
+
 def name_unknown_reason(value: TimingValue) -> str:
-    """Return why a figure is unknown: `overload`, `unbounded`, `diverged` or `unknown`; empty if it is known."""
-    for word in ("overload", "unbounded", "diverged"):
+    """Return why a figure is unknown: `overload`, `unbounded`, `no bound found` or `unknown`; empty if it is known."""
+    for word, reason in _UNKNOWN_REASONS.items():
         if value.value is None and any(assumption.split(":")[0].strip() == word for assumption in value.assumptions):
-            return word
+            return reason
     return "" if value.value is not None else "unknown"
 
 
 def describe_value(value: TimingValue, unit: str) -> str:
     """Write a figure with its side where it is a bound, or why there is none. The unit is "Hz" or "ns"."""
     if value.value is None:
-        return next(iter(value.assumptions), "unknown") if value.complete else "unknown"
+        word = next(iter(value.assumptions), "unknown") if value.complete else "unknown"
+        return _UNKNOWN_REASONS.get(word, word)
     text = format_rate(value.value) if unit == "Hz" else format_duration(value.value)
     return text if value.side == "exact" else f"{value.side} {text}"

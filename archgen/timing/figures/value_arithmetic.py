@@ -14,6 +14,9 @@ NEVER_FIRES = TimingValue(Fraction(0), assumptions=("never fires",))
 """The rate of what never fires: a known zero, unlike a rate that nobody wrote."""
 BOUNDLESS_WORDS = ("overload", "unbounded")
 """Assumptions of values that grow beyond any bound. `diverged` is none of them: there the search was given up."""
+UNLINKED_NOTE = "no link joins their hosts"
+"""The note of what is unknown because the hosts of two elements are not joined."""
+_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE)
 
 
 def unknown_value(*missing: str) -> TimingValue:
@@ -128,9 +131,20 @@ def is_boundless(value: TimingValue) -> bool:
     )
 
 
+def list_assumptions(value: TimingValue) -> tuple[str, ...]:
+    """Return what a figure rests on, without the words that only say why there is none."""
+    return tuple(text for text in value.assumptions if text.split(":")[0].strip() not in _CAUSE_WORDS)
+
+
+def is_unfound(value: TimingValue) -> bool:
+    """Whether the search found no bound for a figure, or for a part of it; `missing` then names nobody for that part."""
+    return not is_known_bound(value) and "diverged" in value.assumptions
+
+
 def name_missing_element(value: TimingValue, element: str) -> TimingValue:
     """Return the value, with `element` as what is missing if it is unknown and names nothing itself."""
-    if is_known_bound(value) or value.missing or is_boundless(value):
+    # A search that found nothing had all figures of the element: nobody is to measure what is written.
+    if is_known_bound(value) or value.missing or is_boundless(value) or is_unfound(value):
         return value
     return replace(value, complete=False, missing=(element,))
 

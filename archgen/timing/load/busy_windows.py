@@ -18,7 +18,7 @@ from typing import NamedTuple
 from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals
 
 _MAX_TERMS = 40_000_000
-"""Terms that one analysis may look at: some seconds' worth."""
+"""Terms that searches may look at where nobody says how many: some seconds' worth."""
 _MAX_TERMS_PER_SEARCH = 6_000_000
 """Terms that one search may look at, so that one that does not end leaves most of the budget to all others."""
 _TERMS_PER_ACTIVATION = 8
@@ -34,15 +34,16 @@ class DivergedError(Exception):
 
 
 class SearchBudget:
-    """How many terms one analysis may still look at: terms and not seconds, so that results can be repeated."""
+    """How many terms some searches may still look at: terms and not seconds, so that results can be repeated."""
 
-    def __init__(self, term_count: int = _MAX_TERMS) -> None:
+    def __init__(self, term_count: int = _MAX_TERMS, terms_per_search: int | None = None) -> None:
         """Start with the whole budget."""
         self._terms_left = term_count
+        self._terms_per_search = _MAX_TERMS_PER_SEARCH if terms_per_search is None else terms_per_search
 
     def start_search(self) -> Callable[[int], None]:
         """Begin a search: the returned function spends terms, and raises DivergedError after too many."""
-        min_terms_left = max(self._terms_left - _MAX_TERMS_PER_SEARCH, 0)
+        min_terms_left = max(self._terms_left - self._terms_per_search, 0)
 
         def spend(steps: int) -> None:
             self._terms_left -= steps
@@ -187,6 +188,9 @@ def worst_response(work: ActivityWork, interference: DemandFunction, budget: Sea
 def _find_fixed_point(own_work: int, demand: DemandFunction, spend: Callable[[int], None], *, start: int = 0) -> int:
     """Return the least t with own work + demand(t) <= t, searching from `start`."""
     within, term_count, scaled_rate, scaled_offset = demand
+    # More than t comes in each t: there is no such t, and no need to look for it.
+    if scaled_rate >= _WHOLE_SHARE and (scaled_rate > _WHOLE_SHARE or own_work or scaled_offset):
+        raise DivergedError
     lower_bound = (
         ((own_work << _SHARE_BITS) + scaled_offset) // (_WHOLE_SHARE - scaled_rate) if scaled_rate < _WHOLE_SHARE else 0
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
 from archgen.timing.load.event_streams import (
     EventStream,
     EventStreams,
@@ -23,10 +24,6 @@ from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
 from archgen.timing.system.trigger_graph import TriggerGraph
-
-UNLINKED_NOTE = "no link joins their hosts"
-"""The note of what is unknown because the hosts of two elements are not joined."""
-
 
 _DOWNSTREAM_WORDS = {"overload": "unbounded"}
 """What a note becomes for those who read the output: what reads from an overload is not overloaded itself."""

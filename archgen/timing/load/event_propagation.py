@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
-from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import solve_inner_core
 from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
@@ -21,6 +20,7 @@ from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_in
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
@@ -30,17 +30,19 @@ from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
+_MAX_WAITING_ACTIVATIONS = 200
+"""Activations of one activity that may come within its response, in a loop, before the loop is given up."""
 
 
 def propagate_events(
-    system: TimingSystem, triggers: TriggerGraph, budget: SearchBudget | None = None
+    system: TimingSystem, triggers: TriggerGraph, group_budgets: GroupBudgets | None = None
 ) -> PropagationState:
     """Find the event model and the worst response of every activity.
 
-    A caller that propagates several times passes one budget for all runs.
+    A caller that propagates several times passes the same budgets to all runs.
     """
     return _Propagation(
-        PropagationState(system, triggers), find_resources(system), budget or SearchBudget()
+        PropagationState(system, triggers), find_resources(system), group_budgets or GroupBudgets()
     ).run_to_fixed_point()
 
 
@@ -48,10 +50,9 @@ class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
     def __init__(
-        self, state: PropagationState, resource_list: Iterable[ProcessingResource], budget: SearchBudget
+        self, state: PropagationState, resource_list: Iterable[ProcessingResource], group_budgets: GroupBudgets
     ) -> None:
         self.state = state
-        self.budget = budget
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
@@ -71,7 +72,13 @@ class _Propagation:
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
+        # Where a written jitter lets many come at once, that many may wait without anything having run away.
+        activities = state.system.activities.values()
+        shortest_period = min((activity.period for activity in activities if activity.period), default=1)
+        largest_jitter = max((activity.jitter for activity in activities), default=0)
+        self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
         self.successors = self._find_successors()
+        self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
     def _prepare_inner_cores(self) -> None:
         """Prepare the cores on which activities fire one another, and those that share their work."""
@@ -151,10 +158,26 @@ class _Propagation:
                     pending.discard(step)
                     if self._update_step(step):
                         pending.update(self.successors[step])
+                        if self._has_run_away(step):
+                            self._give_up_steps(steps)
+                            return
             pending.intersection_update(steps)
             if not pending:
                 return
         self._give_up_steps(steps)
+
+    def _has_run_away(self, step: str) -> bool:
+        """Whether a response has grown so long that it is of no use to anybody, if it ends at all."""
+        # Loops without a fixed point grow by a factor with each sweep: without this the budget of their whole group
+        # is spent on them, though nothing will come of it.
+        state = self.state
+        for name in self.resources[step].members if step in self.resources else ():
+            response, event_model = state.responses[name], state.event_models[name]
+            if response.value and response.tier != "declared" and not isinstance(event_model, UnknownCause):
+                numerator, denominator = sum_ratios([stream.max_rate_ratio for stream in event_model])
+                if response.value * numerator > self.max_waiting * denominator:
+                    return True
+        return False
 
     def _start_from_below(self, steps: tuple[str, ...]) -> None:
         """Set the least response (the execution time) and no events for all activities of a loop."""
@@ -189,7 +212,7 @@ class _Propagation:
                 state.system,
                 self.resources[step],
                 state.event_models,
-                AnalysisEffort(self.budget, self._stale_activities(step)),
+                AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
             )
             new_responses = {
                 name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
@@ -203,7 +226,9 @@ class _Propagation:
         state.event_models[step] = event_model
         # On no resource: a core of its own, so that its response rests on nothing but its own events.
         if step not in self.resources_of:
-            state.responses[step] = find_dedicated_response(state.system, step, state.event_models, self.budget)
+            state.responses[step] = find_dedicated_response(
+                state.system, step, state.event_models, self.budget_of[step]
+            )
         return True
 
     def _update_inner_core(self, step: str) -> bool:
@@ -220,9 +245,9 @@ class _Propagation:
             return entering_models[key]
 
         new_responses, new_ways = (
-            solve_inner_core(self.inner_cores[step], find_model, self.budget)
+            solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
             if step in self.inner_cores
-            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget)
+            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
         )
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
         changed = any(

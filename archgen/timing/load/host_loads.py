@@ -33,6 +33,7 @@ _TIER_SENTENCES = {
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
+_OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
 def build_response_times(state: PropagationState, resources: Iterable[ProcessingResource]) -> dict[str, ResponseTime]:
@@ -54,6 +55,8 @@ def _build_response_time(
     if resource is not None and resource.undisturbed and worst_response.tier == "cores":
         sentence = "its own work: {0} has no more threads than cores"
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
+    is_open = worst_response.tier == "unknown" and activity.wcet is not None and resource is not None
+    sentence = _OPEN_CORES_SENTENCE if is_open else _TIER_SENTENCES[worst_response.tier]
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,
@@ -156,15 +159,19 @@ def _build_host_load(
     loads = tuple(
         (resource.id, resource.cores, add_values(shares[name] for name in resource.members))
         for resource in host_resources
+        if not resource.missing
     )
-    cores = system.cores.get(host) or 1
+    is_open = any(resource.missing for resource in host_resources)
+    # Of one thread, or of threads that are all pinned, it does not matter how many cores there are.
+    cores = None if is_open else system.cores.get(host) or sum(count for _, count, _ in loads) or None
+    verdict = _judge_host(system, loads, tuple(shares), paces, responses)
     # Elements that add nothing to the load are no tasks in the sense of the bound, which falls with their number.
     working = sum(1 for utilisation in shares.values() if utilisation.value != 0)
     return HostLoad(
         utilisation=add_values(shares.values()),
         cores=cores,
         rate_monotonic_bound=TimingValue(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE_ONLY,
-        verdict=_judge_host(system, loads, tuple(shares), paces, responses),
+        verdict="unknown" if is_open and verdict != "overload" else verdict,
         activity_shares=tuple(shares.items()),
         core_loads=loads,
         earliest_deadline_bound=TimingValue(Fraction(1)) if cores == 1 else _ONE_CORE_ONLY,

@@ -57,10 +57,10 @@ def find_inner_triggers(
 ) -> InnerTriggers | None:
     """Return the triggers inside a resource; None where each activity is looked at by itself.
 
-    That is so where cores are joined, where one core has no trigger inside, and on a core of some with priorities on which
-    others may run too.
+    That is so where cores are joined, or nobody wrote how many there are, where one core has no trigger inside, and on a
+    core of some with priorities on which others may run too.
     """
-    if resource.joined:
+    if resource.joined or resource.missing:
         return None
     is_ranked = any(system.activities[name].priority is not None for name in resource.members)
     if resource.cores == 1 and resource.foreign_units and is_ranked:

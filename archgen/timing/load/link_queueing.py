@@ -16,6 +16,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_ratios, unite
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, longest_busy_period
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_propagation import propagate_events
+from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.sent_models import sent_model
 from archgen.timing.system.timing_system import Arc, TimingSystem, group_arcs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers
@@ -32,12 +33,11 @@ def settle_links(system: TimingSystem) -> tuple[TimingSystem, TriggerGraph, Prop
     waits: dict[str, int | None] = {
         arc.link: 0 for arc in system.arcs if _needs_queueing(system, arc) and arc.link is not None
     }
-    # One budget for all turns: a search that never ends must not begin anew with each of them.
-    budget = SearchBudget()
+    group_budgets = GroupBudgets()
     for turn in count(1):
         candidate = _apply_waits(system, waits) if waits else system
         trigger_graph = find_triggers(candidate)
-        state = propagate_events(candidate, trigger_graph, budget)
+        state = propagate_events(candidate, trigger_graph, group_budgets)
         arcs_by_link = group_arcs((arc.link or "", arc) for arc in candidate.arcs if arc.link in waits)
         new_waits = {
             link: None if old_wait is None else _link_wait(state, link, arcs_by_link[link])

@@ -27,7 +27,6 @@ from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
-    UNBOUNDED_CAUSE,
     EventModels,
     ThreadWork,
     WorstResponse,
@@ -93,7 +92,11 @@ def find_responses(
         ]
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
     response_of: dict[str, WorstResponse] = {}
-    thread_responses = _solve_one_core(all_threads, wanted_threads, budget)
+    thread_responses = (
+        _leave_open(resource, wanted_threads)
+        if resource.missing
+        else _solve_one_core(all_threads, wanted_threads, budget)
+    )
     for thread, response in map(_soften_overload, thread_responses) if resource.joined else thread_responses:
         for name in thread.unit:
             # A declared response is taken as it is, whatever the rest of the thread does; its work still interferes
@@ -108,14 +111,23 @@ def find_responses(
 
 
 def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
-    """Replace overload by unbounded: all of the joined cores may bear what is too much for one."""
+    """Replace overload: all of the joined cores may bear what is too much for one, only no bound was found."""
     thread, response = thread_response
-    return thread, response._replace(cause=UNBOUNDED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
+    return thread, response._replace(cause=DIVERGED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
 
 
 def _highest_priority(thread: ThreadWork) -> int:
     """Return the greatest priority of a thread, -1 where it has none."""
     return -1 if thread.highest_priority is None else thread.highest_priority
+
+
+def _leave_open(
+    resource: ProcessingResource, wanted_threads: Iterable[ThreadWork]
+) -> Iterable[tuple[ThreadWork, WorstResponse]]:
+    """Yield no bound for threads of which nobody knows how many cores they have, but what is too much for any core."""
+    for thread in wanted_threads:
+        causes = (*((thread.cause,) if thread.cause else ()), UnknownCause(resource.missing))
+        yield thread, WorstResponse(None, "unknown", OVERLOAD_CAUSE if thread.share > 1 else unite_causes(causes))
 
 
 def _solve_one_core(

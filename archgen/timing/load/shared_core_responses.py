@@ -38,7 +38,7 @@ from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, UNBOUNDED_CAUSE, WorstResponse
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
 
 _MAX_SWEEPS = 60
 """Sweeps over all runs of some cores before their responses are given up."""
@@ -137,13 +137,13 @@ class _SharedCoreSolver:
         ]
         order = self.cores.inner_triggers.order
         full_names = [name for name in order if shares.fills_core((name,), self.paths.look_up((name,)))]
-        self._mark_boundless([*boundless_ids, *full_names], UNBOUNDED_CAUSE)
+        self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
 
     def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
         """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""
         marked_names = [name for name in names if name not in self.cause_of]
         self.cause_of.update(dict.fromkeys(marked_names, cause))
-        lasting_cause = UNBOUNDED_CAUSE if cause == OVERLOAD_CAUSE else cause
+        lasting_cause = DIVERGED_CAUSE if cause == OVERLOAD_CAUSE else cause
         boundless_jobs = {number for number, job in enumerate(self.cores.jobs) if job.key[0] in self.cause_of}
         has_grown = bool(marked_names)
         while has_grown:

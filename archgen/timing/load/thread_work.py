@@ -27,11 +27,8 @@ class WorstResponse(NamedTuple):
 
 EventModels = Mapping[str, EventStreams | UnknownCause]
 """The event model of each activity, or why it has none."""
-OVERLOAD_CAUSE, UNBOUNDED_CAUSE, DIVERGED_CAUSE = (
-    UnknownCause(notes=("overload",)),
-    UnknownCause(notes=("unbounded",)),
-    UnknownCause(notes=("diverged",)),
-)
+OVERLOAD_CAUSE, DIVERGED_CAUSE = UnknownCause(notes=("overload",)), UnknownCause(notes=("diverged",))
+"""`overload`: there is no bound. `diverged`: none was found, though there may be one."""
 
 
 @lru_cache(1 << 14)

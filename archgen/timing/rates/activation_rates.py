@@ -93,7 +93,11 @@ def periodic_reason(rates: RateTable, activity: Activity) -> Reason:
 
 def _call_rate(rates: RateTable, arc: Arc) -> TimingValue:
     """Return the rate of calls along an arc."""
-    call_count = rates.state.system.activities[arc.source].calls.get(arc.output, Fraction(1))
+    calling = rates.state.system.activities[arc.source]
+    # Of a caller of whose timing nothing is written, one call for each message that it reads would be a mere guess.
+    if calling.behaviour_inferred and not calling.places:
+        return unknown_value(arc.source)
+    call_count = calling.calls.get(arc.output, Fraction(1))
     caller = rates.paces.get(arc.source)
     return multiply_value(caller.rate, call_count) if caller else unknown_value(arc.source)
 

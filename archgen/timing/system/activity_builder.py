@@ -124,7 +124,7 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
         priority=timing.priority,
         host=node.host,
         container=container,
-        core=timing.core,
+        cores=() if timing.core is None else (timing.core,),
         inputs=tuple(dict.fromkeys([*_endpoint_keys(part, writes=False), *part.outside_inputs])),
         outputs=tuple(dict.fromkeys(_endpoint_keys(part, writes=True))),
         at=_span_of_part(part),

@@ -1,7 +1,8 @@
 """Who shares a processor with whom: activities in units (one thread each), units on cores.
 
 A core to which something is pinned is kept for what is pinned there; everything else shares the remaining cores. Where
-none remains, what is not pinned may run anywhere, and interferes everywhere.
+none remains, what is not pinned may run anywhere, and interferes everywhere. On a host of which nobody wrote how many cores
+it has, only what is pinned has a core that is known, and a single thread, which uses one however many there are.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ class ProcessingResource:
 
     `joined`: some unit here waits for a thread of a container that units on other cores hold. Then all that runs on any
     of these cores is foreign, for only one thing is sure: while one of them waits, one of the cores works.
+    `missing` is what nobody wrote, and without which no response is found here: `cores` is 1 then, and means nothing.
     """
 
     id: str
@@ -32,6 +34,7 @@ class ProcessingResource:
     foreign_units: tuple[ThreadUnit, ...] = ()
     assumptions: tuple[str, ...] = ()
     joined: bool = False
+    missing: tuple[str, ...] = ()
     undisturbed: bool = False
     """One thread, of no more threads than there are cores: it always has one to itself."""
 
@@ -106,14 +109,54 @@ def _resources_of_host(system: TimingSystem, host: str, members: Iterable[Activi
     """Return the resources of a host: one for its only core, else one per pinned core and one for the rest."""
     cores = system.cores.get(host)
     units = find_pins(system, members)
-    if cores is None or cores <= 1:
-        assumptions = () if cores else (f"one core, as nobody wrote how many `{host}` has",)
-        return (ProcessingResource(host, host, 1, tuple(units), assumptions=assumptions),)
+    # One thread uses one core, however many there are.
+    if cores == 1 or (cores is None and _count_working(system, units) <= 1):
+        return (ProcessingResource(host, host, 1, tuple(units)),)
     pinned_units: dict[int, list[ThreadUnit]] = defaultdict(list)
     unpinned_units: list[ThreadUnit] = []
     for unit, core in units.items():
         (unpinned_units if core is None else pinned_units[core]).append(unit)
-    return _join_resources(system, tuple(_pinned_and_shared(system, host, pinned_units, tuple(unpinned_units))))
+    place_units = _pinned_and_shared if cores is not None else _pinned_and_open
+    return _join_resources(system, tuple(place_units(system, host, pinned_units, tuple(unpinned_units))))
+
+
+def _count_working(system: TimingSystem, units: Iterable[ThreadUnit]) -> int:
+    """Return how many threads need a core for some time."""
+    return sum(any(system.activities[name].wcet != 0 for name in unit) for unit in units)
+
+
+def _pinned_and_open(
+    system: TimingSystem,
+    host: str,
+    pinned_units: Mapping[int, list[ThreadUnit]],
+    unpinned_units: tuple[ThreadUnit, ...],
+) -> Iterable[ProcessingResource]:
+    """Yield the resources of a host of which nobody wrote how many cores it has: only pinned cores are known."""
+    missing = (name_missing_cores(host),) if unpinned_units else ()
+    # A pin to core 3 says that there are cores 0 to 3. If one of them is left, what is not pinned runs there, or on others
+    # that nobody wrote, and disturbs nothing that is pinned.
+    is_core_left = len(pinned_units) <= max(pinned_units, default=-1)
+    for core, units in pinned_units.items():
+        notes = tuple(_torn_thread_notes(system, units))
+        pinned_missing = () if is_core_left else missing
+        yield ProcessingResource(
+            f"{host} core {core}", host, 1, tuple(units), assumptions=notes, missing=pinned_missing
+        )
+    if unpinned_units:
+        yield ProcessingResource(host, host, 1, unpinned_units, missing=missing)
+
+
+_MISSING_CORES = "cores of "
+
+
+def name_missing_cores(host: str) -> str:
+    """Return what is missing where nobody wrote how many cores a host has: `cores of pc`."""
+    return f"{_MISSING_CORES}{host}"
+
+
+def is_missing_cores(missing_name: str) -> bool:
+    """Whether what is missing is a number of cores: no element has a blank in its id."""
+    return missing_name.startswith(_MISSING_CORES)
 
 
 def _pinned_and_shared(
@@ -215,4 +258,5 @@ def find_pins(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadU
 
 
 def _is_pinned(system: TimingSystem, activity: Activity) -> bool:
-    return activity.core is not None and activity.core < (system.cores.get(activity.host or "") or 1)
+    cores = system.cores.get(activity.host or "")
+    return activity.core is not None and (cores is None or activity.core < cores)

@@ -13,8 +13,48 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.declared_timing import ActivityBehaviour
+from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import FlowKind
+
+
+@dataclass(frozen=True, slots=True)
+class StoringCallback:
+    """The callback that stores a message of an input that fires nobody. Durations are in ticks, 0 where not written."""
+
+    wcet: int = 0
+    bcet: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ResourceUse:
+    """How long an activation uses a resource (a GPU), in ticks; `best` is 0 where it is not written."""
+
+    worst: int
+    best: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Executor:
+    """What runs the callbacks of a process: those of a container, or of a node outside of one.
+
+    `threads` is None where nobody wrote how many a container has; a node outside of a container has one if nothing is
+    written. `order` is the order in which a thread takes what is ready, None where it may be any.
+    """
+
+    id: str
+    """`container ID` or `node ID`: a container and a node may have the same id."""
+    threads: int | None
+    host: str | None
+    order: SchedulingOrder | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SharedResource:
+    """A GPU or another accelerator: it works on one use at a time. `order` None: in any order that leaves it not idle."""
+
+    id: str
+    host: str | None
+    order: SchedulingOrder | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +77,14 @@ class Activity:
     wcet: int | None = None
     bcet: int | None = None
     response: int | None = None
-    mode: Literal["any", "all"] = "any"
+    mode: Literal["any", "all", "match"] = "any"
     triggers: tuple[str, ...] = ()
+    within: int | None = None
+    """With `match`: how far apart the times of messages may be that are matched (0: the same time)."""
     every: int = 1
     throttle: int = 0
+    keeps_dropped: bool = True
+    """Whether a message that `every` or `throttle` drops is stored and read by the next activation."""
     conditional: frozenset[str] = frozenset()
     """Keys of outputs that are not published at each activation."""
     max_gaps: Mapping[str, int] = field(default_factory=dict)
@@ -48,14 +92,36 @@ class Activity:
     calls: Mapping[str, Fraction] = field(default_factory=dict)
     """Calls in each activation, by input key; 1 where nothing is written."""
     priority: int | None = None
+    deadline: int | None = None
+    """Relative to the activation: how urgent it is under `edf`; the period where it is not written."""
     host: str | None = None
     container: str | None = None
-    core: int | None = None
+    cores: tuple[int, ...] = ()
+    """The cores to which it is pinned, in ascending order; empty where it may run on any."""
+    executor: str = ""
+    """Key of `TimingSystem.executors`: the process whose threads run it."""
+    callback_group: str | None = None
+    """Activities of one group exclude one another; None is reentrant: any number of its own callbacks run at once."""
+    storing: Mapping[str, StoringCallback] = field(default_factory=dict)
+    """By input key: the callbacks of inputs that are only stored. They wait for their turn in the executor."""
+    uses: Mapping[str, ResourceUse] = field(default_factory=dict)
+    """By resource: the time of each activation beside `wcet`, which is processor time alone."""
+    freshness: Mapping[str, int] = field(default_factory=dict)
+    """By input key: how old what is read there may be at most, as its reader demands."""
+    percentiles: Mapping[str, int] = field(default_factory=dict)
+    """Measured execution times by `p50`, `p95` ...; no bound rests on them."""
+    wcet_measured: bool = False
+    """Whether `wcet` is the longest that was seen, and not proven."""
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     # Not compared either: moving text in a file changes no figure.
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def core(self) -> int | None:
+        """The core, where it is pinned to exactly one."""
+        return self.cores[0] if len(self.cores) == 1 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +171,12 @@ class TimingSystem:
     """Cores of each host, None where not written."""
     threads: Mapping[str, int | None] = field(default_factory=dict)
     """Threads of each container, None where not written."""
+    executors: Mapping[str, Executor] = field(default_factory=dict)
+    resources: Mapping[str, SharedResource] = field(default_factory=dict)
+    host_orders: Mapping[str, SchedulingOrder] = field(default_factory=dict)
+    """The order on the cores of a host, where one is written."""
+    core_orders: Mapping[tuple[str, int], SchedulingOrder] = field(default_factory=dict)
+    """The order on single cores (host, core), where it differs from the host's."""
     bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
     """Bandwidth of each link in B/s, None where not written."""
     served_outputs: frozenset[tuple[str, str]] = frozenset()

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.agreement_picture import draw_agreement
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
-from archgen.views.agreement.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.views.agreement.plain_terms import list_plain_terms
+from archgen.views.agreement.signature_record import SignatureRecord, SignedTag
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Outline, Paragraph
 
-__all__ = ["PartnerAgreement", "find_interfaces_between", "make_agreement"]
+__all__ = ["PartnerAgreement", "SignedTag", "find_interfaces_between", "make_agreement"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,18 +40,43 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     *,
     revision: str = "",
     earlier_revision: tuple[str, Lookup] | None = None,
+    issue_date: str = "",
+    signed_tags: Sequence[SignedTag] = (),
+    signed_revision: tuple[str, Lookup] | None = None,
     notices: Sequence[Paragraph] = (),
 ) -> PartnerAgreement:
-    """Make the agreement of two partners. `earlier_revision` is the name of an earlier revision with its look-ups."""
+    """Make the agreement of two partners.
+
+    `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
+    names of revisions with their look-ups.
+    """
     # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
     records = _record_interfaces(lookup, (first, second), MatchedIds())
     changes = _compare_with(earlier_revision, lookup, (first, second), records) if earlier_revision else None
+    signatures = SignatureRecord(tuple(signed_tags))
+    if signed_revision:
+        # Asked for both, they are one comparison.
+        signed_changes = (
+            changes
+            if changes and signed_revision == earlier_revision
+            else _compare_with(signed_revision, lookup, (first, second), records)
+        )
+        signatures = replace(signatures, revision=signed_revision[0], versions=signed_changes.earlier_versions)
     graph = draw_agreement(
         lookup, f"interfaces/{first}-{second}", (first, second), [record.terms.interface for record in records]
     )
     earlier_lookup = earlier_revision[1] if earlier_revision else None
     content = AgreementContent(
-        lookup, (first, second), records, graph, revision, changes, tuple(notices), earlier_lookup
+        lookup,
+        (first, second),
+        records,
+        graph,
+        revision,
+        changes,
+        tuple(notices),
+        earlier_lookup,
+        issue_date,
+        signatures,
     )
     return PartnerAgreement(outline_agreement(content), graph, len(records), changes)
 
@@ -70,7 +96,8 @@ def _compare_with(
 def _record_interfaces(lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds) -> tuple[InterfaceRecord, ...]:
     activity_names = activity_builder.name_activities(lookup.architecture)
     all_terms = [
-        gather_terms(lookup, activity_names, interface) for interface in find_interfaces_between(lookup, *pair)
+        gather_terms(lookup, activity_names, interface)
+        for interface in find_interfaces_between(lookup.architecture, *pair)
     ]
     return tuple(
         InterfaceRecord(terms, _interface_key(terms, matched_ids), list_plain_terms(lookup, terms, matched_ids))

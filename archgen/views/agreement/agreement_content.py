@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
@@ -24,6 +25,8 @@ class AgreementContent:
     notices: tuple[Paragraph, ...] = ()
     earlier_lookup: Lookup | None = None
     """Look-ups of the architecture at the earlier revision."""
+    issue_date: str = ""
+    signatures: SignatureRecord = field(default_factory=SignatureRecord)
 
     @property
     def pair_titles(self) -> tuple[str, str]:

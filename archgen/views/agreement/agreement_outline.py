@@ -7,15 +7,37 @@ from collections.abc import Iterator
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.agreement_summary import change_mark, write_open_points_section, write_summary_section
+from archgen.views.agreement.agreement_summary import (
+    change_mark,
+    write_change_log,
+    write_open_points_section,
+    write_summary_section,
+)
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
-from archgen.views.shapes import Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text, drop_empty_columns
+from archgen.views.agreement.signature_record import write_signature_table
+from archgen.views.shapes import (
+    Block,
+    Column,
+    Figure,
+    Inlines,
+    Outline,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    drop_empty_columns,
+)
 
-_OWNERSHIP_NOTE = (
-    "An element whose owner nobody wrote has that of its group or component, a node those of its components. Where an element "
-    "belongs to several partners, or a component to one and its node to another, each of them answers for its interfaces, and "
-    "the interface says so. What belongs to both partners at both ends is theirs together and not listed."
+_SCOPE_NOTE = (
+    "This agreement covers what the components and programs of one partner give to those of the other. Where something "
+    "belongs to several partners, each of them answers for it, and its section says so. What belongs to both partners at both "
+    "ends is theirs together and not listed."
+)
+_PROMISE_NOTE = (
+    "Promised is what the giving partner has stated. Expected is what follows from other figures of the design: it is "
+    "given for information, and nobody promises it. The version of an interface changes with what passes (names, message, "
+    "fields, quality of service) and with what is promised, and with nothing else."
 )
 
 
@@ -23,7 +45,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
     """Return the outline of an agreement."""
     first, second = content.pair_titles
     # One writer for both directions: it remembers which messages' fields are already in the document.
-    section_writer = SectionWriter(content.lookup, content.changes)
+    section_writer = SectionWriter(content.lookup, content.changes, content.signatures)
     directions = (content.pair, content.pair[::-1])
     return Outline(
         title=f"{first} and {second}",
@@ -33,6 +55,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
         sections=(
             _partners_section(content),
             write_summary_section(content),
+            *write_change_log(content),
             *(
                 section
                 for direction in directions
@@ -55,7 +78,9 @@ def _agreement_facts(content: AgreementContent) -> Iterator[tuple[str, Inlines]]
     )
     yield "Project", inline_text.to_inlines(project.title)
     if project.version:
-        yield "Version", inline_text.to_inlines(project.version)
+        yield "Project version", inline_text.to_inlines(project.version)
+    if content.issue_date:
+        yield "Date", inline_text.to_inlines(content.issue_date)
     if content.revision:
         yield "Revision", inline_text.to_inlines(content.revision)
     if content.changes:
@@ -101,16 +126,15 @@ def _partners_section(content: AgreementContent) -> Section:
         rows.append(
             (
                 inline_text.to_inlines(Text(partner.title, strong=True)),
-                inline_text.to_inlines(" ".join((partner.description or "").split())),
+                inline_text.to_inlines(" ".join(partner.description.split())) if partner.description else (),
                 inline_text.to_inlines(partner.contact) if partner.contact else (),
                 inline_text.to_inlines(inline_text.count_noun(given_count, "interface")),
             )
         )
     table = drop_empty_columns(Table("table:parties", "The partners", columns, tuple(rows), numbered=False))
     drawing = Figure(f"figure:{content.graph.id}", content.graph.id, content.graph.title, content.graph.alt)
-    return Section(
-        "page:parties", "Partners and scope", (table, Paragraph(inline_text.to_inlines(_OWNERSHIP_NOTE)), drawing)
-    )
+    notes = (Paragraph(inline_text.to_inlines(note)) for note in (_SCOPE_NOTE, _PROMISE_NOTE))
+    return Section("page:parties", "Partners and scope", (table, *notes, drawing))
 
 
 def _direction_section(
@@ -151,14 +175,23 @@ def _removed_section(content: AgreementContent) -> Iterator[Section]:
 
 def _signatures_section(content: AgreementContent) -> Section:
     revision = f", at revision {content.revision}" if content.revision else ""
+    date = f" of {content.issue_date}" if content.issue_date else ""
     title = content.lookup.architecture.project.title
-    lead = Paragraph(
-        inline_text.to_inlines(
-            f"The partners agree on the interfaces of {title} as this document states them{revision}."
+    blocks: list[Block] = [
+        Paragraph(
+            inline_text.to_inlines(
+                f"The partners agree on the interfaces of {title} as this document{date} states them{revision}."
+            )
         )
-    )
+    ]
     blank = inline_text.join_lines([inline_text.to_inlines("\u00a0")] * 3)
     rows = tuple((inline_text.to_inlines(title), blank, blank, blank) for title in content.pair_titles)
     columns = (Column("Partner", 1.2), Column("Name", 1.3), Column("Date", 0.8), Column("Signature", 1.5))
-    table = Table("table:signatures", "Signatures", columns, rows, numbered=False)
-    return Section("page:signatures", "Signatures", (lead, table))
+    blocks.append(Table("table:signatures", "Signatures", columns, rows, numbered=False))
+    if content.signatures.tags:
+        blocks += [
+            Paragraph(inline_text.to_inlines("Signed before:")),
+            drop_empty_columns(write_signature_table(content.signatures.tags)),
+        ]
+    # Names never stand on another page than what they sign.
+    return Section("page:signatures", "Signatures", tuple(blocks), page_break=True)

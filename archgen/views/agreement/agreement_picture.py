@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.views.agreement.interface_terms import interface_title, partner_titles
-from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.component_flows import FlowStyle
@@ -57,7 +57,7 @@ def draw_agreement(lookup: Lookup, name: str, pair: tuple[str, str], interfaces:
 
 
 def _list_flows(lookup: Lookup, interface: PartnerInterface) -> Iterator[_DrawnFlow]:
-    giving_components, taking_components = components_at_ends(lookup, interface)
+    giving_components, taking_components = components_at_ends(lookup.architecture, interface)
     tail_ids = [component.id for component in giving_components] or [
         f"node {endpoint.node}" for endpoint in interface.giver_endpoints[:1]
     ]

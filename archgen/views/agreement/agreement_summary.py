@@ -1,31 +1,30 @@
-"""The tables of an agreement over all its interfaces: at a glance, and what is still open."""
+"""The tables of an agreement over all its interfaces: at a glance, what changed, and what is still open."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
-from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
-from archgen.views.shapes import Block, Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
-from archgen.views.tables import architecture_tables
+from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 
 
 def write_summary_section(content: AgreementContent) -> Section:
-    """List all interfaces, including removed ones."""
+    """List all interfaces."""
     rows = [_summary_row(content, record) for record in content.records]
-    rows += [_removed_row(content, record) for record in (content.changes.removed_records if content.changes else ())]
     columns = (
         Column("Interface", 1.6),
-        Column("Change", 1.1),
         Column("From", 0.8),
         Column("What flows", 1.7),
-        Column("Rate", 0.95),
+        Column("Rate", 1.05),
+        Column("Version", 0.8),
         Column("Still open", 1),
     )
-    table = drop_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows)))
+    table = drop_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows), numbered=False))
     active_directions = {record.terms.interface.pair for record in content.records}
     silent_notes = (
         Paragraph(
@@ -43,36 +42,38 @@ def _summary_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
     interface_terms = record.terms
     return (
         inline_text.to_inlines(Text(interface_terms.title, ref=interface_terms.interface.anchor)),
-        change_mark(content.changes, record),
         inline_text.to_inlines(partner_titles(content.lookup, interface_terms.interface.pair[:1])),
         _carried_runs(interface_terms.interface),
         _rate_runs(interface_terms),
-        _open_term_runs(interface_terms.open_terms, len(interface_terms.findings)),
+        _version_runs(content, record),
+        _open_term_runs(
+            interface_terms.open_terms, len(interface_terms.contradictions), len(interface_terms.late_chains)
+        ),
     )
 
 
 def _rate_runs(interface_terms: InterfaceTerms) -> Inlines:
-    """Return how often it flows, or within what it is answered, without the origin of the figure."""
-    for fact_name, value in interface_terms.facts:
-        if fact_name.startswith("Rate"):
-            return value[:1]
-        if fact_name.startswith("Answers within") and not value[0].muted:
-            return inline_text.to_inlines("answered within ", value[0])
+    """Return how often it flows, or within what it is answered, and whether that is promised."""
+    for row in interface_terms.promise_rows:
+        if row.name.startswith(("Rate", "Answers within")) and (row.promised or row.expected):
+            words = "answered within " if row.name.startswith("Answers") else ""
+            figure = (row.promised or row.expected)[0].text.partition(SOURCE_PHRASE)[0].removesuffix(", computed")
+            return inline_text.join_lines(
+                [
+                    inline_text.to_inlines(f"{words}{figure}"),
+                    (Text("promised" if row.promised else "expected", muted=True),),
+                ]
+            )
     return ()
 
 
-def _removed_row(content: AgreementContent, record: InterfaceRecord) -> tuple[Inlines, ...]:
-    interface_terms = record.terms
-    # Its partners may have other ids now: their titles are those of the architecture that had it.
-    lookup = content.earlier_lookup or content.lookup
-    return (
-        inline_text.to_inlines(Text(interface_terms.title, ref=f"removed:{interface_terms.interface.anchor}")),
-        inline_text.to_inlines(write_signed_kind("removed")),
-        inline_text.to_inlines(partner_titles(lookup, interface_terms.interface.pair[:1])),
-        _carried_runs(interface_terms.interface),
-        (),
-        (),
-    )
+def _version_runs(content: AgreementContent, record: InterfaceRecord) -> Inlines:
+    version, signatures = record.terms.version, content.signatures
+    if not signatures.revision:
+        return inline_text.to_inlines(version)
+    signed_version = signatures.versions.get(record.key)
+    word = "not signed" if signed_version is None else "as signed" if signed_version == version else "changed"
+    return inline_text.join_lines([inline_text.to_inlines(version), (Text(word, muted=word == "as signed"),)])
 
 
 def _carried_runs(interface: PartnerInterface) -> Inlines:
@@ -84,11 +85,46 @@ def _carried_runs(interface: PartnerInterface) -> Inlines:
     return inline_text.join_lines(carried_parts) or inline_text.to_inlines(interface.flow)
 
 
-def _open_term_runs(open_terms: Sequence[str], finding_count: int) -> Inlines:
-    """Return what is still to be settled: the unknown terms, and the number of findings."""
+def _open_term_runs(open_terms: Sequence[str], contradiction_count: int, late_chain_count: int) -> Inlines:
+    """Return what is still to be settled: the open terms, and how many contradictions and late chains there are."""
     phrases = [", ".join(open_terms)] if open_terms else []
-    phrases += [inline_text.count_noun(finding_count, "finding")] if finding_count else []
+    phrases += [inline_text.count_noun(contradiction_count, "contradiction")] if contradiction_count else []
+    phrases += [inline_text.count_noun(late_chain_count, "late chain")] if late_chain_count else []
     return inline_text.to_inlines("; ".join(phrases)) if phrases else ()
+
+
+def write_change_log(content: AgreementContent) -> Iterator[Section]:
+    """List the interfaces that came, went or changed since the earlier revision."""
+    changes = content.changes
+    if changes is None or not changes.has_changes:
+        return
+    rows = [
+        (
+            inline_text.to_inlines(Text(record.terms.title, ref=record.terms.interface.anchor)),
+            mark,
+            _version_step(changes.earlier_versions.get(record.key), record.terms.version),
+        )
+        for record in content.records
+        if (mark := change_mark(changes, record))
+    ]
+    rows += [
+        (
+            inline_text.to_inlines(Text(record.terms.title, ref=f"removed:{record.terms.interface.anchor}")),
+            inline_text.to_inlines(write_signed_kind("removed")),
+            inline_text.to_inlines(f"was {record.terms.version}"),
+        )
+        for record in changes.removed_records
+    ]
+    columns = (Column("Interface", 1.4), Column("Change", 2), Column("Version", 1))
+    table = Table("table:log", "What changed", columns, tuple(rows), numbered=False)
+    yield Section("page:log", f"Changes since {changes.earlier_revision}", (table,))
+
+
+def _version_step(old_version: str | None, new_version: str) -> Inlines:
+    if old_version is None:
+        return inline_text.to_inlines(new_version)
+    is_same = old_version == new_version
+    return inline_text.to_inlines(f"{new_version}, as before" if is_same else f"{old_version} → {new_version}")
 
 
 def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> Inlines:
@@ -106,51 +142,18 @@ def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> In
 
 
 def write_open_points_section(content: AgreementContent) -> Section:
-    """List what is not settled, and every finding at either end."""
-    records_with_open_terms = [
-        (record.terms, record.terms.open_terms) for record in content.records if record.terms.open_terms
-    ]
+    """List what the two have not settled yet."""
     rows = tuple(
         (
-            inline_text.to_inlines(Text(interface_terms.title, ref=interface_terms.interface.anchor)),
-            inline_text.to_inlines(", ".join(names)),
+            inline_text.to_inlines(Text(record.terms.title, ref=record.terms.interface.anchor)),
+            inline_text.join_lines(map(inline_text.message_to_inlines, record.terms.open_points)),
         )
-        for interface_terms, names in records_with_open_terms
-    )
-    blocks: list[Block] = []
-    if rows:
-        columns = (Column("Interface"), Column("Not settled yet", 1.4))
-        blocks.append(Table("table:missing", "Terms that are not settled yet", columns, rows))
-    own_findings = list(
-        dict.fromkeys(interface_finding for record in content.records for interface_finding in record.terms.findings)
-    )
-    end_ids = {
-        interface_end.component.id
         for record in content.records
-        for interface_end in record.terms.ends
-        if interface_end.component
-    }
-    end_ids |= {
-        interface_end.node for record in content.records for interface_end in record.terms.ends if interface_end.node
-    }
-    near_findings = [
-        finding for finding in content.lookup.findings if finding.element in end_ids and finding not in own_findings
-    ]
-    finding_tables = (
-        architecture_tables.make_finding_table(own_findings, "table:points"),
-        architecture_tables.make_finding_table(near_findings, "table:near"),
+        if record.terms.open_points
     )
-    for table, caption in zip(
-        finding_tables, ("Findings on the interfaces", "Other findings at their ends"), strict=True
-    ):
-        if table:
-            blocks.append(Table(table.anchor, caption, table.columns, table.rows))
-    if not blocks:
-        blocks.append(
-            Paragraph(
-                inline_text.to_inlines(
-                    "Nothing is open: every term is settled, and archgen finds nothing at either end."
-                )
-            )
-        )
-    return Section("page:open", "Open points", tuple(blocks))
+    columns = (Column("Interface"), Column("Not settled yet", 1.8))
+    table = Table("table:missing", "What is not settled yet", columns, rows, numbered=False)
+    nothing = Paragraph(
+        inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
+    )
+    return Section("page:open", "Open points", (table if rows else nothing,))

@@ -1,4 +1,4 @@
-"""The section of one interface: terms, ends, fields of the message, chains, requirements, open points."""
+"""The section of one interface: what it is, what is promised and expected of it, ends, fields, chains, open points."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.promise_rows import write_promise_table
+from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
@@ -24,6 +26,7 @@ class SectionWriter:
 
     lookup: Lookup
     changes: AgreementChanges | None = None
+    signatures: SignatureRecord = field(default_factory=SignatureRecord)
     anchors_by_message: dict[str, str] = field(default_factory=dict)
 
     def write_section(self, record: InterfaceRecord, anchor: str, mark: Inlines) -> Section:
@@ -31,7 +34,14 @@ class SectionWriter:
         interface_terms = record.terms
         blocks = [
             *self._change_blocks(record, mark),
-            Facts((*interface_terms.facts, *_further_facts(interface_terms))),
+            Facts(
+                (
+                    ("Version", inline_text.to_inlines(self.signatures.describe_version(record))),
+                    *interface_terms.facts,
+                    *_further_facts(interface_terms),
+                )
+            ),
+            *self._promise_tables(interface_terms),
             self._ends_table(interface_terms),
             *(Paragraph(inline_text.to_inlines(sentence), "note") for sentence in interface_terms.shared_notes),
             *self._field_blocks(interface_terms, anchor),
@@ -42,9 +52,15 @@ class SectionWriter:
     def write_removed(self, record: InterfaceRecord, anchor: str) -> Section:
         """Return the section of a removed interface, as it was."""
         removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
-        return Section(
-            anchor, record.terms.title, (removed_notice, Facts(record.terms.facts), self._ends_table(record.terms))
-        )
+        interface_terms = record.terms
+        facts = Facts((("Version", inline_text.to_inlines(interface_terms.version)), *interface_terms.facts))
+        blocks: list[Block] = [
+            removed_notice,
+            facts,
+            *self._promise_tables(interface_terms),
+            self._ends_table(interface_terms),
+        ]
+        return Section(anchor, interface_terms.title, tuple(blocks))
 
     def _change_blocks(self, record: InterfaceRecord, mark: Inlines) -> Iterator[Block]:
         """Yield what happened to the interface since the earlier revision, old beside new."""
@@ -52,16 +68,33 @@ class SectionWriter:
             return
         change_kind = self.changes.change_kind(record.key)
         since_run = Text(f" since {self.changes.earlier_revision}")
-        yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
         rows = tuple(_change_row(change) for change in self.changes.terms_of(record.key))
-        if rows:
-            columns = (Column("Term", 0.9), Column("Change", 0.6), Column("Was", 1.3), Column("Is now", 1.3))
+        if not rows:
+            yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
+        else:
+            columns = (
+                Column("Term", 0.9),
+                Column("Change", 0.6),
+                Column(f"At {self.changes.earlier_revision}", 1.3),
+                Column("Now", 1.3),
+            )
             interface = record.terms.interface
             yield Table(
                 f"table:changes/{interface.key}/{interface.pair[0]}",
                 f"{record.terms.title}: what changed",
                 columns,
                 rows,
+                numbered=False,
+            )
+
+    def _promise_tables(self, interface_terms: InterfaceTerms) -> Iterator[Table]:
+        if interface_terms.promise_rows:
+            giver = interface_terms.interface.pair[0]
+            yield write_promise_table(
+                f"table:promises/{interface_terms.interface.key}/{giver}",
+                f"{interface_terms.title}: what is promised, and what is expected",
+                partner_titles(self.lookup, [giver]),
+                interface_terms.promise_rows,
             )
 
     def _ends_table(self, interface_terms: InterfaceTerms) -> Table:
@@ -79,7 +112,7 @@ class SectionWriter:
             Column("QoS", 1.3),
         )
         name = f"table:ends/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
-        return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows))
+        return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows, numbered=False))
 
     def _end_row(self, end: InterfaceEnd, undecided: Inlines) -> tuple[Inlines, ...]:
         component = inline_text.to_inlines(end.component.title) if end.component else ()
@@ -119,30 +152,29 @@ class SectionWriter:
         self.anchors_by_message[message] = anchor
         if interface_terms.field_rows:
             yield message_fields.field_table(message, interface_terms.field_rows)
-        else:
-            remark = (
-                "has no fields."
-                if interface_terms.field_rows is not None
-                else "is not held: its fields cannot be shown."
-            )
-            lead = "" if interface_terms.field_rows is not None else "The definition of "
-            yield Paragraph(inline_text.to_inlines(lead, Text(message, code=True), f" {remark}"))
+        elif interface_terms.field_rows is not None:
+            # That a definition is missing is one of the open points.
+            yield Paragraph(inline_text.to_inlines(Text(message, code=True), " has no fields."))
 
     def _chain_tables(self, interface_terms: InterfaceTerms) -> Iterator[Block]:
         rows = tuple(
             (
                 inline_text.to_inlines(self.lookup.architecture.chains[chain.id].title),
-                inline_text.to_inlines(value_format.display_duration(chain.bound)),
                 inline_text.to_inlines(value_format.display_duration(chain.deadline)) if chain.deadline else (),
+                inline_text.to_inlines(value_format.display_duration(chain.bound)),
                 inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
             )
             for chain in interface_terms.chains
         )
         if rows:
-            columns = (Column("Chain", 1.8), Column("At the latest", 0.9, "right"), Column("Deadline", 0.8, "right"))
+            columns = (
+                Column("Chain that passes through it", 1.8),
+                Column("Deadline", 0.8, "right"),
+                Column("Expected at the latest", 1, "right"),
+            )
             name = f"table:through/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
             caption = f"{interface_terms.title}: chains that pass through it"
-            yield tidy(Table(name, caption, (*columns, Column("Verdict", 0.7)), rows))
+            yield tidy(Table(name, caption, (*columns, Column("Verdict", 0.7)), rows, numbered=False))
 
 
 def _change_row(change: TermChange) -> tuple[Inlines, ...]:
@@ -164,14 +196,12 @@ def _shorten_value(text: str) -> str:
 
 
 def _further_facts(interface_terms: InterfaceTerms) -> Iterator[tuple[str, Inlines]]:
-    """Yield the requirements behind the interface, and its open points."""
+    """Yield what holds where data is late, the requirements behind the interface, and its open points."""
+    if interface_terms.interface.flow != "physical":
+        duties = interface_terms.missing_data_duties
+        nothing = inline_text.to_inlines(Text("nothing is promised for this case", muted=True))
+        yield "When late or missing", inline_text.join_lines(map(inline_text.message_to_inlines, duties)) or nothing
     if interface_terms.requirements:
         yield "Requirements", inline_text.join_lines(interface_terms.requirements)
-    if interface_terms.findings:
-        yield (
-            "Open points",
-            inline_text.join_lines(
-                inline_text.message_to_inlines(f"{finding.severity}: {finding.message}")
-                for finding in interface_terms.findings
-            ),
-        )
+    if interface_terms.open_points:
+        yield "Open points", inline_text.join_lines(map(inline_text.message_to_inlines, interface_terms.open_points))

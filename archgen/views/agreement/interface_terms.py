@@ -5,24 +5,30 @@ No term names a line of a file: text that moves changes nothing between the part
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.component import Component
-from archgen.model.node import Endpoint
+from archgen.model.interface_ends import foreign_owners
+from archgen.model.node import Endpoint, Qos
+from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
-from archgen.views.agreement import interface_timing, message_fields
-from archgen.views.agreement.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
+from archgen.views.agreement import interface_timing, interface_versions, message_fields
+from archgen.views.agreement.missing_data import list_missing_data_duties
+from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
+from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
 _FLOW_NAMES = {"topic": "Topic", "service": "Service", "action": "Action", "physical": ""}
-_SETTLED_FACTS = ("Type", "Message", "Rate", "Size", "Answers within", "QoS offered")
-"""Facts without which an interface is not settled, by the beginning of their name."""
+_SETTLED_FACTS = ("Type", "Message")
+_SETTLED_ROWS = ("Rate", "Size", "Answers within")
+"""Terms without which an interface is not settled, by the beginning of their name: of these somebody has to know something."""
+_PROMISED_ROWS = ("QoS offered",)
+"""Terms that somebody has to promise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,46 +42,79 @@ class InterfaceEnd:
     node: str | None
     qos: str
     is_taker: bool
+    qos_identity: str = ""
+    """The values of the quality of service, whatever words they are in."""
 
 
 @dataclass(frozen=True, slots=True)
 class InterfaceTerms:
-    """An interface with all that is said of it. `field_rows` is None if the message has no definition."""
+    """An interface with all that is said of it. `field_rows` is None if the message has no definition.
+
+    `facts` say what it is, `promise_rows` what is promised and expected of it; `version` is its hash.
+    """
 
     interface: PartnerInterface
     title: str
+    version: str
     facts: tuple[interface_timing.TermFact, ...]
+    promise_rows: tuple[PromiseRow, ...]
     ends: tuple[InterfaceEnd, ...]
     field_rows: tuple[message_fields.FieldRow, ...] | None
     chains: tuple[ChainResult, ...]
     requirements: tuple[Inlines, ...]
-    findings: tuple[Diagnostic, ...]
+    missing_data_duties: tuple[str, ...]
+    """Sentences on what holds where data is late or missing."""
+    contradictions: tuple[str, ...]
+    """Sentences on what does not fit together between the two."""
+    late_chains: tuple[str, ...]
+    """Sentences on chains through the interface that miss their deadline."""
     shared_notes: tuple[str, ...]
     """Sentences on what both partners, or a partner and a third one, are responsible for together."""
 
     @property
     def open_terms(self) -> tuple[str, ...]:
-        """Return the names of the facts that are still to be settled."""
-        definition_note = ["definition of the message"] if self.interface.message and self.field_rows is None else []
-        unknown_facts = (name for name, value in self.facts if name.startswith(_SETTLED_FACTS) and _is_unknown(value))
-        return (*(name if name.startswith("QoS") else name.lower() for name in unknown_facts), *definition_note)
+        """Return the names of the terms that are still to be settled."""
+        names = (name if name.startswith("QoS") else name.lower() for name in self._list_open_names())
+        return tuple("definition of the message" if name == "fields" else name for name in names)
+
+    @property
+    def open_points(self) -> tuple[str, ...]:
+        """Return a sentence for each term that is still to be settled, and for each contradiction."""
+        return (*map(describe_open_term, self._list_open_names()), *self.contradictions, *self.late_chains)
+
+    def _list_open_names(self) -> Iterator[str]:
+        for name, value in self.facts:
+            if name in _SETTLED_FACTS and all(run.muted for run in value):
+                yield name
+        for row in self.promise_rows:
+            is_open = row.name.startswith(_SETTLED_ROWS) and not (row.promised or row.expected)
+            if is_open or (row.name in _PROMISED_ROWS and not row.promised):
+                yield row.name
+        if self.interface.message and self.field_rows is None:
+            yield "Fields"
 
 
 def gather_terms(
     lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
 ) -> InterfaceTerms:
     """Gather all terms of an interface."""
+    chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
+    giver, taker = (partner_titles(lookup, [partner]) for partner in interface.pair)
     return InterfaceTerms(
         interface,
         interface_title(lookup, interface),
-        tuple(_list_facts(lookup, activity_names, interface)),
+        interface_versions.hash_interface(lookup, interface),
+        tuple(_list_facts(lookup, interface)),
+        tuple(_list_promises(lookup, activity_names, interface)),
         tuple(_list_ends(lookup, interface)),
         message_fields.list_field_rows(lookup.architecture.interfaces, interface.message)
         if interface.message
         else None,
-        tuple(interface_timing.find_chains_through(lookup, activity_names, interface)),
+        chains,
         tuple(_requirement_runs(lookup, interface)),
-        tuple(_related_findings(lookup, activity_names, interface)),
+        tuple(list_missing_data_duties(lookup, interface, giver, taker)),
+        tuple(find_contradictions(lookup, activity_names, interface)),
+        tuple(find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
     )
 
@@ -87,9 +126,7 @@ def interface_title(lookup: Lookup, interface: PartnerInterface) -> str:
     return f"{lookup.architecture.components[interface.output.component].title} · {interface.output.name}"
 
 
-def _list_facts(
-    lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
-) -> Iterator[interface_timing.TermFact]:
+def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interface_timing.TermFact]:
     flow_name = _FLOW_NAMES[interface.flow]
     if interface.flow == "physical":
         yield "Kind", inline_text.to_inlines("physical: neither message nor topic")
@@ -99,14 +136,13 @@ def _list_facts(
             inline_text.join_inlines((Text(name, code=True),) for name in interface.topic_names)
             or inline_text.UNKNOWN_INLINES,
         )
-    yield "Type", inline_text.value_or_unknown(interface.type)
+    # Where no type has a name, the message alone says what flows.
+    if interface.type or not interface.message:
+        yield "Type", inline_text.value_or_unknown(interface.type)
     if interface.output and interface.output.description:
         yield "Meaning", inline_text.to_inlines(interface.output.description)
     if interface.flow != "physical":
         yield "Message", _message_runs(lookup, interface)
-    yield from interface_timing.timing_facts(lookup, activity_names, interface)
-    if interface.flow == "topic" and not is_ros_1(lookup.architecture.distro):
-        yield "QoS offered", _qos_runs(interface.giver_endpoints)
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
     if other_components:
         yield "Also read by", inline_text.join_lines(_other_reader(lookup, component) for component in other_components)
@@ -120,11 +156,31 @@ def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:
     return inline_text.to_inlines(Text(interface.message, code=True), *planned_note)
 
 
-def _qos_runs(endpoints: Iterable[Endpoint]) -> Inlines:
-    qos_texts = dict.fromkeys(describe_qos(endpoint) for endpoint in endpoints)
-    if not any(endpoint.qos.written for endpoint in endpoints):
-        return (Text("not written: ROS's default counts", muted=True),)
-    return inline_text.join_lines(inline_text.to_inlines(qos_text) for qos_text in qos_texts)
+def _list_promises(
+    lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
+) -> Iterator[PromiseRow]:
+    yield from interface_timing.promise_timing(lookup, activity_names, interface)
+    if interface.flow == "topic" and not is_ros_1(lookup.architecture.distro):
+        yield _promise_qos(interface.giver_endpoints)
+
+
+def _promise_qos(endpoints: Sequence[Endpoint]) -> PromiseRow:
+    written = [endpoint.qos for endpoint in endpoints if endpoint.qos.written]
+    if not written:
+        return PromiseRow(
+            "QoS offered", expected=inline_text.to_inlines(f"{inline_text.format_qos(Qos())} (ROS's default)")
+        )
+    lines = dict.fromkeys(map(describe_qos, endpoints))
+    measures = list(map(measure_qos, written))
+    # Of several publishers the one that promises least counts.
+    strength: PromiseStrength = {
+        aspect: min(measure[aspect] for measure in measures)
+        for aspect in measures[0]
+        if all(aspect in measure for measure in measures)
+    }
+    runs = inline_text.join_lines(map(inline_text.to_inlines, lines))
+    identities = sorted({identify_qos(endpoint.qos) for endpoint in endpoints})
+    return PromiseRow("QoS offered", runs, (), strength, "; ".join(identities))
 
 
 def describe_qos(endpoint: Endpoint) -> str:
@@ -145,7 +201,7 @@ def partner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
 
 
 def _list_ends(lookup: Lookup, interface: PartnerInterface) -> Iterator[InterfaceEnd]:
-    giving_components, taking_components = components_at_ends(lookup, interface)
+    giving_components, taking_components = components_at_ends(lookup.architecture, interface)
     verbs = ("serves", "calls") if interface.flow in {"service", "action"} else ("publishes", "reads")
     if interface.flow == "physical":
         verbs = ("gives", "takes")
@@ -184,16 +240,18 @@ def _end_rows(  # noqa: PLR0913 - the columns of a row
     architecture = lookup.architecture
     component_owners = component.owners if component else ()
     with_qos = not is_ros_1(architecture.distro)
-    rows: dict[tuple[str, str], None] = {}
+    rows: dict[tuple[str, str, str], None] = {}
     for endpoint in (endpoint for endpoint in endpoints if architecture.nodes[endpoint.node].written):
         # A dict as an ordered set: several endpoints of a node with one QoS are one row.
-        rows[endpoint.node, describe_qos(endpoint) if endpoint.flow == "topic" and with_qos else ""] = None
-    for node, qos in rows:
+        has_qos = endpoint.flow == "topic" and with_qos
+        qos_texts = (describe_qos(endpoint), identify_qos(endpoint.qos)) if has_qos else ("", "")
+        rows[endpoint.node, *qos_texts] = None
+    for node, qos, qos_identity in rows:
         owners = (
             dict.fromkeys((*component_owners, *foreign_owners(architecture, architecture.nodes[node])))
             or architecture.nodes[node].owners
         )
-        yield InterfaceEnd(role, tuple(owners), component, port, node, qos, is_taker)
+        yield InterfaceEnd(role, tuple(owners), component, port, node, qos, is_taker, qos_identity)
     if not rows:
         yield InterfaceEnd(role, component_owners, component, port, None, "", is_taker)
 
@@ -202,7 +260,7 @@ def _components_of(lookup: Lookup, interface: PartnerInterface) -> Iterable[Comp
     """Return the components at both ends, each once."""
     return {
         component.id: component
-        for components_of_end in components_at_ends(lookup, interface)
+        for components_of_end in components_at_ends(lookup.architecture, interface)
         for component in components_of_end
     }.values()
 
@@ -219,24 +277,6 @@ def _requirement_runs(lookup: Lookup, interface: PartnerInterface) -> Iterator[I
         yield (*requirement_runs, Text(f" ({', '.join(titles)})", muted=True))
 
 
-def _related_findings(
-    lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
-) -> Iterator[Diagnostic]:
-    """Yield the findings about the interface itself: its ports, topics, type and chains, or that name them."""
-    ports = {interface.key, *(input_port.id for input_port in interface.inputs)}
-    exact_names = {*ports, *interface.topic_names, *([interface.type] if interface.type else [])}
-    exact_names |= {result.id for result in interface_timing.find_chains_through(lookup, activity_names, interface)}
-    element_ids = {component.id for component in _components_of(lookup, interface)}
-    element_ids |= {endpoint.node for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints)}
-    port_names = {input_port.rpartition(".")[2] for input_port in ports}
-    quoted_names = [f"`{name}`" for name in sorted(exact_names | port_names)]
-    for finding in lookup.findings:
-        if finding.element in exact_names or (
-            finding.element in element_ids and any(word in finding.message for word in quoted_names)
-        ):
-            yield finding
-
-
 def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[str]:
     architecture = lookup.architecture
     for component in _components_of(lookup, interface):
@@ -248,7 +288,3 @@ def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[s
         component_titles = [architecture.components[name].title for name in architecture.nodes[node_id].implements]
         if (owners := foreign_owners(architecture, architecture.nodes[node_id])) and component_titles:
             yield f"{partner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."
-
-
-def _is_unknown(value: Inlines) -> bool:
-    return all(run.muted for run in value)

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from archgen.compare.interface_figures import find_pace
+from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
+from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system import activity_builder
 from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
-from archgen.views.agreement.partner_interfaces import PartnerInterface
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, promise_limit
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Inlines
 from archgen.views.timing import rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 TermFact = tuple[str, Inlines]
-_TIER_NAMES = {"declared": "declared", "dedicated": "derived, a core of its own assumed"}
+_NO_TIMING = Timing()
 _SIZE_PARTS = {
     "topic": (("Size", ""),),
     "service": (("Size of a request", "_Request"), ("Size of an answer", "_Response")),
@@ -27,72 +32,152 @@ _SIZE_PARTS = {
 }
 
 
-def timing_facts(
+def promise_timing(
     lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
-) -> Iterator[TermFact]:
+) -> Iterator[PromiseRow]:
     """Yield rate, largest gap, size and traffic; for a service or action, how soon it answers."""
     if interface.flow == "physical":
         return
     timed = lookup.timing
-    written_givers = [
-        endpoint for endpoint in interface.giver_endpoints if lookup.architecture.nodes[endpoint.node].written
-    ]
+    givers = list_givers(lookup.architecture, interface)
     if timed is not None:
-        for endpoint in written_givers or interface.giver_endpoints:
-            suffix = f" of {endpoint.node}" if len(written_givers) > 1 else ""
-            yield from _rate_facts(
-                timed,
-                activity_builder.activity_of_endpoint(activity_names, endpoint),
-                endpoint,
-                suffix,
-            )
+        for endpoint in givers:
+            suffix = f" of {endpoint.node}" if len(givers) > 1 else ""
+            yield from _GivenPace(lookup, timed, activity_names, endpoint, suffix).list_rows()
     for name, part in _SIZE_PARTS[interface.flow]:
         size = _message_size(lookup, interface, part)
-        if size.bytes is not None:
-            yield name, inline_text.to_inlines(_size_text(size))
-        elif interface.flow == "topic":
-            yield name, inline_text.message_to_inlines(f"not known: {size.why}", muted=True)
+        if size.bytes is not None or interface.flow == "topic":
+            yield _size_row(name, size)
     if timed is not None and interface.flow == "topic":
-        yield "Traffic", _traffic_text(timed, interface)
+        yield PromiseRow("Traffic", expected=_traffic_runs(timed, interface))
 
 
-def _rate_facts(timed: TimingLookup, activity: str, endpoint: Endpoint, suffix: str) -> Iterator[TermFact]:
-    if endpoint.flow == "topic":
-        pace = timed.analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
-        yield f"Rate{suffix}", _rate_text(timed, activity, pace)
-        if pace.behaviour not in {"once", "on_demand"}:
-            yield f"Largest gap{suffix}", _gap_text(pace)
+def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
+    """Return what is written of the timing behind an endpoint."""
+    return lookup.architecture.nodes[endpoint.node].timing.get(endpoint.component or "", _NO_TIMING)
+
+
+def find_broken_limits(
+    lookup: Lookup, activity_names: activity_builder.ActivityNames, endpoint: Endpoint
+) -> Iterator[str]:
+    """Yield a sentence for each promised limit between two messages that the expected gap exceeds."""
+    output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "", OutputTiming())
+    if lookup.timing is None or endpoint.flow != "topic":
         return
-    response = timed.analysis.responses.get(activity)
-    if response is None or response.worst.value is None:
-        yield f"Answers within{suffix}", inline_text.UNKNOWN_INLINES
-    else:
-        kind = _TIER_NAMES.get(response.tier, "derived")
-        yield (
-            f"Answers within{suffix}",
-            inline_text.to_inlines(value_format.display_duration(response.worst), Text(f" ({kind})", muted=True)),
+    gap = find_pace(lookup.timing.analysis, activity_names, endpoint).gap
+    figure = _spell_duration(gap)
+    if figure == value_format.UNKNOWN_FIGURE:
+        return
+    limits = {
+        "largest gap": output_timing.max_gap if output_timing.conditional else None,
+        "QoS deadline": None if is_ros_1(lookup.architecture.distro) else endpoint.qos.deadline,
+    }
+    for name, limit in limits.items():
+        # A gap without a value is one without a bound.
+        if limit and (gap.value is None or gap.value > limit.value):
+            most = figure if figure.startswith("at least") else f"up to {figure}"
+            expected = "there is no bound" if gap.value is None else f"{most} is expected"
+            yield f"The {name} of {limit} that `{endpoint.node}` promises may not be kept: {expected}."
+
+
+@dataclass(frozen=True, slots=True)
+class _GivenPace:
+    """What one endpoint gives, and how often. `suffix` names its node where several give."""
+
+    lookup: Lookup
+    timed: TimingLookup
+    activity_names: activity_builder.ActivityNames
+    endpoint: Endpoint
+    suffix: str
+
+    @property
+    def activity(self) -> str:
+        return activity_builder.activity_of_endpoint(self.activity_names, self.endpoint)
+
+    @property
+    def timing(self) -> Timing:
+        return find_giver_timing(self.lookup, self.endpoint)
+
+    def list_rows(self) -> Iterator[PromiseRow]:
+        if self.endpoint.flow != "topic":
+            yield self._answer_row()
+            return
+        pace = find_pace(self.timed.analysis, self.activity_names, self.endpoint)
+        output_timing = self.timing.outputs.get(self.endpoint.port or "", OutputTiming())
+        yield self._rate_row(pace, output_timing)
+        if output_timing.conditional:
+            yield PromiseRow(f"Sent{self.suffix}", inline_text.to_inlines("only when there is something to send"))
+        if self.timing.jitter:
+            yield promise_limit(f"Jitter{self.suffix}", self.timing.jitter, "jitter", "up to {}")
+        if pace.behaviour not in {"once", "on_demand"}:
+            yield self._gap_row(pace, output_timing)
+
+    def _rate_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
+        name, words = f"Rate{self.suffix}", _spell_rate(pace)
+        if pace.rate.value is not None and not pace.inferred:
+            # "At each activation" is a promise of its own: an output that becomes conditional promises less.
+            strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
+            return PromiseRow(name, inline_text.to_inlines(words), self._rate_by_inputs(pace), strength)
+        if pace.behaviour in {"once", "on_demand"}:
+            is_written = self.timing.behaviour is not None
+            runs = inline_text.to_inlines(words)
+            return PromiseRow(name, runs) if is_written else PromiseRow(name, expected=runs)
+        return PromiseRow(name, expected=self._expected_rate(pace, words))
+
+    def _expected_rate(self, pace: EventPace, words: str) -> Inlines:
+        if pace.rate.value is None:
+            return ()
+        origins = value_format.describe_origins(self.timed.rate_origins.get(self.activity, ()))
+        source = f"{SOURCE_PHRASE}the rate of {origins.removeprefix('from ')}" if origins else ", computed"
+        return inline_text.to_inlines(f"{words}{source}")
+
+    def _rate_by_inputs(self, pace: EventPace) -> Inlines:
+        """Return what the inputs give, where that is another rate than the written one."""
+        by_inputs = self.timed.analysis.derived.get(self.activity)
+        if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
+            return ()
+        return inline_text.to_inlines(
+            f"{_spell_signs(value_format.display_rate(by_inputs.rate))}{SOURCE_PHRASE}its inputs"
         )
 
+    def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
+        # What is not conditional is sent at each activation: `max_gap` has no effect there.
+        limit = output_timing.max_gap if output_timing.conditional else None
+        words = _spell_duration(pace.gap)
+        is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
+        source = f"{SOURCE_PHRASE}when {self.activity} is activated and how long it takes" if pace.gap.value else ""
+        name = f"Largest gap{self.suffix}"
+        row = promise_limit(name, limit, "gap") if limit else PromiseRow(name)
+        return replace(row, expected=inline_text.to_inlines(f"{words}{source}") if is_known else ())
 
-def _rate_text(timed: TimingLookup, activity: str, pace: EventPace) -> Inlines:
-    rate_words = rate_phrases.format_rate_words(pace)
-    if rate_words == "?":
-        return inline_text.UNKNOWN_INLINES
-    if pace.rate.value is None:
-        return inline_text.to_inlines(rate_words)
-    if not pace.inferred:
-        return inline_text.to_inlines(rate_words, Text(" (written)", muted=True))
-    origins = value_format.describe_origins(timed.rate_origins.get(activity, ()))
-    return inline_text.to_inlines(rate_words, Text(f" (derived{f' {origins}' if origins else ''})", muted=True))
+    def _answer_row(self) -> PromiseRow:
+        name, limit = f"Answers within{self.suffix}", self.timing.response
+        if limit:
+            return promise_limit(name, limit, "response")
+        response = self.timed.analysis.responses.get(self.activity)
+        if response is None or response.worst.value is None:
+            return PromiseRow(name)
+        source = (
+            "its execution time, a core of its own assumed" if response.tier == "dedicated" else "the load of its host"
+        )
+        # "Answers within at least 20 ms" would read as a limit.
+        figure = value_format.display_duration(response.worst)
+        words = f"{figure.removeprefix('>= ')} or more" if figure.startswith(">= ") else figure
+        return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}{source}"))
 
 
-def _gap_text(pace: EventPace) -> Inlines:
-    gap_words = value_format.display_duration(pace.gap)
-    return (
-        inline_text.UNKNOWN_INLINES
-        if pace.gap.value is None and gap_words == value_format.UNKNOWN_FIGURE
-        else inline_text.to_inlines(gap_words, Text(" (derived)", muted=True))
-    )
+def _spell_rate(pace: EventPace) -> str:
+    words = _spell_signs(rate_phrases.format_rate_words(pace))
+    return f"{words}-driven" if words.endswith(", event") else words
+
+
+def _spell_duration(value: TimingValue) -> str:
+    return _spell_signs(value_format.display_duration(value))
+
+
+def _spell_signs(figures: str) -> str:
+    """Return figures with words for their signs: not everybody who signs reads `<=`."""
+    return figures.replace("<= ", "at most ").replace(">= ", "at least ")
 
 
 def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> MessageSize:
@@ -100,19 +185,26 @@ def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> Mes
     return lookup.message_size(message, None if part else interface.type)
 
 
-def _size_text(size: MessageSize) -> str:
-    amount = value_format.display_bytes(TimingValue(Fraction(size.bytes or 0)))
-    return f"{'' if size.exact else 'at most '}{amount} ({'written' if size.written else 'computed'})"
+def _size_row(name: str, size: MessageSize) -> PromiseRow:
+    if size.bytes is None:
+        return PromiseRow(name)
+    amount = value_format.display_bytes(TimingValue(Fraction(size.bytes)))
+    words = amount if size.exact else f"at most {amount}"
+    if size.written:
+        return PromiseRow(name, inline_text.to_inlines(words), strength={"size": -size.bytes})
+    return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}the definition of the message"))
 
 
-def _traffic_text(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
+def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
     loads = ((name, timed.analysis.topics.get(name)) for name in interface.topic_names)
     traffic_phrases = [
-        f"{value_format.display_traffic(load.published)}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
+        f"{_spell_signs(value_format.display_traffic(load.published))}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
         for name, load in loads
         if load and load.published.value is not None
     ]
-    return inline_text.to_inlines(", ".join(traffic_phrases)) if traffic_phrases else inline_text.UNKNOWN_INLINES
+    return (
+        inline_text.to_inlines(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size") if traffic_phrases else ()
+    )
 
 
 def find_chains_through(
@@ -128,7 +220,14 @@ def find_chains_through(
     system = lookup.timing.analysis.system
     for result in lookup.timing.chains:
         steps = zip(result.through, result.through[1:], strict=False)
-        arcs = (arc for step, next_step in steps for arc in _arcs_between(system, step, next_step))
+        named_outputs = {point.id for point in lookup.architecture.chains[result.id].through if point.kind == "output"}
+        arcs = (
+            arc
+            for step, next_step in steps
+            for arc in _arcs_between(system, step, next_step)
+            # A chain that names an output of an element takes no other way from there.
+            if arc.output in named_outputs or named_outputs.isdisjoint(system.activities[arc.source].outputs)
+        )
         if any({arc.source, arc.target} & taking_activities and {arc.output, arc.input} & giver_keys for arc in arcs):
             yield result
 

@@ -64,7 +64,7 @@ def _constant_row(part: str, constant: InterfaceConstant) -> FieldRow:
 
 def _nested_rows(interfaces: Interfaces, part: str, field: InterfaceField) -> Iterator[FieldRow]:
     inner_definition = interfaces.definitions.get(field.type)
-    remark = "definition not held" if "/" in field.type and inner_definition is None else ""
+    remark = "definition not at hand" if "/" in field.type and inner_definition is None else ""
     yield FieldRow(part, field.name, field.type + field.array, remark, field.default, field.comment)
     prefix = f"{field.name}{'[]' if field.array else ''}"
     for inner_field in inner_definition.parts[0] if inner_definition else ():
@@ -99,7 +99,7 @@ def field_table(message: str, field_rows: tuple[FieldRow, ...]) -> Table:
         )
         for row in field_rows
     )
-    return Table(f"table:fields/{message}", f"Fields of {message}", tuple(columns), cells)
+    return Table(f"table:fields/{message}", f"Fields of {message}", tuple(columns), cells, numbered=False)
 
 
 def _type_cell(row: FieldRow) -> Inlines:

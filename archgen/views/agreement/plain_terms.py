@@ -6,31 +6,38 @@ disagree about a rename. Most terms are derived (rates, gaps, chains) and no ele
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from archgen.compare.matched_ids import MatchedIds
 from archgen.timing.analysis import ChainResult
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import value_format
 
 _NODE_FACTS = ("Rate", "Largest gap", "Answers within")
 """Facts that name their node where several nodes give (`Rate of camera_driver`)."""
+CONTRADICTION_KIND = "contradictions"
+_FIGURE = re.compile(r"[0-9]+(?:\.[0-9]+)? [A-Za-z]+")
 
 
 @dataclass(frozen=True, slots=True)
 class PlainTerm:
     """A term for comparing: `kind` sums it up in a word or two, `name` and `text` are shown.
 
-    `identity` is the text with the ids of the later revision: terms with one identity mean the same.
+    `identity` is the text with the ids of the later revision: terms with one identity mean the same. `is_expected` is
+    what nobody promises; `strength` is how much is promised.
     """
 
     kind: str
     name: str
     text: str
     identity: str
+    is_expected: bool = False
+    strength: PromiseStrength = field(default_factory=dict)
 
 
 def list_plain_terms(
@@ -38,19 +45,26 @@ def list_plain_terms(
 ) -> Mapping[str, PlainTerm]:
     """Return the terms by a key that survives new titles and ids. For the later revision no ids are matched."""
     terms = {"": _unchanged_term("title", "Title", interface_terms.title)}
-    terms |= _fact_terms(lookup, interface_terms, matched_ids)
+    terms |= _fact_terms(interface_terms, matched_ids)
+    for promise_row in interface_terms.promise_rows:
+        terms |= _promise_terms(lookup, promise_row, matched_ids)
     terms |= dict(_end_term(lookup, end, matched_ids) for end in interface_terms.ends)
     for row in interface_terms.field_rows or ():
         terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.terms)
     for chain in interface_terms.chains:
         title = lookup.architecture.chains[chain.id].title
-        key = f"chain {matched_ids.common_id('chain', chain.id)}"
-        terms[key] = _unchanged_term("chains", f"Chain {title}", _chain_figures(chain))
+        terms |= _chain_terms(chain, title, matched_ids.common_id("chain", chain.id))
+    for sentence in interface_terms.contradictions:
+        # Another figure in it makes no other contradiction.
+        key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence))}"
+        terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence.replace("`", ""), "")
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
         text = _plain_text(requirement_runs[1:]).strip()
-        terms[key] = _unchanged_term("requirements", f"Requirement {requirement}", text)
+        # Without the titles of the components, which are muted.
+        identity = _plain_text(tuple(run for run in requirement_runs[1:] if not run.muted))
+        terms[key] = PlainTerm("requirements", f"Requirement {requirement}", text, identity)
     return terms
 
 
@@ -59,9 +73,7 @@ def _unchanged_term(kind: str, name: str, text: str) -> PlainTerm:
     return PlainTerm(kind, name, text, text)
 
 
-def _fact_terms(
-    lookup: Lookup, interface_terms: InterfaceTerms, matched_ids: MatchedIds
-) -> Iterator[tuple[str, PlainTerm]]:
+def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
     interface = interface_terms.interface
     for name, value in interface_terms.facts:
         text = _plain_text(value)
@@ -70,12 +82,28 @@ def _fact_terms(
             identity = matched_ids.common_id("type", interface.type)
         elif name == "Message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
-        elif name.startswith(_NODE_FACTS):
-            # "derived from NODE". A topic that is called after a renamed component is not treated so: whoever
-            # subscribes to it has to follow.
-            identity = matched_ids.rename_in_text(text)
-        kind = name if name.startswith("QoS") else name.lower()
-        yield _fact_key(lookup, name, matched_ids), PlainTerm(kind, name, text, identity)
+        elif name == "Meaning":
+            identity = " ".join(text.split())
+        elif name == "Also read by":
+            other_ids = {matched_ids.common_id("component", port.component) for port in interface.other_inputs}
+            identity = ", ".join(sorted(other_ids))
+        # Who else reads it binds neither of the two.
+        yield name, PlainTerm(name.lower(), name, text, identity, is_expected=name == "Also read by")
+
+
+def _promise_terms(lookup: Lookup, row: PromiseRow, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
+    key = _fact_key(lookup, row.name, matched_ids)
+    kind = row.name if row.name.startswith("QoS") else row.name.lower()
+    if row.promised:
+        text = _plain_text(row.promised)
+        identity = row.promise_identity or text
+        yield f"promised {key}", PlainTerm(kind, f"{row.name} (promised)", text, identity, strength=row.strength)
+    if row.expected:
+        # "follows from the rate of NODE". A topic that is called after a renamed component is not treated so: whoever
+        # subscribes to it has to follow.
+        text = _plain_text(row.expected)
+        identity = matched_ids.rename_in_text(text)
+        yield f"expected {key}", PlainTerm(kind, f"{row.name} (expected)", text, identity, is_expected=True)
 
 
 def _fact_key(lookup: Lookup, name: str, matched_ids: MatchedIds) -> str:
@@ -96,16 +124,31 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
     if end.node:
         name = f"{name} (node {end.node})" if name else f"Node {end.node}"
     # What is offered is a term of its own ("QoS offered").
-    qos = end.qos if end.is_taker else ""
-    text = "; ".join(part for part in (end.role, partner_titles(lookup, end.owners), qos) if part)
+    qos, qos_identity = (end.qos, end.qos_identity) if end.is_taker else ("", "")
+    owner_ids = ", ".join(matched_ids.common_id("partner", owner) for owner in end.owners)
+    text, identity = (
+        "; ".join(filter(None, parts))
+        for parts in (
+            (end.role, partner_titles(lookup, end.owners), qos),
+            (end.role, owner_ids, qos_identity),
+        )
+    )
     key = f"end {component_id} {port_id} {end.is_taker} {node_id}"
-    return key, _unchanged_term("who gives and takes", name, text)
+    return key, PlainTerm("who gives and takes", name, text, identity)
 
 
-def _chain_figures(chain: ChainResult) -> str:
-    """Return a chain's bound, deadline and verdict in one line."""
-    deadline = f"; deadline {value_format.display_duration(chain.deadline)}" if chain.deadline else ""
-    return f"{value_format.display_duration(chain.bound)}{deadline}; {chain.verdict}"
+def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tuple[str, PlainTerm]]:
+    """Yield the deadline of a chain, which is promised, and its bound, which is expected."""
+    if chain.deadline and chain.deadline.value is not None:
+        limit = value_format.display_duration(chain.deadline)
+        text = f"{limit}, {chain.verdict}" if chain.verdict in {"missed", "not proven"} else limit
+        strength: PromiseStrength = {
+            "deadline": -chain.deadline.value,
+            "in time": int(chain.verdict not in {"missed", "not proven"}),
+        }
+        yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, limit, strength=strength)
+    text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
+    yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)
 
 
 def _plain_text(value: Inlines) -> str:

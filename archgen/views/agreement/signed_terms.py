@@ -1,25 +1,71 @@
 """Hold an agreement against what was signed: which interfaces and terms are others now.
 
-New titles and ids alone bind nobody to anything else, and are left out: the document still shows them.
+New titles and ids alone bind nobody to anything else, and are left out: the document still shows them. Nor does anybody
+depart from what is only expected; that is listed by itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.views.agreement.term_changes import AgreementChanges, TermChange
+from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, TermChange
+
+
+def write_verdict(changes: AgreementChanges) -> Iterator[str]:
+    """Yield lines: whether all is as it was signed, what is not, and what is only expected otherwise."""
+    departures, expected_changes = list(list_departures(changes)), list(list_expected_changes(changes))
+    yield f"not as signed at {changes.earlier_revision}:" if departures else f"as signed at {changes.earlier_revision}"
+    yield from (f"  {line}" for line in departures)
+    if expected_changes:
+        yield "expected otherwise now, promised by nobody:"
+        yield from (f"  {line}" for line in expected_changes)
+
+
+def has_departures(changes: AgreementChanges) -> bool:
+    """Whether an interface or a binding term is not as it was signed."""
+    return any(list_departures(changes))
 
 
 def list_departures(changes: AgreementChanges) -> Iterator[str]:
-    """Yield a sentence for each interface or term that is not as it was signed."""
-    for name, _ in sorted(changes.added_keys):
-        yield f"`{name}` was not signed"
+    """Yield lines on each interface that is not as it was signed: what is gone or promises less first."""
     for record in changes.removed_records:
         yield f"`{record.key[0]}` was signed, and is gone"
-    for (name, _), change in sorted(changes.changes_by_key.items()):
-        for term in change.terms:
-            if term.kind not in {"renamed", "moved"} and term.term_kind != "title":
-                yield f"`{name}`: {_describe_term(term)}"
+    terms_by_key = {key: _list_binding_terms(changes, key) for key in changes.changes_by_key}
+    changed_keys = sorted(key for key, terms in terms_by_key.items() if terms)
+    for key in sorted(changed_keys, key=lambda key: not any(term.is_weaker for term in terms_by_key[key])):
+        yield f"`{key[0]}` ({_describe_versions(changes, key)})"
+        for term in sorted(terms_by_key[key], key=lambda term: not term.is_weaker):
+            yield f"  {'weaker: ' if term.is_weaker else ''}{_describe_term(term)}"
+    for key in sorted(changes.added_keys):
+        yield f"`{key[0]}` was not signed"
+
+
+def list_expected_changes(changes: AgreementChanges) -> Iterator[str]:
+    """Yield a line for each figure that is expected otherwise now, and that nobody promises."""
+    for key in sorted(changes.changes_by_key):
+        for term in changes.changes_by_key[key].terms:
+            if term.is_expected:
+                yield f"`{key[0]}`: {_describe_term(term)}"
+
+
+def _list_binding_terms(changes: AgreementChanges, key: InterfaceKey) -> list[TermChange]:
+    return [
+        term
+        for term in changes.terms_of(key)
+        if term.kind not in {"renamed", "moved"}
+        and term.term_kind != "title"
+        and not term.is_expected
+        # One that is gone is nobody's loss.
+        and not (term.term_kind == CONTRADICTION_KIND and term.kind == "removed")
+    ]
+
+
+def _describe_versions(changes: AgreementChanges, key: InterfaceKey) -> str:
+    signed_version, version = changes.earlier_versions[key], changes.later_versions[key]
+    if signed_version == version:
+        return f"version {version}, as signed"
+    return f"version {version}, {signed_version} was signed"
 
 
 def _describe_term(term: TermChange) -> str:

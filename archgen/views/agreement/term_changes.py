@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
+from archgen.model.partner_interfaces import PartnerPair
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.agreement.partner_interfaces import PartnerPair
 from archgen.views.agreement.plain_terms import PlainTerm
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
 from archgen.views.shapes import Text
 
@@ -39,13 +40,18 @@ class InterfaceRecord:
 
 @dataclass(frozen=True, slots=True)
 class TermChange:
-    """A term that was added (`before` is None), removed (`after` is None), changed, or only renamed."""
+    """A term that was added (`before` is None), removed (`after` is None), changed, or only renamed.
+
+    `is_expected`: nobody promises it; `is_weaker`: less is promised than before.
+    """
 
     kind: ChangeKind
     term_kind: str
     name: str
     before: str | None
     after: str | None
+    is_expected: bool = False
+    is_weaker: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +73,9 @@ class AgreementChanges:
     added_keys: frozenset[InterfaceKey] = frozenset()
     removed_records: tuple[InterfaceRecord, ...] = ()
     changes_by_key: Mapping[InterfaceKey, InterfaceChange] = field(default_factory=dict)
+    earlier_versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
+    """The version that an interface of the earlier revision had there, also of those that are gone."""
+    later_versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
 
     def terms_of(self, key: InterfaceKey) -> tuple[TermChange, ...]:
         """Return the changed terms of an interface that is in both revisions."""
@@ -112,6 +121,8 @@ def compare_revisions(
         frozenset(key for key in new_by_key if key not in old_by_key),
         tuple(record for key, record in old_by_key.items() if key not in new_by_key),
         changes_by_key,
+        {key: record.terms.version for key, record in old_by_key.items()},
+        {key: record.terms.version for key, record in new_by_key.items()},
     )
 
 
@@ -156,12 +167,35 @@ def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, P
     for key, new_term in new_terms.items():
         old_term = old_terms.get(key)
         if old_term is None:
-            term_changes.append(TermChange("added", new_term.kind, new_term.name, None, new_term.text))
-        elif old_term.identity != new_term.identity:
-            term_changes.append(TermChange("changed", new_term.kind, new_term.name, old_term.text, new_term.text))
+            term_changes.append(_describe_change("added", new_term, None, new_term))
+        elif old_term.identity != new_term.identity or is_weaker(old_term.strength, new_term.strength):
+            term_changes.append(_describe_change("changed", new_term, old_term, new_term))
         elif old_term.text != new_term.text and new_term.name in {"Type", "Message"}:
-            term_changes.append(TermChange("renamed", new_term.kind, new_term.name, old_term.text, new_term.text))
-    for key, old_term in old_terms.items():
-        if key not in new_terms:
-            term_changes.append(TermChange("removed", old_term.kind, old_term.name, old_term.text, None))
-    return term_changes
+            term_changes.append(_describe_change("renamed", new_term, old_term, new_term))
+    gone_terms = (old_term for key, old_term in old_terms.items() if key not in new_terms)
+    return [*term_changes, *(_describe_change("removed", old_term, old_term, None) for old_term in gone_terms)]
+
+
+def _describe_change(
+    kind: ChangeKind, shown_term: PlainTerm, old_term: PlainTerm | None, new_term: PlainTerm | None
+) -> TermChange:
+    old_text, new_text = (term.text if term else None for term in (old_term, new_term))
+    if old_text and new_text:
+        old_text, new_text = _drop_common_source(old_text, new_text)
+    return TermChange(
+        kind,
+        shown_term.kind,
+        shown_term.name,
+        old_text,
+        new_text,
+        shown_term.is_expected,
+        old_term is not None and is_weaker(old_term.strength, new_term.strength if new_term else {}),
+    )
+
+
+def _drop_common_source(old_text: str, new_text: str) -> tuple[str, str]:
+    """Return two texts without what both figures follow from, where that is the same."""
+    (old_figure, _, old_source), (new_figure, _, new_source) = (
+        text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
+    )
+    return (old_figure, new_figure) if old_source == new_source else (old_text, new_text)

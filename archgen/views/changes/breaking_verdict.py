@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from archgen.compare import Change, Comparison
+from archgen.compare import Change, Comparison, PartnerBreak
 from archgen.compare.agreements import agreement_key, find_partner_id
-from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.model.review_settings import AcceptedChange, agreement_file
+from archgen.model.review_settings import (
+    BREAK_CATEGORIES,
+    AcceptedChange,
+    BreakCategory,
+    BreakPolicy,
+    agreement_file,
+)
+from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
@@ -24,16 +31,12 @@ _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 def describe_verdict(comparison: Comparison) -> Iterator[str]:
     """Yield how many changes break whom and what the policy says, then the accepted entries that are idle."""
     obstacle = describe_obstacle(comparison)
-    policy = _describe_policy(comparison)
-    if obstacle and comparison.breaking_severity is not Severity.OFF:
-        certain_note = (
-            f"; certain: {policy.removeprefix(f'{comparison.breaking_severity}: ')}"
-            if any(change.breaks for change in comparison.changes)
-            else ""
-        )
-        yield f"{comparison.breaking_severity}: {obstacle}{certain_note}"
+    verdict = _judge_changes(comparison)
+    if obstacle and comparison.policy.gravest is not Severity.OFF:
+        certain_note = f"; certain: {verdict.sentence}" if any(change.breaks for change in comparison.changes) else ""
+        yield f"{comparison.policy.gravest}: {obstacle}{certain_note}"
     else:
-        yield policy
+        yield f"{verdict.severity}: {verdict.sentence}" if verdict.severity else verdict.sentence
     for entry in comparison.idle_acceptances:
         yield _describe_idle(comparison, entry)
 
@@ -46,64 +49,158 @@ def describe_obstacle(comparison: Comparison) -> str:
     return f"cannot be judged: {join_words(notes)}" if notes else ""
 
 
-def describe_refusal(changes: Sequence[Change], matched_ids: MatchedIds, *, is_refused: bool) -> str:
-    """Describe what to do about the first change that the policy refuses; empty if it refuses none."""
-    refused_change = next((item for item in changes if item.unheard_partners), None)
-    if not is_refused or refused_change is None:
-        return ""
-    partners = [find_partner_id(partner, matched_ids) for partner in refused_change.unheard_partners]
-    files = join_words([f"`{agreement_file(partner)}`" for partner in partners])
-    say = "says" if len(partners) == 1 else "each say"
-    return f"mend it, or {join_words(partners)} {say} why it is right, in {files}: {_write_entry(refused_change, 'THE REASON')}"
+def describe_refusal(comparison: Comparison) -> str:
+    """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
+    or nobody can judge that.
+    """
+    partners = sorted(_find_refused_changes(comparison))
+    return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
+
+
+def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
+    """Return what partners write to accept all that is refused: YAML, with the files that it belongs into in its first
+    line.
+    """
+    files_by_entries: dict[str, list[str]] = {}
+    for partner, changes in sorted(_find_refused_changes(comparison).items()):
+        file = agreement_file(find_partner_id(partner, comparison.matched_ids))
+        files_by_entries.setdefault(_write_entries(changes), []).append(file)
+    return tuple(
+        f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
+        for entries, files in files_by_entries.items()
+    )
+
+
+def _find_refused_changes(comparison: Comparison) -> Mapping[str, Sequence[Change]]:
+    """Return the changes that the policy refuses, by the partner who did not agree. What cannot be judged is nothing that
+    anybody could agree on.
+    """
+    changes: dict[str, list[Change]] = {}
+    for change in comparison.changes if comparison.is_judged else ():
+        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        for partner in dict.fromkeys(each.partner for each in refused_breaks):
+            changes.setdefault(partner, []).append(change)
+    return changes
+
+
+def describe_remedy(change: Change, comparison: Comparison) -> str:
+    """Describe what to do about a change that breaks partners who did not agree, in one line."""
+    if not comparison.is_judged:
+        return "mend what cannot be read first: only what is judged can be accepted"
+    partners = change.unheard_partners
+    partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
+    files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_entry(change, 'THE REASON')}"
+
+
+def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
+    names = join_words(name_each(partners, name_partners(comparison)))
+    return f"{names} {'says' if len(partners) == 1 else 'each say'} why it is right"
+
+
+def join_categories(categories: Iterable[BreakCategory]) -> str:
+    """Return categories once each, in the order of the policy: `wire, promise`."""
+    present_categories = set(categories)
+    return ", ".join(category for category in BREAK_CATEGORIES if category in present_categories)
+
+
+def write_policy(comparison: Comparison) -> str:
+    """Return the policy that refuses changes, as files write it: `review.breaking: error`, or the categories it names."""
+    policy = comparison.policy
+    if policy == BreakPolicy.from_severity(Severity.ERROR):
+        return "`review.breaking: error`"
+    refusing = [category for category in BREAK_CATEGORIES if policy.severity_of(category) is Severity.ERROR]
+    return f"`review.breaking: {{{', '.join(f'{category}: error' for category in refusing)}}}`"
+
+
+def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
+    return comparison.policy.severity_of(partner_break.category) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
     """Yield which partners agreed on a breaking change and why, then the entries about it that excuse nothing."""
     agreements = {each.partner: each.agreement for each in change.breaks if each.agreement is not None}
+    partner_names = name_partners(comparison)
     for partner, reason in sorted(agreements.items()):
-        yield f"accepted by {partner}: {reason}"
+        yield f"accepted by {join_words(name_each([partner], partner_names))}: {reason}"
     for entry in change.claims:
         yield _describe_claim(entry, change, comparison)
+    # Where only breaking changes are shown, the verdict lists all idle entries.
+    for entry in () if comparison.only_breaking else comparison.idle_acceptances:
+        if entry.element == change.element_id and entry not in comparison.before.architecture.review.accepted:
+            yield f"what {_describe_place(entry)} accepts is `{entry.key}`, and breaks nobody here; what breaks is `{agreement_key(change)}`"
 
 
 def _describe_claim(entry: AcceptedChange, change: Change, comparison: Comparison) -> str:
     """Describe an entry that excuses nothing: why not, and what to write where."""
     partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
-    place = f"`{entry.at.file}`" if entry.at.file else "the project"
+    place = _describe_place(entry)
     if entry.partner not in partners:
-        return f"said in {place}, not by {join_words(partners)}: {entry.reason}"
+        names = join_words(name_each(change.broken_partners, name_partners(comparison)))
+        return f"said in {place}, not by {names}: {entry.reason}"
     if entry.key is None:
         needed_entry = _write_entry(change, entry.reason)
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
     return f"said in {place} before this change, of another one: {entry.reason}"
 
 
+def _describe_place(entry: AcceptedChange) -> str:
+    return f"`{entry.at.file}`" if entry.at.file else "the project"
+
+
 def _write_entry(change: Change, reason: str) -> str:
     """Return the entry that accepts a change, as it has to stand in a file."""
-    body = f"{{key: {_quote_text(agreement_key(change))}, reason: {_quote_text(reason)}}}"
-    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {body}}}}}`"
+    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(agreement_key(change), reason)}}}}}`"
+
+
+def _write_entries(changes: Iterable[Change]) -> str:
+    """Return the section that accepts changes, a line for each element."""
+    keys_by_element: dict[str, dict[str, None]] = {}
+    for change in changes:
+        keys_by_element.setdefault(change.element_id, {})[agreement_key(change)] = None
+    lines = ["review:", "  accepted:"]
+    for element_id, keys in keys_by_element.items():
+        bodies = ", ".join(_write_body(key, "THE REASON") for key in keys)
+        lines.append(f"    {_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}")
+    return "\n".join(lines)
+
+
+def _write_body(key: str, reason: str) -> str:
+    return f"{{key: {_quote_text(key)}, reason: {_quote_text(reason)}}}"
 
 
 def _quote_text(text: str) -> str:
-    """Return a text as it may stand in a mapping in one line: JSON's strings are YAML's."""
-    return text if _PLAIN_TEXT.fullmatch(text) else json.dumps(text, ensure_ascii=False)
+    """Return a text as it may stand in a mapping in one line: JSON's strings are YAML's. Signs that nobody sees are
+    escaped.
+    """
+    return text if _PLAIN_TEXT.fullmatch(text) else json.dumps(text, ensure_ascii=not text.isprintable())
 
 
-def _describe_policy(comparison: Comparison) -> str:
-    if comparison.breaking_severity is Severity.OFF:
-        return "`review.breaking` is off: this project does not ask what breaks another partner"
+class _Verdict(NamedTuple):
+    """How many changes break whom; the severity is None where there is nothing to answer."""
+
+    severity: Severity | None
+    sentence: str
+
+
+def _judge_changes(comparison: Comparison) -> _Verdict:
+    if comparison.policy.gravest is Severity.OFF:
+        return _Verdict(None, "`review.breaking` is off: this project does not ask what breaks another partner")
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
-        return "no change breaks another partner"
+        return _Verdict(None, "no change breaks another partner")
     partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
-    count_phrase = f"{count_noun(len(breaking_changes), 'breaking change')} for {', '.join(partners)}"
+    categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
+    names = ", ".join(name_each(partners, name_partners(comparison)))
+    sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {names} ({categories})"
     accepted_count = sum(change.acceptance_reason is not None for change in breaking_changes)
     if accepted_count == len(breaking_changes):
-        return f"{count_phrase}, accepted"
-    accepted_note = f", {accepted_count} of them accepted" if accepted_count else ""
-    if comparison.is_refused:
-        return f"error: {count_phrase}{accepted_note}; `review.breaking: error` refuses what is not accepted"
-    return f"{comparison.breaking_severity}: {count_phrase}{accepted_note}"
+        return _Verdict(None, f"{sentence}, accepted")
+    sentence += f", {accepted_count} of them accepted" if accepted_count else ""
+    severity = max(map(comparison.break_severity, breaking_changes))
+    if severity is Severity.ERROR:
+        sentence += f"; {write_policy(comparison)} refuses what is not accepted"
+    return _Verdict(severity, sentence)
 
 
 def _describe_idle(comparison: Comparison, entry: AcceptedChange) -> str:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from archgen.compare import ChainChange
+from archgen.compare.key_phrases import name_key
+from archgen.diagnostics.common_wording import join_words
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.figures.figure_wording import format_duration, name_unknown_reason
 
+_MAX_CAUSES = 3
 MINUS_SIGN = "\u2212"
 
 
@@ -23,10 +25,12 @@ class ChainRow:
     """Signed: `+40 ms`, or with a true minus."""
     deadline: str
     verdict: str
+    reason: str
+    """What made the bound another: elements, with what changed of them; names in backticks."""
 
 
-def make_chain_row(chain_change: ChainChange) -> ChainRow:
-    """Return the row of a chain."""
+def make_chain_row(chain_change: ChainChange, *, is_only_edit: bool = False) -> ChainRow:
+    """Return the row of a chain. Where there is only one edit, nobody asks for the reason."""
     return ChainRow(
         chain_change.id,
         _format_bound(chain_change.before),
@@ -34,17 +38,27 @@ def make_chain_row(chain_change: ChainChange) -> ChainRow:
         _format_growth(chain_change),
         _format_deadline(chain_change),
         _format_verdict(chain_change),
+        "" if is_only_edit else _format_causes(chain_change),
     )
+
+
+def _format_causes(chain_change: ChainChange) -> str:
+    """Name the elements behind another bound, each with what changed of it; the sentences stand with the changes."""
+    keys_by_element: dict[str, list[str]] = {}
+    for change in chain_change.causes:
+        words = name_key(change.element_kind, change.key) if change.key else change.kind
+        keys_by_element.setdefault(change.element_id, []).append(words)
+    phrases = [f"`{name}` ({join_words(list(dict.fromkeys(words)))})" for name, words in keys_by_element.items()]
+    surplus = len(phrases) - _MAX_CAUSES
+    return join_words([*phrases[:_MAX_CAUSES], *([f"{surplus} more"] if surplus > 0 else [])])
 
 
 def _format_bound(result: ChainResult | None) -> str:
     """Format how long a chain takes at most."""
     if result is None:
         return "not there"
-    if is_boundless(result.bound):
-        return "no bound"
     if result.bound.value is None:
-        return "unknown"
+        return name_unknown_reason(result.bound)
     return ("" if result.bound.complete else "at least ") + format_duration(result.bound.value)
 
 

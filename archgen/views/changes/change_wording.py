@@ -4,38 +4,55 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare import Change, Comparison
-from archgen.compare.comparison import ChangeKind
+from archgen.compare.edits import Edit, EditKind
 from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
+from archgen.views.changes.owned_edits import find_group_owner, name_owner
+from archgen.views.changes.partner_names import name_each
 from archgen.views.shapes import Inlines, Text
 
-CHANGE_SIGNS = {"added": "+", "removed": "\u2212", "changed": "~", "renamed": "→", "moved": "→"}
+CHANGE_SIGNS = {
+    **dict.fromkeys(("renamed", "moved", "split", "merged"), "→"),
+    **dict.fromkeys(("added", "copied"), "+"),
+    "removed": "\u2212",
+    "changed": "~",
+}
 """A sign for each kind of change, so that nothing depends on colour."""
-_CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {"added": "added", "removed": "removed"}
+_CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {
+    "added": "added",
+    "copied": "added",
+    "removed": "removed",
+}
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeGroup:
-    """The changes below one heading. `group_id` is empty for changes outside of all groups."""
+    """The changes below one heading. `group_id` is empty for changes outside of all groups, `owner` where nobody owns
+    the group, or all belongs to one partner.
+    """
 
     group_id: str
     title: str
-    changes: tuple[Change, ...]
+    changes: tuple[Edit, ...]
+    owner: str = ""
 
     @property
     def heading(self) -> str:
         """Return the heading as one line of text."""
-        return f"{self.group_id}: {self.title}" if self.group_id and self.title else self.title or self.group_id
+        name = f"{self.group_id}: {self.title}" if self.group_id and self.title else self.title or self.group_id
+        return f"{name} ({self.owner})" if self.owner else name
 
 
-def group_changes(changes: Iterable[Change], comparison: Comparison) -> Iterator[ChangeGroup]:
+def group_changes(
+    changes: Iterable[Edit], comparison: Comparison, partner_names: Mapping[str, str]
+) -> Iterator[ChangeGroup]:
     """Group changes by the group of their element, then those outside of all groups by kind."""
     groups = {**comparison.before.architecture.groups, **comparison.after.architecture.groups}
-    changes_by_heading: dict[tuple[bool, str], list[Change]] = {}
+    changes_by_heading: dict[tuple[bool, str], list[Edit]] = {}
     for change in changes:
         # Kinds without a heading are those inside of groups: their ids begin with the group's.
         heading_name = ELEMENT_KINDS[change.element_kind].heading
@@ -43,14 +60,21 @@ def group_changes(changes: Iterable[Change], comparison: Comparison) -> Iterator
             (heading_name is not None, heading_name or change.element_id.partition(".")[0]), []
         ).append(change)
     for is_ungrouped, heading_name in sorted(key for key in changes_by_heading if not key[0]):
+        group_owner = find_group_owner(heading_name, comparison)
         yield ChangeGroup(
             heading_name,
             groups[heading_name].title if heading_name in groups else "",
-            tuple(changes_by_heading[is_ungrouped, heading_name]),
+            tuple(
+                name_owner(edit, comparison, partner_names, group_owner)
+                for edit in changes_by_heading[is_ungrouped, heading_name]
+            ),
+            # With one partner nobody asks.
+            name_each([group_owner], partner_names)[0] if group_owner and len(partner_names) > 1 else "",
         )
     for heading_name in dict.fromkeys(kind.heading for kind in ELEMENT_KINDS.values() if kind.heading):
         if (True, heading_name) in changes_by_heading:
-            yield ChangeGroup("", heading_name, tuple(changes_by_heading[True, heading_name]))
+            edits = changes_by_heading[True, heading_name]
+            yield ChangeGroup("", heading_name, tuple(name_owner(edit, comparison, partner_names) for edit in edits))
 
 
 def is_textual(change: Change) -> bool:
@@ -58,7 +82,7 @@ def is_textual(change: Change) -> bool:
     return find_effect(change.element_kind, change.key) is Effect.TEXT
 
 
-def count_by_kind(changes: Iterable[Change]) -> str:
+def count_by_kind(changes: Iterable[Edit]) -> str:
     """Count changes by kind: `1 added, 2 removed`."""
     kinds = Counter(str(change.kind) for change in changes)
     return ", ".join(f"{kinds[kind]} {kind}" for kind in CHANGE_SIGNS if kinds[kind])
@@ -71,6 +95,6 @@ def text_runs(text: str) -> Inlines:
     return tuple(Text(piece, code=index % 2 == 1) for index, piece in enumerate(pieces) if piece)
 
 
-def choose_mark(kind: ChangeKind) -> Literal["added", "removed", "changed"]:
+def choose_mark(kind: EditKind) -> Literal["added", "removed", "changed"]:
     """Return the mark by which emitters colour a kind of change."""
     return _CHANGE_MARKS.get(kind, "changed")

@@ -7,21 +7,35 @@ escaping, folding, limits, colours. JSON is written from the comparison itself, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
+from archgen.compare.edits import Edit, list_edits
+from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.views.changes import breaking_verdict
+from archgen.views.changes.boundary_lines import write_boundary_lines
+from archgen.views.changes.breaking_items import (
+    BreakingChange,
+    describe_breaking_edit,
+    is_shown_as_break,
+    note_source,
+)
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
+from archgen.views.changes.figure_lines import FigureLine, write_load_lines
+from archgen.views.changes.owned_edits import name_owner
+from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.repeated_findings import find_repeated_findings
 from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
 
 BREAKING_HEADING = "Breaking changes"
+BOUNDARY_HEADING = "Between partners"
+LOAD_HEADING = "Load of hosts and links"
 CHAINS_HEADING = "Latency of chains"
-REFUSAL_LEAD = "`review.breaking: error` refuses this: "
 UNSOUND_LEAD = "is not sound"
 UNSOUND_SENTENCE = "What cannot be read there is left out of the comparison:"
 _FINDING_HEADINGS = {
@@ -44,15 +58,6 @@ class NamedVersion:
     def error_count(self) -> str:
         """Return how many errors there are: `2 errors`."""
         return count_noun(len(self.errors), "error")
-
-
-@dataclass(frozen=True, slots=True)
-class BreakingChange:
-    """A change that breaks partners: for each reason whom; then what entries of `review.accepted` say about it."""
-
-    change: Change
-    partners_by_reason: Mapping[str, tuple[str, ...]]
-    agreements: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,12 +93,16 @@ class ComparisonDocument:
     """Whether nothing differs besides errors of reading."""
     only_breaking: bool
     broken_partners: tuple[str, ...]
+    """Partners here and below by what people call them."""
     concerned_partners: tuple[str, ...]
-    """The owners of what changed, those who are broken included."""
-    partner_titles: Mapping[str, str]
+    """All whom it concerns, those who are broken included."""
     breaking_changes: tuple[BreakingChange, ...]
+    refusal_lead: str
+    """Which policy refuses the changes, as the beginning of a sentence that `refusal_help` ends."""
     refusal_help: str
     """What to do if the project's policy refuses the changes, empty if it does not."""
+    missing_entries: tuple[str, ...]
+    """What to write for that, as YAML, with the files that it belongs into in the first line of each."""
     verdict: tuple[str, ...]
     """Where only breaking changes are shown: how many and what the policy says, then which accepted entries are idle."""
     changes_heading: str
@@ -102,7 +111,9 @@ class ComparisonDocument:
     """Changes that break nobody."""
     weighty_groups: tuple[ChangeGroup, ...]
     """The same without `textual_changes`, for formats that fold these."""
-    textual_changes: tuple[Change, ...]
+    textual_changes: tuple[Edit, ...]
+    boundary_lines: tuple[FigureLine, ...]
+    load_lines: tuple[FigureLine, ...]
     chain_rows: tuple[ChainRow, ...]
     finding_groups: tuple[FindingGroup, ...]
     graphs: tuple[Graph, ...] = field(default=())
@@ -138,42 +149,50 @@ def describe_comparison(
     graphs: tuple[Graph, ...] = (),
 ) -> ComparisonDocument:
     """Describe a comparison. The names are those of its versions, `graphs` its pictures if the format shows any."""
-    other_changes = [change for change in comparison.changes if not change.breaks]
+    edits = list_edits(comparison)
+    breaking_edits = [edit for edit in edits if is_shown_as_break(edit, comparison)]
+    partner_names = name_partners(comparison)
+    other_edits = [note_source(edit, partner_names) for edit in edits if not is_shown_as_break(edit, comparison)]
+    repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
-    finding_groups = tuple(_group_findings(comparison, reading_errors))
+    finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
-    partners = {**comparison.before.architecture.partners, **comparison.after.architecture.partners}
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
         after=NamedVersion(new_name, reading_errors.after),
-        headline=_write_headline(comparison, verdict, finding_groups, caveat),
-        counts=_count_differences(comparison, finding_groups),
-        kind_counts=count_by_kind(comparison.changes),
+        headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
+        counts=_count_differences(edits, finding_groups),
+        kind_counts=count_by_kind(edits),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
         obstacle=breaking_verdict.describe_obstacle(comparison),
         is_empty=not (comparison.changes or comparison.chains or finding_groups),
         only_breaking=comparison.only_breaking,
-        broken_partners=_sorted_partners(comparison.changes),
-        concerned_partners=comparison.concerned_owners,
-        partner_titles={partner_id: partner.title for partner_id, partner in partners.items()},
+        broken_partners=name_each(_sorted_partners(breaking_edits), partner_names),
+        concerned_partners=name_each(
+            sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)}), partner_names
+        ),
         breaking_changes=tuple(
-            BreakingChange(
-                change, _partners_by_reason(change), tuple(breaking_verdict.describe_agreements(change, comparison))
-            )
-            for change in comparison.changes
-            if change.breaks
+            describe_breaking_edit(edit, comparison, partner_names, repeated_findings) for edit in breaking_edits
         ),
-        refusal_help=breaking_verdict.describe_refusal(
-            comparison.changes, comparison.matched_ids, is_refused=comparison.is_refused
-        ),
+        refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
+        refusal_help=breaking_verdict.describe_refusal(comparison),
+        missing_entries=breaking_verdict.write_missing_entries(comparison),
         verdict=verdict,
-        changes_heading="Other changes" if len(other_changes) < len(comparison.changes) else "Changes",
-        change_groups=tuple(group_changes(other_changes, comparison)),
-        weighty_groups=tuple(group_changes([change for change in other_changes if not is_textual(change)], comparison)),
-        textual_changes=tuple(filter(is_textual, other_changes)),
-        chain_rows=tuple(map(make_chain_row, comparison.chains)),
+        changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
+        change_groups=tuple(group_changes(other_edits, comparison, partner_names)),
+        weighty_groups=tuple(
+            group_changes(
+                [edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison, partner_names
+            )
+        ),
+        textual_changes=tuple(
+            name_owner(edit, comparison, partner_names) for edit in other_edits if _is_textual_edit(edit, comparison)
+        ),
+        boundary_lines=write_boundary_lines(comparison, partner_names),
+        load_lines=write_load_lines(comparison, partner_names),
+        chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
     )
@@ -189,9 +208,12 @@ def severity_of(finding: Diagnostic) -> Severity:
     return finding.severity or Severity.ERROR
 
 
-def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> Iterator[FindingGroup]:
-    # What could not be read in the later version is told before all else, and not once more as a new finding.
-    reported_errors = frozenset(reading_errors.after)
+def _group_findings(
+    comparison: Comparison, reading_errors: ReadingErrors, repeated_findings: Collection[Diagnostic]
+) -> Iterator[FindingGroup]:
+    # What could not be read in the later version is told before all else, and what says the same as a break with it:
+    # not once more as a new finding.
+    reported_errors = frozenset((*reading_errors.after, *repeated_findings))
     findings_by_kind = {
         "new": [finding for finding in comparison.new_findings if finding not in reported_errors],
         "silenced": comparison.silenced_findings,
@@ -202,15 +224,35 @@ def _group_findings(comparison: Comparison, reading_errors: ReadingErrors) -> It
             yield FindingGroup(kind, heading, caption, sort_by_severity(findings_by_kind[kind]))
 
 
+def _is_textual_edit(edit: Edit, comparison: Comparison) -> bool:
+    """Whether an edit only concerns texts and pictures. What an output means to another partner is no mere text."""
+    return all(is_textual(change) and not _changes_meaning(change, comparison) for change in edit.changes)
+
+
+def _changes_meaning(change: Change, comparison: Comparison) -> bool:
+    versions = comparison.versions
+    match change.element_kind, change.key:
+        case "output", "description":
+            return is_read_by_others(change.element_id, versions)
+        case "type", "comment":
+            outputs = versions.find_elements_with("output", "type", change.element_id)
+            return any(is_read_by_others(output, versions) for output in outputs)
+    return False
+
+
 def _write_headline(
-    comparison: Comparison, verdict: Sequence[str], finding_groups: Sequence[FindingGroup], caveat: str
+    comparison: Comparison,
+    edits: Sequence[Edit],
+    verdict: Sequence[str],
+    finding_groups: Sequence[FindingGroup],
+    caveat: str,
 ) -> str:
     obstacle = breaking_verdict.describe_obstacle(comparison)
     if obstacle:
-        count = f"; certain: {count_noun(len(comparison.changes), 'change')} of the architecture"
-        return f"{obstacle[:1].upper()}{obstacle[1:]}{count if comparison.changes else ''}"
+        count = f" ({count_noun(len(edits), 'certain change')})" if comparison.changes else ""
+        return f"{obstacle[:1].upper()}{obstacle[1:]}{count}"
     if comparison.changes:
-        return f"{count_noun(len(comparison.changes), 'change')} of the architecture{caveat}"
+        return f"{count_noun(len(edits), 'change')} of the architecture{caveat}"
     if verdict:
         return f"{verdict[0][:1].upper()}{verdict[0][1:]}{caveat}"
     counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
@@ -218,9 +260,9 @@ def _write_headline(
     return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
 
 
-def _count_differences(comparison: Comparison, finding_groups: Sequence[FindingGroup]) -> str:
-    kind_counts = count_by_kind(comparison.changes)
-    count_phrases = [count_noun(len(comparison.changes), "change") + (f" ({kind_counts})" if kind_counts else "")]
+def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGroup]) -> str:
+    kind_counts = count_by_kind(edits)
+    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
     count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     return ", ".join(count_phrases)
 
@@ -235,14 +277,6 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
             yield f"{count_noun(len(group.findings), 'finding')} {group.kind}"
 
 
-def _partners_by_reason(change: Change) -> Mapping[str, tuple[str, ...]]:
-    """Return each reason why a change breaks somebody, with the partners it breaks."""
-    partners: dict[str, set[str]] = {}
-    for partner_break in change.breaks:
-        partners.setdefault(partner_break.reason, set()).add(partner_break.partner)
-    return {reason: tuple(sorted(names)) for reason, names in partners.items()}
-
-
-def _sorted_partners(changes: Iterable[Change]) -> tuple[str, ...]:
+def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:
     """Return the partners for whom something breaks."""
     return tuple(sorted({partner for change in changes for partner in change.broken_partners}))

@@ -4,13 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compare import Change
+from archgen.compare.edits import Edit, EditKind
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
+from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
-from archgen.views.changes.comparison_document import BreakingChange, ComparisonDocument, FindingGroup, NamedVersion
-from archgen.views.shapes import Block, Bullets, Column, Figure, Inlines, Outline, Paragraph, Section, Table, Text
+from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.figure_lines import FigureLine
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Figure,
+    Inlines,
+    Markdown,
+    Outline,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+)
 
 _MAX_ERRORS = 8
 
@@ -21,6 +35,8 @@ def write_comparison_outline(document: ComparisonDocument) -> Outline:
         _breaking_section(document),
         _picture_section(document),
         _change_section(document),
+        _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines),
+        _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines),
         _chain_section(document.chain_rows),
         *(_findings_section(group) for group in document.finding_groups),
     )
@@ -39,8 +55,7 @@ def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines
     yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
     for name, partners in (("Breaks", document.broken_partners), ("Concerns", document.concerned_partners)):
         if partners:
-            titles = [document.partner_titles.get(partner, partner) for partner in partners]
-            yield name, inline_text.to_inlines(", ".join(titles))
+            yield name, text_runs(", ".join(partners))
 
 
 def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
@@ -67,17 +82,18 @@ def _unsound_notice(version: NamedVersion) -> Paragraph:
 def _breaking_section(document: ComparisonDocument) -> Section | None:
     if not document.breaking_changes:
         return None
-    blocks: list[Block] = []
+    blocks: list[Block] = [Bullets(tuple(map(_breaking_item, document.breaking_changes)))]
     if document.refusal_help:
-        blocks.append(Paragraph(text_runs(comparison_document.REFUSAL_LEAD + document.refusal_help), "error"))
-    blocks.append(Bullets(tuple(map(_breaking_item, document.breaking_changes))))
+        blocks.append(Paragraph(text_runs(document.refusal_lead + document.refusal_help), "error"))
+        blocks += [Markdown(f"```yaml\n{entries}\n```") for entries in document.missing_entries]
     return Section("changes:breaking", comparison_document.BREAKING_HEADING, tuple(blocks))
 
 
 def _breaking_item(item: BreakingChange) -> Inlines:
     lines: list[Text] = []
-    for reason, partners in item.partners_by_reason.items():
-        lines += [Text(f"breaks {', '.join(partners)}", strong=True, line_break=True), Text(": "), *text_runs(reason)]
+    for loss in item.losses:
+        lines += [Text(f"breaks {', '.join(loss.partners)}", strong=True, line_break=True)]
+        lines += [Text(f" ({loss.category}): "), *text_runs(loss.reason)]
     for line in item.agreements:
         lines += [Text("", line_break=True), *text_runs(line)]
     return (*_change_runs(item.change), *lines)
@@ -92,7 +108,7 @@ def _change_section(document: ComparisonDocument) -> Section | None:
     sections = tuple(
         Section(
             f"changes:{change_group.group_id or change_group.title}",
-            change_group.title or change_group.group_id,
+            (change_group.title or change_group.group_id) + (f" ({change_group.owner})" if change_group.owner else ""),
             (Bullets(tuple(_change_runs(change) for change in change_group.changes)),),
         )
         for change_group in document.change_groups
@@ -100,9 +116,17 @@ def _change_section(document: ComparisonDocument) -> Section | None:
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
 
 
-def _change_runs(change: Change) -> Inlines:
-    sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
-    return (sign, Text(" "), *text_runs(change.text))
+def _change_runs(change: Edit) -> Inlines:
+    return (*_sign_runs(change.kind), *text_runs(change.text))
+
+
+def _sign_runs(kind: EditKind) -> Inlines:
+    return Text(CHANGE_SIGNS[kind], strong=True, change=choose_mark(kind)), Text(" ")
+
+
+def _figure_section(anchor: str, heading: str, lines: Sequence[FigureLine]) -> Section | None:
+    items = tuple((*_sign_runs(line.kind), *text_runs(line.text)) for line in lines)
+    return Section(anchor, heading, (Bullets(items),)) if items else None
 
 
 def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
@@ -113,6 +137,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
             inline_text.to_inlines(Text(row.id, code=True)),
             *(inline_text.to_inlines(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             inline_text.to_inlines(Text(row.verdict, strong=True)),
+            text_runs(row.reason),
         )
         for row in chain_rows
     )
@@ -120,6 +145,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
         Column("Chain", 1.6),
         *(Column(name, 1, "right") for name in ("Before", "After", "Difference", "Deadline")),
         Column("Verdict"),
+        Column("Because of", 2),
     )
     table = Table("table:chains", "Bounds of chains", columns, rows)
     return Section("changes:chains", comparison_document.CHAINS_HEADING, (table,))

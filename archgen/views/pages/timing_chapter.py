@@ -63,6 +63,7 @@ def make_timing_blocks(
         timing_verdicts.summarize_verdicts(timing_lookup),
         *timing_verdicts.list_late_elements(lookup, timing_lookup),
         *timing_verdicts.list_trigger_troubles(timing_lookup),
+        *timing_verdicts.list_unfound_bounds(lookup, timing_lookup),
         *table,
         *make_figures(drawings, "timing"),
     )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.diagnostics.common_wording import join_words
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.lookup import Lookup
 from archgen.views.timing import load_charts, value_format
 from archgen.views.timing.load_charts import is_outside_scope, to_float
@@ -105,13 +107,25 @@ def _format_increment(values: tuple[TimingValue, ...]) -> str:
     return f"+ {value_format.display_duration(TimingValue(total))}{' + ?' if len(known_values) < len(values) else ''}"
 
 
+_VERDICT_KINDS: Mapping[ChainVerdict, SegmentKind] = {
+    "met": "met",
+    "missed": "missed",
+    "not proven": "unproven",
+    "open": "open",
+}
+
+
 def _bound_bar(result: ChainResult) -> ChartBar:
     """Draw the bound; without a complete one a hatched piece follows."""
     length = None if result.bound.value is None else to_float(result.bound.value / _NS_PER_MS)
     known_segments = (
         ()
         if length is None
-        else (BarSegment(length, result.verdict, "", f"bound: {value_format.display_duration(result.bound)}"),)
+        else (
+            BarSegment(
+                length, _VERDICT_KINDS[result.verdict], "", f"bound: {value_format.display_duration(result.bound)}"
+            ),
+        )
     )
     unknown_segments = (
         () if result.bound.complete and length is not None else (BarSegment(None, "open", "?", "no bound is known"),)
@@ -142,15 +156,28 @@ def describe_chain_verdict(result: ChainResult, timing_lookup: TimingLookup) -> 
             if deadline or missing_text
             else f"At the latest after {bound_text}; it has no deadline."
         )
-    if deadline is None or deadline.value is None or bound.value is None:
+    if deadline is None or deadline.value is None:
         return f"{result.verdict.capitalize()}: {value_format.display_duration(bound)}."
-    spare_time = deadline.value - bound.value
-    deadline_text = f"deadline of {value_format.display_duration(deadline)}"
+    return f"{result.verdict.capitalize()}: {_compare_with_deadline(result, deadline.value, timing_lookup.analysis)}."
+
+
+def _compare_with_deadline(result: ChainResult, deadline: Fraction, analysis: Analysis) -> str:
+    """Say by how much a chain meets or exceeds its deadline (ns), or why nobody can say."""
+    bound, best = result.bound, result.best.value
+    deadline_text = f"the deadline of {_format_spare(deadline)}"
+    if result.verdict == "missed" and best is not None and best > deadline:
+        return f"at the earliest after {_format_spare(best)}, {_format_spare(best - deadline)} after {deadline_text}"
+    unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
+    if unfound_text and (bound.value is None or bound.value <= deadline):
+        return f"no bound was found {unfound_text}, for {deadline_text}"
+    if bound.value is None:
+        hosts = find_overloaded_hosts(analysis, result.terms)
+        verb = "is" if len(hosts) == 1 else "are"
+        return f"{join_words(hosts)} {verb} overloaded" if hosts else value_format.display_duration(bound)
+    bound_text = value_format.display_duration(bound)
     if result.verdict == "met":
-        return f"Met: at the latest after {value_format.display_duration(bound)}, {_format_spare(spare_time)} before the {deadline_text}."
-    return (
-        f"Missed: up to {value_format.display_duration(bound)}, {_format_spare(-spare_time)} after the {deadline_text}."
-    )
+        return f"at the latest after {bound_text}, {_format_spare(deadline - bound.value)} before {deadline_text}"
+    return f"up to {bound_text}, {_format_spare(bound.value - deadline)} after {deadline_text}"
 
 
 def _format_spare(value: Fraction) -> str:

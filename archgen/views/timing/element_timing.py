@@ -161,7 +161,8 @@ def make_load_blocks(lookup: Lookup, host_id: str) -> tuple[Block, ...]:
     """Return the chart of a host's load, activity by activity; empty where nothing runs on the host."""
     timing_lookup = lookup.timing
     load = timing_lookup.analysis.hosts.get(host_id) if timing_lookup else None
-    if load is None or not load.activity_shares:
+    # Without a number of cores there is no chart.
+    if load is None or not load.activity_shares or load.cores is None:
         return ()
     title = f"{lookup.architecture.hosts[host_id].title}: load by activity"
     return (Figure(f"figure:load/{host_id}", f"load/{host_id}", title, load_charts.describe_load(load)),)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.timing.analysis import HostLoad
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -36,7 +36,9 @@ def make_load_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Ch
         host: load
         for host, load in timing_lookup.analysis.hosts.items()
         # One shown activity is enough: the host is then charted with all of its load, since the limit applies to all.
+        # Without a number of cores there is no 100 %.
         if load.activity_shares
+        and load.cores is not None
         and not all(is_outside_scope(lookup, timing_lookup, name) for name, _ in load.activity_shares)
     }
     if loads:
@@ -45,16 +47,21 @@ def make_load_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Ch
         yield make_host_chart(lookup, timing_lookup, host, load)
 
 
+def _count_cores(load: HostLoad) -> int:
+    """Return the number of a host's cores; charts are drawn only where it is known."""
+    return load.cores or 1
+
+
 def make_host_overview(lookup: Lookup, loads_by_host: dict[str, HostLoad]) -> Chart:
     """Draw the load of every host as a share of all its cores, split by activity."""
     bars = tuple(
         ChartBar(
-            f"{lookup.architecture.hosts[host].title} ({count_noun(load.cores, 'core')})",
+            f"{lookup.architecture.hosts[host].title} ({count_noun(_count_cores(load), 'core')})",
             (
                 *_share_segments(load),
                 *([BarSegment(None, "load", "?", _list_unknown_loads(load))] if _has_unknown_load(load) else []),
             ),
-            value_format.display_share(share_of_cores(load.utilisation, load.cores)),
+            value_format.display_share(share_of_cores(load.utilisation, _count_cores(load))),
             mark=_bound_mark(load),
             ref=f"host:{host}",
         )
@@ -83,13 +90,16 @@ def _share_segments(load: HostLoad) -> Iterator[BarSegment]:
     """Yield the known parts of a load, largest first, alternating between two shades so that neighbours differ."""
     parts = [(name, value.value) for name, value in load.activity_shares if value.value]
     for index, (name, value) in enumerate(sorted(parts, key=lambda part: -part[1])):
-        share = TimingValue(value / load.cores)
-        kind = "other_load" if index % 2 else "load"
-        yield BarSegment(to_float(value * 100 / load.cores), kind, name, f"{name}: {value_format.display_share(share)}")  # type: ignore[arg-type]
+        share = TimingValue(value / _count_cores(load))
+        kind: SegmentKind = "other_load" if index % 2 else "load"
+        length = to_float(value * 100 / _count_cores(load))
+        yield BarSegment(length, kind, name, f"{name}: {value_format.display_share(share)}")
 
 
-def share_of_cores(value: TimingValue, cores: int) -> TimingValue:
-    """Turn a number of busy cores into a share of all cores; what is known about the value stays."""
+def share_of_cores(value: TimingValue, cores: int | None) -> TimingValue:
+    """Turn a number of busy cores into a share of all cores (None: unknown); what is known about the value stays."""
+    if cores is None:
+        return UNKNOWN_VALUE
     share_value = None if value.value is None else value.value / cores
     return TimingValue(share_value, value.complete, value.missing, value.assumptions, value.side)
 
@@ -98,7 +108,7 @@ def _bound_mark(load: HostLoad) -> float | None:
     """Return the rate-monotonic bound in percent; None where it is unknown or the host has several cores."""
     bound = load.rate_monotonic_bound.value
     # The bound is a theorem about one core.
-    return to_float(bound * 100) if bound is not None and load.cores == 1 else None
+    return to_float(bound * 100) if bound is not None and _count_cores(load) == 1 else None
 
 
 def _has_unknown_load(load: HostLoad) -> bool:
@@ -117,21 +127,21 @@ def make_host_chart(lookup: Lookup, timing_lookup: TimingLookup, host_id: str, l
     ordered_parts = sorted(load.activity_shares, key=lambda part: (part[1].value is None, -(part[1].value or 0)))
     # One fewer than fits, because the bar for the remaining ones needs a row, too.
     shown_parts = ordered_parts if len(ordered_parts) <= _MAX_BARS else ordered_parts[: _MAX_BARS - 1]
-    total_share = share_of_cores(load.utilisation, load.cores)
+    total_share = share_of_cores(load.utilisation, _count_cores(load))
     activity_bars = tuple(_activity_bars(lookup, timing_lookup, load, shown_parts, ordered_parts[len(shown_parts) :]))
     return Chart(
         f"load/{host_id}",
         f"{lookup.architecture.hosts[host_id].title}: load by activity",
         "%",
         (*activity_bars, _total_bar(load, total_share), *_core_bars(load)),
-        limit=(100.0, "all cores busy" if load.cores > 1 else "busy all the time"),
+        limit=(100.0, "all cores busy" if _count_cores(load) > 1 else "busy all the time"),
         conclusion=describe_load(load),
         legend=(
             *(["unknown"] if _has_unknown_load(load) else []),
             *(["mark: rate-monotonic bound"] if _bound_mark(load) is not None else []),
         ),
         notes=(OUTSIDE_NOTE,) if any(bar.is_outside for bar in activity_bars) else (),
-        alt=f"{lookup.architecture.hosts[host_id].title}: {value_format.display_share(total_share)} of {count_noun(load.cores, 'core')}. "
+        alt=f"{lookup.architecture.hosts[host_id].title}: {value_format.display_share(total_share)} of {count_noun(_count_cores(load), 'core')}. "
         + describe_load(load),
     )
 
@@ -146,7 +156,7 @@ def _activity_bars(
     """Yield a bar for each listed activity, starting where the one before ends, and one for the remaining ones."""
     start = Fraction(0)
     for name, value in shown_parts:
-        share = share_of_cores(value, load.cores)
+        share = share_of_cores(value, _count_cores(load))
         activity = timing_lookup.analysis.system.activities.get(name)
         ref = f"node:{activity.node}" if activity else None
         yield ChartBar(
@@ -160,7 +170,8 @@ def _activity_bars(
         # Bars stand end to end, so the last one ends at the sum below them.
         start += share.value or 0
     if remaining_parts:
-        remaining_load = sum((value.value or Fraction(0) for _, value in remaining_parts), Fraction(0)) / load.cores
+        remaining_sum = sum((value.value or Fraction(0) for _, value in remaining_parts), Fraction(0))
+        remaining_load = remaining_sum / _count_cores(load)
         has_gap = any(value.value is None for _, value in remaining_parts)
         share = TimingValue(remaining_load, not has_gap)
         unknown_segments = (BarSegment(None, "load", "?", _list_unknown_loads(load)),) if has_gap else ()
@@ -224,8 +235,11 @@ def _name_cores(place_name: str, cores: int) -> str:
 
 def describe_load(load: HostLoad) -> str:
     """Describe in one sentence how a host copes with its load."""
+    if load.cores is None:
+        busy_cores = value_format.display_share(load.utilisation)
+        return f"How many cores it has is not written; what is known of its load takes {busy_cores} of one."
     share_text = value_format.display_share(share_of_cores(load.utilisation, load.cores))
-    core_count = count_noun(load.cores, "core")
+    core_count = count_noun(_count_cores(load), "core")
     if load.verdict == "overload":
         # A host may be overloaded although its total is below 100 %: one pinned core is enough, so it is named.
         full_cores = [

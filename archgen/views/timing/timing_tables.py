@@ -36,6 +36,7 @@ _VERDICT_WORDS = {
     "undecided": "not decided by load alone",
     "unknown": "unknown",
 }
+_MISSING_CORES = Text("not written", muted=True)
 _MUTED_UNKNOWN = Text("unknown", muted=True)
 
 
@@ -152,7 +153,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
     rows = tuple(
         (
             inline_text.to_inlines(Text(lookup.architecture.hosts[name].title, ref=f"host:{name}")),
-            inline_text.to_inlines(str(load.cores)),
+            inline_text.to_inlines(str(load.cores)) if load.cores else (_MISSING_CORES,),
             figure_cell(value_format.display_share(load_charts.share_of_cores(load.utilisation, load.cores))),
             # Both bounds hold for a single core only.
             figure_cell(value_format.display_share(load.rate_monotonic_bound)) if load.cores == 1 else (),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -26,7 +27,9 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
         verdicts = [
             "without a deadline" if _lacks_only_deadline(result) else result.verdict for result in timing_lookup.chains
         ]
-        counts = [(name, verdicts.count(name)) for name in ("met", "missed", "open", "without a deadline")]
+        counts = [
+            (name, verdicts.count(name)) for name in ("met", "missed", "not proven", "open", "without a deadline")
+        ]
         verdict_counts = ", ".join(f"{count} {name}" for name, count in counts if count)
         sentences.append(
             f"Of {inline_text.count_noun(len(timing_lookup.chains), 'chain')} of effect: {verdict_counts}."
@@ -48,7 +51,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
             chain_charts.describe_chain_verdict(result, timing_lookup),
         )
         # Certain misses come before what may be late.
-        for verdict in ("missed", "open")
+        for verdict in ("missed", "not proven", "open")
         for result in timing_lookup.chains
         if result.verdict == verdict and not _lacks_only_deadline(result) and result.id in lookup.architecture.chains
     ]
@@ -64,13 +67,11 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
 
 
 def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:
-    """List rings of triggers that never end or never start, and activities for which no bound was found."""
+    """List rings of triggers that never end or never start."""
     analysis = timing_lookup.analysis
     kinds = (
         ("An event that enters circulates for ever among", analysis.endless),
         ("Each waits for the other, and none ever starts:", analysis.deadlocked),
-        # Single activities, wrapped so that they are printed like the rings.
-        ("No bound was found, since each step made the next one larger:", tuple((name,) for name in analysis.diverged)),
     )
     for lead, rings in kinds:
         if rings:
@@ -81,6 +82,25 @@ def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:
                     for ring in rings
                 )
             )
+
+
+def list_unfound_bounds(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Block]:
+    """List the hosts on which no bound was found for some activities: one line for each host, with its load."""
+    analysis = timing_lookup.analysis
+    places = group_by_host(analysis, analysis.diverged)
+    if places:
+        yield Paragraph(inline_text.to_inlines("There may be bounds, but none was found:"), "error")
+        yield Bullets(tuple(_describe_unfound_place(lookup, timing_lookup, place) for place in places))
+
+
+def _describe_unfound_place(lookup: Lookup, timing_lookup: TimingLookup, place: UnfoundPlace) -> Inlines:
+    names = inline_text.join_inlines(
+        (timing_tables.activity_link(timing_lookup, name) for name in place.activities), ", "
+    )
+    if place.host is None:
+        return names
+    host_link = Text(lookup.architecture.hosts[place.host].title, ref=f"host:{place.host}")
+    return inline_text.to_inlines(host_link, f"{place.load_text}: ", *names)
 
 
 def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:

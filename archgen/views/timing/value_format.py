@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.core_placement import is_missing_cores
 
 _SIDE_SIGNS = {"exact": "", "at least": ">= ", "at most": "<= "}
 _BYTE_UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"), (1, "B"))
@@ -22,8 +23,8 @@ UNKNOWN_FIGURE = "unknown"
 """What every formatter returns for an unknown value; callers compare with it to mute the cell."""
 _UNBOUNDED_WORDS = {
     "overload": "no bound: the host is overloaded",
-    "unbounded": "no bound",
-    "diverged": "no bound: the search for one did not end",
+    "unbounded": "unbounded",
+    "diverged": "no bound found",
 }
 """Words for a value that does not exist, by the first word of the assumption that explains it."""
 
@@ -146,7 +147,18 @@ def describe_missing(value: TimingValue, analysis: Analysis, limit: int | None =
     names_by_lack: dict[str, list[str]] = {}
     for name in dict.fromkeys(value.missing):
         names_by_lack.setdefault(_describe_lack(name, analysis), []).append(name)
-    return " and ".join(f"{lack} {_join_names(names, limit)}" for lack, names in names_by_lack.items()) + " unknown"
+    # What is no figure of an element has words of its own.
+    other_phrases = [_describe_other_lack(name) for name in names_by_lack.pop("", ())]
+    phrases = [f"{lack} {_join_names(names, limit)}" for lack, names in names_by_lack.items()]
+    unknown_text = [f"{' and '.join(phrases)} unknown"] if phrases else []
+    return "; ".join((*unknown_text, *other_phrases))
+
+
+def _describe_other_lack(missing_name: str) -> str:
+    """Describe a lack that is no element's: `cores of pc not written`, `no link joins head and tablet`."""
+    if is_missing_cores(missing_name):
+        return f"{missing_name} not written"
+    return f"no link joins {' and '.join(missing_name.split(' - '))}"
 
 
 def _join_names(names: list[str], limit: int | None) -> str:
@@ -157,8 +169,13 @@ def _join_names(names: list[str], limit: int | None) -> str:
 
 
 def _describe_lack(element_id: str, analysis: Analysis) -> str:
-    """Describe what is missing of an element: a link's latency, an execution time, a rate, else "figures"."""
+    """Describe what is missing of an element: a link's latency, an execution time, a rate, else "figures".
+
+    Empty for what is missing beside all elements: a number of cores, a link between two hosts.
+    """
     activity = analysis.system.activities.get(element_id)
+    if is_missing_cores(element_id) or " - " in element_id:
+        return ""
     if activity is None:
         return "latency of" if element_id in analysis.links else "figures of"
     # The most basic lack first: without an execution time there is no response, and without that no bound.

@@ -9,7 +9,8 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
 from archgen.compare.losses.overloaded_resources import _has_grown as has_grown
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -42,8 +43,8 @@ AFTER = by_key(
 
 
 def context(*changes: Change, matched: MatchedIds | None = None) -> ChangeContext:
-    nothing = cast("Any", None)
-    return ChangeContext(nothing, nothing, matched or MatchedIds(), pair(BEFORE, AFTER), changes)
+    nobody = cast("Any", SimpleNamespace(partners={}))
+    return ChangeContext(nobody, nobody, matched or MatchedIds(), pair(BEFORE, AFTER), changes)
 
 
 def change(kind: ChangeKind, key: str, name: str | None = None, *parts: Change) -> Change:
@@ -138,7 +139,9 @@ def test_shared_losses(parts: dict[str, list[str]], verb: str, reasons: list[str
 
 def test_nobody_breaks_itself() -> None:
     found = context(change("changed", "host pc", "cores"), change("changed", "output g.c.x", "type"))
-    assert list(found.losses_of_partner([0, 1], "certh", "why")) == [PartnerLoss(1, "certh", "why")]
+    assert list(found.losses_of_users([0, 1], ["certh"], "why {}", "reads")) == [
+        PartnerLoss(1, "certh", "why certh reads")
+    ]
 
 
 def test_names_in_ticks_are_sorted_and_limited() -> None:
@@ -188,11 +191,11 @@ NEW = "what was built before cannot talk to what is built after"
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("int8 b", "int16 b", f"changes the type of `b` in `x_msgs/msg/Image`, which sssa uses; {NEW}"),
-        ("int8 a\\nint8 b", "int8 b\\nint8 a", f"puts fields in another order in `x_msgs/msg/Image`, which sssa uses; {NEW}"),
-        ("int8 b", "int8 b\\nint8 d", f"adds `d` in `x_msgs/msg/Image`, which sssa uses; even a field more makes another message to ROS: {NEW}"),
-        ("int8 b", "int8 d", f"removes `b` and adds `d` in `x_msgs/msg/Image`, which sssa uses; {NEW}"),
-        ("int8 b", "int16 b\\nint8 d", f"changes the type of `b` and adds `d` in `x_msgs/msg/Image`, which sssa uses; {NEW}"),
+        ("int8 b", "int16 b", f"changes the type of `b` in `x_msgs/msg/Image`, which SSSA uses; {NEW}"),
+        ("int8 a\\nint8 b", "int8 b\\nint8 a", f"puts fields in another order in `x_msgs/msg/Image`, which SSSA uses; {NEW}"),
+        ("int8 b", "int8 b\\nint8 d", f"adds `d` in `x_msgs/msg/Image`, which SSSA uses; even a field more makes another message to ROS: {NEW}"),
+        ("int8 b", "int8 d", f"removes `b` and adds `d` in `x_msgs/msg/Image`, which SSSA uses; {NEW}"),
+        ("int8 b", "int16 b\\nint8 d", f"changes the type of `b` and adds `d` in `x_msgs/msg/Image`, which SSSA uses; {NEW}"),
     ],
 )  # fmt: skip
 def test_fields(compared: Compared, old: str, new: str, said: str) -> None:
@@ -235,5 +238,5 @@ def test_a_host_of_several_cores(compared: Compared) -> None:
         .replace("wcet: 20 ms", "wcet: 60 ms")
     )
     assert broken(compared, base, [("wcet: 2 ms", "wcet: 150 ms")]) == [
-        "sensing.camera/timing.wcet sssa: overloads the host `pc` (105 % of its 2 cores), where `mind` of sssa runs"
+        "sensing.camera/timing.wcet sssa: overloads the host `pc` (105 % of its 2 cores), where `mind` of SSSA runs"
     ]

@@ -7,8 +7,8 @@ import pytest
 from tests.compare.conftest import Compared
 from tests.compare.losses.test_losses import BASE, TYPED, broken
 
-READS = "gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`"
-INSTEAD = f"{READS}, `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+READS = "as `sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
+INSTEAD = f"gives `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` {READS}"
 COMPRESSED = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 NAMED = (
     BASE.replace(", depth: Depth image", "")
@@ -19,23 +19,23 @@ OUTPUTS = {
     "a type that has no message any more": (
         TYPED,
         (": sensor_msgs/msg/Image", ": {size: 1 MB}"),
-        [f"Colour image/message sssa: {READS}, no message any more instead of `sensor_msgs/msg/Image`"],
+        [f"Colour image/message sssa: gives no message any more instead of `sensor_msgs/msg/Image` {READS}"],
     ),
     "a type that has a message now": (TYPED, (": x_msgs/msg/Tracks", ": {message: x_msgs/msg/Tracks, size: 1 kB}"), []),
     "an output without a type": (
         TYPED,
         ("image: Colour image", "image: "),
-        [f"sensing.camera.image/type sssa: {READS}, no type any more instead of `Colour image`"],
+        [f"sensing.camera.image/type sssa: gives no type any more instead of `Colour image` {READS}"],
     ),
     "a type with another message": (
         TYPED,
         ("image: Colour image", "image: Tracks"),
-        [f"sensing.camera.image/type sssa: {READS}, `Tracks` instead of `Colour image`"],
+        [f"sensing.camera.image/type sssa: gives `Tracks` instead of `Colour image` {READS}"],
     ),
     "a message that is read twice": (
         TYPED.replace("{image: camera.image}", "{image: camera.image, more: camera.image}"),
         COMPRESSED,
-        ["Colour image/message sssa: " + INSTEAD.replace("tracker.image`,", "tracker.image` and `tracking.tracker.more`,")],
+        ["Colour image/message sssa: " + INSTEAD.replace("image` of SSSA reads", "image` and `tracking.tracker.more` of SSSA read")],
     ),
     "a message that is optional to its reader": (
         TYPED.replace("{image: camera.image}", "{image: {from: camera.image, optional: true}}"),
@@ -48,12 +48,12 @@ OUTPUTS = {
     "a message that a node names": (
         NAMED,
         ("a_msgs/msg/A", "b_msgs/msg/B"),
-        [f"eye.publishes.image/message sssa: {READS}, `b_msgs/msg/B` instead of `a_msgs/msg/A`"],
+        [f"eye.publishes.image/message sssa: gives `b_msgs/msg/B` instead of `a_msgs/msg/A` {READS}"],
     ),
     "a message that a node no longer names": (
         NAMED,
         ("publishes: {image: {message: a_msgs/msg/A}}", "package: p"),
-        [f"eye.publishes.image/message sssa: {READS}, `sensor_msgs/msg/Image` instead of `a_msgs/msg/A`"],
+        [f"eye.publishes.image/message sssa: gives `sensor_msgs/msg/Image` instead of `a_msgs/msg/A` {READS}"],
     ),
     "the message of a type where the node names another one": (
         NAMED + "types: {Colour image: sensor_msgs/msg/Image}\n",
@@ -74,8 +74,8 @@ TASK = BASE.replace("image: Colour image", "image: Task") + "types: {Task: {requ
 @pytest.mark.parametrize(
     ("project", "old", "new", "said"),
     [
-        (TASK, "request: Order", "request: Wish", ["Task/request sssa: changes the request of `Task`, which sssa uses"]),
-        (TASK, "response: Done", "size: 1 kB", ["Task/response sssa: changes the response of `Task`, which sssa uses"]),
+        (TASK, "request: Order", "request: Wish", ["Task/request sssa: changes the request of `Task`, which SSSA uses"]),
+        (TASK, "response: Done", "size: 1 kB", ["Task/response sssa: changes the response of `Task`, which SSSA uses"]),
         (TASK, "response: Done", "response: Done, feedback: Step", []),
         (TASK, "response: Done", "response: Done, size: 1 kB", []),
         (TASK.replace("owner: sssa", "owner: certh"), "request: Order", "request: Wish", []),
@@ -101,12 +101,12 @@ DRIVER = BASE + (
     ("project", "old", "new", "said"),
     [
         # The partner of a component uses its messages, whoever owns the node.
-        (DEFINED, "int8 a", "int16 a", f"x_msgs/msg/Image/fields sssa: changes the type of `a` in `x_msgs/msg/Image`, which sssa uses; {REBUILT}"),
-        (DEFINED, "x_msgs/msg/Image: int8 a, ", "", "x_msgs/msg/Image sssa: takes the definition of `x_msgs/msg/Image` from sssa, who uses it"),
+        (DEFINED, "int8 a", "int16 a", f"x_msgs/msg/Image/fields sssa: changes the type of `a` in `x_msgs/msg/Image`, which SSSA uses; {REBUILT}"),
+        (DEFINED, "x_msgs/msg/Image: int8 a, ", "", "x_msgs/msg/Image sssa: takes away the definition of `x_msgs/msg/Image`, which SSSA uses"),
         (DEFINED, "x_msgs/msg/More: int8 b", "x_msgs/msg/Most: float64 c", ""),
         # A node without a component: its own partner.
-        (DRIVER, "---\\nint8 a", "---\\nint16 a", f"x_msgs/srv/S/fields tum: changes the type of `a` in `x_msgs/srv/S`, which tum uses; {REBUILT}"),
-        (DRIVER, "int8 a\\n---", "int8 b\\n---", f"x_msgs/srv/S/fields tum: removes `a` and adds `b` in `x_msgs/srv/S`, which tum uses; {REBUILT}"),
+        (DRIVER, "---\\nint8 a", "---\\nint16 a", f"x_msgs/srv/S/fields tum: changes the type of `a` in `x_msgs/srv/S`, which TUM uses; {REBUILT}"),
+        (DRIVER, "int8 a\\n---", "int8 b\\n---", f"x_msgs/srv/S/fields tum: removes `a` and adds `b` in `x_msgs/srv/S`, which TUM uses; {REBUILT}"),
         (DRIVER.replace("owner: tum", "title: D"), "---\\nint8 a", "---\\nint16 a", ""),
     ],
 )  # fmt: skip

@@ -21,12 +21,15 @@ groups:
 """
 BASE = PARTNERS + GROUPS
 TYPED = BASE + "types: {Colour image: sensor_msgs/msg/Image, Tracks: x_msgs/msg/Tracks}\n"
-TAKEN = "takes `sensing.camera.image` from sssa, who reads it as `tracking.tracker.image`"
-TAKEN_WITH_READER = "takes `sensing.camera.image` from sssa, who read it as `tracking.tracker.image`; the same change takes the reader away"
-RETYPED = (
-    "gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
-    "(the message stays `sensor_msgs/msg/Image`)"
+TAKEN = "takes `sensing.camera.image` from SSSA (`tracking.tracker.image`)"
+TAKEN_WITH_READER = (
+    "takes `sensing.camera.image` from SSSA (`tracking.tracker.image`); the same change takes the reader away"
 )
+RETYPED = (
+    "gives `Grey image` instead of `Colour image` (the message stays `sensor_msgs/msg/Image`) "
+    "as `sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
+)
+RENAMED = "renames what SSSA reads: `{}` is `{}` now; files follow in this change"
 OUTPUT = ("image: Colour image, ", "")
 DANGLING = ("image: camera.image", "image: ")
 
@@ -85,7 +88,7 @@ FUNCTIONS = {
     "an output whose reader gets another one": (
         BASE,
         [OUTPUT, ("camera.image", "camera.depth")],
-        [f"sensing.camera.image sssa: {TAKEN} (and is to read `sensing.camera.depth` instead)"],
+        [f"sensing.camera.image sssa: {TAKEN}; it is to read `sensing.camera.depth` instead"],
     ),
     "a component with all it has": (
         BASE,
@@ -102,13 +105,13 @@ FUNCTIONS = {
     "a renamed output that its reader follows": (
         BASE,
         [("image: Colour", "picture: Colour"), ("camera.image", "camera.picture")],
-        [],
+        [f"sensing.camera.picture sssa: {RENAMED.format('sensing.camera.image', 'sensing.camera.picture')}"],
     ),
     "a renamed output that its reader does not follow": (
         BASE.replace("  tracking:", "      screen: {inputs: {picture: camera.image}}\n  tracking:"),
         [("image: Colour", "images: Colour"), ("picture: camera.image", "picture: camera.images")],
         [
-            "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+            "sensing.camera.images sssa: renames what SSSA reads: `sensing.camera.image` is `sensing.camera.images` now; `tracking.tracker.image` has to follow"
         ],
     ),
     "a component in another group": (
@@ -117,15 +120,15 @@ FUNCTIONS = {
             ("      camera: {outputs: {image: Colour image, depth: Depth image}}\n", "      lens: Lens\n"),
             ("{lamp: Lamp}", "{lamp: Lamp, camera: {outputs: {image: Colour image, depth: Depth image}}}"),
         ],
-        [],
+        [f"eyes.camera sssa: {RENAMED.format('sensing.camera.image', 'eyes.camera.image')}"],
     ),
     "a conceptual type": (
         BASE,
         [("image: Colour image", "image: Grey image")],
         [
             (
-                "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `Grey image` instead of `Colour image` "
-                "(the message stays `sensor_msgs/msg/Image`)"
+                "sensing.camera.image/type sssa: gives `Grey image` instead of `Colour image` (the message stays `sensor_msgs/msg/Image`) "
+                "as `sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
             )
         ],
     ),
@@ -140,21 +143,41 @@ FUNCTIONS = {
         TYPED,
         [("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")],
         [
-            "Colour image/message sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`"
+            "Colour image/message sssa: gives `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
         ],
     ),
     "the message of a type that nobody else reads": (TYPED, [("x_msgs/msg/Tracks", "y_msgs/msg/Tracks")], []),
     "an output that is taken while all partners are given up": (
         BASE,
         [OUTPUT, DANGLING, (PARTNERS, ""), ("owner: certh", "title: S"), ("owner: sssa", "title: T")],
-        [f"sensing.camera.image sssa: {TAKEN}"],
+        [
+            f"sensing.camera.image sssa: {TAKEN}",
+        ],
     ),
-    "a hand-over with nothing lost": (BASE, [("owner: certh", "owner: tum")], []),
+    "a hand-over to a third partner": (
+        BASE,
+        [("owner: certh", "owner: tum")],
+        [],
+    ),
+    "a hand-over in another slice": (
+        BASE,
+        [("tracker: {inputs", "tracker: {owner: certh, inputs")],
+        [],
+    ),
     "a hand-over to the reader that takes something from him": (
         BASE,
         [("owner: certh", "owner: sssa"), OUTPUT, DANGLING],
-        [f"sensing.camera.image sssa: {TAKEN}"],
+        [
+            f"sensing.camera.image sssa: {TAKEN}",
+        ],
     ),
+    "what was nobody's and has an owner now": (
+        BASE.replace("owner: certh", "title: S"),
+        [("title: S", "owner: certh")],
+        [],
+    ),
+    "a further owner": (BASE, [("owner: certh", "owner: [certh, tum]")], []),
+    "a partner with another id": (BASE, [("certh", "iti")], []),
 }
 SERVING = (
     PARTNERS
@@ -172,16 +195,16 @@ REQUIREMENTS = {
         SERVING,
         [("[R-1, R-3]", "[R-3]"), ("Y, requirements: [R-1]", "Y")],
         [
-            "a.x/requirements sssa: leaves `R-1` without a component, also for sssa, who serves the same use case",
-            "a.y/requirements sssa: leaves `R-1` without a component, also for sssa, who serves the same use case",
+            "a.x/requirements sssa: leaves `R-1` without a component, also for SSSA, who serves the same use case",
+            "a.y/requirements sssa: leaves `R-1` without a component, also for SSSA, who serves the same use case",
         ],
     ),
     "a requirement of a use case of its own": (
         SERVING,
         [("[R-1, R-3]", "[R-1]")],
         [
-            "a.x/requirements sssa: leaves `R-3` without a component, also for sssa and tum",
-            "a.x/requirements tum: leaves `R-3` without a component, also for sssa and tum",
+            "a.x/requirements sssa: leaves `R-3` without a component, also for SSSA and TUM",
+            "a.x/requirements tum: leaves `R-3` without a component, also for SSSA and TUM",
         ],
     ),
     "a requirement that is dropped itself": (
@@ -222,7 +245,24 @@ def test_hostile_types_stay_inside_their_ticks(compared: Compared) -> None:
     found = broken(compared, BASE, [("image: Colour image", f"image: {evil}")])
     assert found == [
         (
-            "sensing.camera.image/type sssa: gives sssa, who reads `sensing.camera.image` as `tracking.tracker.image`, "
-            "`x' {} <b>[y](z) - # '` instead of `Colour image`"
+            "sensing.camera.image/type sssa: gives `x' {} <b>[y](z) - # '` instead of `Colour image` as "
+            "`sensing.camera.image`; `tracking.tracker.image` of SSSA reads it"
         )
     ]
+
+
+def test_partners_who_lose_the_same_are_named_in_one_reason(compared: Compared) -> None:
+    third = "  moving: {owner: tum, components: {planner: {inputs: {image: camera.image, more: camera.image}}}}\n"
+    reason = (
+        "takes `sensing.camera.image` from SSSA (`tracking.tracker.image`) and TUM (`moving.planner.image` and "
+        "`moving.planner.more`)"
+    )
+    assert broken(compared, BASE + third, [OUTPUT]) == [
+        f"sensing.camera.image {partner}: {reason}" for partner in ("sssa", "tum")
+    ]
+
+
+def test_partners_with_the_same_title_are_told_apart_by_their_ids(compared: Compared) -> None:
+    twins = BASE.replace("sssa: SSSA, tum: TUM", "sssa: Twin, tum: Twin")
+    taken = "takes `sensing.camera.image` from Twin (`sssa`) (`tracking.tracker.image`)"
+    assert broken(compared, twins, [OUTPUT]) == [f"sensing.camera.image sssa: {taken}"]

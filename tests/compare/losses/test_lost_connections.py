@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, cast
 
 import pytest
@@ -27,15 +28,22 @@ groups:
   tracking: {owner: sssa, components: {tracker: {inputs: {image: sensing.camera.image}}}}
 """
 )
-TAKEN = "takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`"
+RENAMED = "renames what SSSA reads: `sensing.camera.image` is `{}` now; "
+LEFT, FOLLOWED = "`tracking.tracker.image` has to follow", "files follow in this change"
 
 
 @pytest.mark.parametrize(
     ("edits", "said"),
     [
-        ([("camera: {", "eye: {"), ("{image: camera", "{image: eye")], f"sensing.eye sssa: {TAKEN}"),
-        ([("  sensing:\n", "  seeing:\n")], f"seeing sssa: {TAKEN}"),
-        ([("  sensing:\n", "  seeing:\n"), ("sensing.camera", "seeing.camera")], ""),
+        (
+            [("camera: {", "eye: {"), ("{image: camera", "{image: eye")],
+            f"sensing.eye sssa: {RENAMED.format('sensing.eye.image')}{LEFT}",
+        ),
+        ([("  sensing:\n", "  seeing:\n")], f"seeing sssa: {RENAMED.format('seeing.camera.image')}{LEFT}"),
+        (
+            [("  sensing:\n", "  seeing:\n"), ("sensing.camera", "seeing.camera")],
+            f"seeing sssa: {RENAMED.format('seeing.camera.image')}{FOLLOWED}",
+        ),
         ([("{image: camera.image}", "{title: Screen}")], ""),
     ],
 )
@@ -57,8 +65,8 @@ def test_the_output_itself_is_the_cause_before_its_component_and_its_group() -> 
 @pytest.mark.parametrize(
     ("lost", "said"),
     [
-        ("", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
-        ("other", ["sssa takes `g.a.x` from sssa, who reads it as `g.b.i`"]),
+        ("", ["sssa takes `g.a.x` from SSSA (`g.b.i`)"]),
+        ("other", ["sssa takes `g.a.x` from SSSA (`g.b.i`)"]),
         ("a", []),
     ],
 )
@@ -68,6 +76,7 @@ def test_an_output_that_may_be_in_what_could_not_be_read_is_not_taken_away(lost:
         by_key(element("output g.a.x", owner="certh"), reader), by_key(reader), ("g.b.i <- g.a.x", ""), ("", lost)
     )
     removal = Change("removed", "output", "g.a.x")
+    titled = replace(versions, partner_names={"sssa": "SSSA"})
     nothing = cast("Any", None)
-    found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), versions, [removal]))
+    found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), titled, [removal]))
     assert [f"{loss.partner} {loss.reason}" for loss in found] == said

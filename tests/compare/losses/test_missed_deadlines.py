@@ -50,9 +50,9 @@ CROWDED = (
         "  gan: {implements: two, timing: {rate: 10 Hz, wcet: 0.1 ms}, host: pc}\n",
     )
 )
-LATE = "makes the chain `react` miss its deadline of 250 ms"
+LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
-ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
+ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
 EVERYBODY = ("certh", "sssa", "tum")
 SHORT_CUT = BASE.replace("inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}")
 
@@ -66,14 +66,17 @@ TABLE = {
     "a rate that is too low": (
         BASE,
         [RATE],
-        both(
-            "sensing.camera/timing.rate",
-            LATE + " (129 ms → 279 ms); `mind` of sssa and `feet` of tum are on it",
-            "sssa",
-            "tum",
-        ),
+        [
+            *both(
+                "sensing.camera/timing.rate",
+                LATE + " (151 ms → 301 ms); `mind` of SSSA and `feet` of TUM are on it",
+                "sssa",
+                "tum",
+            ),
+        ],
     ),
     "a rate that is still high enough": (BASE, [("rate: 10 Hz", "rate: 8 Hz")], []),
+    "a rate that is higher": (BASE, [("rate: 10 Hz", "rate: 12 Hz")], []),
     "a rate without a deadline": (BASE.replace(", deadline: 250 ms", ""), [RATE], []),
     "a chain of one's own": (
         BASE.replace("owner: sssa", "owner: certh").replace("owner: tum", "owner: certh"),
@@ -85,7 +88,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            f"{LATE} (129 ms → no bound); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` miss its deadline of 250 ms (151 ms → no bound); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -95,7 +98,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "makes the chain `react` miss its deadline of 100 ms (it takes 129 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -116,7 +119,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of certh are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `eye` and `mind` of CERTH are on it",
             "certh",
         ),
     ),
@@ -126,8 +129,8 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (129 ms → 279 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -141,8 +144,8 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both(
             "react/deadline",
-            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of certh, "
-            "`tracking.tracker` of sssa and `moving.planner` of tum are on it",
+            "relaxes the deadline of the chain `react` from 250 ms to 300 ms; `sensing.camera` of CERTH, "
+            "`tracking.tracker` of SSSA and `moving.planner` of TUM are on it",
             *EVERYBODY,
         ),
     ),
@@ -165,7 +168,7 @@ TABLE = {
             ("  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}\n", ""),
         ],
         [
-            "tracking.tracker tum: takes `tracking.tracker.tracks` from tum, who read it as `moving.planner.tracks`; the same change takes the reader away"
+            "tracking.tracker tum: takes `tracking.tracker.tracks` from TUM (`moving.planner.tracks`); the same change takes the reader away"
         ],
     ),
     "a chain that was late already": (
@@ -173,7 +176,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 100 ms by still more (129 ms → 130 ms); `eye` of certh and `mind` of sssa are on it",
+            "makes the chain `react` exceed its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -184,8 +187,8 @@ TABLE = {
         [("behaviour: event, wcet: 20 ms", "behaviour: event")],
         both(
             "tracking.tracker/timing.wcet",
-            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; "
-            "`eye` of certh and `feet` of tum are on it",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
+            "`eye` of CERTH and `feet` of TUM are on it",
             "certh",
             "tum",
         ),
@@ -194,7 +197,7 @@ TABLE = {
         BASE,
         [("inputs: {image: camera.image}, ", "")],
         [
-            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 129 ms; `feet` of tum is on it"
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of TUM is on it"
         ],
     ),
     "a step more on the way": (
@@ -205,17 +208,14 @@ TABLE = {
                 "outputs: {image: Colour image}}\n      mend: {inputs: {image: camera.image}, outputs: {image: Colour image}}",
             ),
             ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
-            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 90 ms}, host: pc}\n"),
+            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 50 ms}, host: pc}\n"),
         ],
-        [
-            *both(
-                "sensing.mend",
-                f"{LATE} (129 ms → no bound); `mind` of sssa and `feet` of tum are on it",
-                "sssa",
-                "tum",
-            ),
-            "sensing.mend sssa: overloads the host `pc` (112 % of its core), where `mind` of sssa runs",
-        ],
+        both(
+            "sensing.mend",
+            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it",
+            "sssa",
+            "tum",
+        ),
     ),
     "a chain that is removed": (
         BASE,
@@ -234,8 +234,8 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "makes the chain `react` miss the deadline of 250 ms that it had before (129 ms → 279 ms); "
-                "`mind` of sssa and `feet` of tum are on it",
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -248,11 +248,11 @@ TABLE = {
         [],
     ),
     "a longer way": (
-        BASE.replace("deadline: 250 ms", "deadline: 125 ms").replace("tracker, planner]", "tracker]"),
+        BASE.replace("deadline: 250 ms", "deadline: 150 ms").replace("tracker, planner]", "tracker]"),
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "makes the chain `react` miss its deadline of 125 ms (122 ms → 129 ms); `eye` of certh, `mind` of sssa and `feet` of tum are on it",
+            "takes away the proof that the chain `react` meets its deadline of 150 ms (144 ms → 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -266,7 +266,7 @@ TABLE = {
             for fan in ("one", "two")
             for line in both(
                 f"tracking.{fan}/timing.core",
-                f"{LATE} (~223.467 ms → 292 ms); `eye` of certh and `feet` of tum are on it",
+                f"{LATE} (~223.467 ms → 292 ms); `eye` of CERTH and `feet` of TUM are on it",
                 "certh",
                 "tum",
             )
@@ -275,14 +275,14 @@ TABLE = {
     "a host that shares its core": (
         BASE.replace("chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}\n", ""),
         [("wcet: 20 ms", "wcet: 120 ms")],
-        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of certh runs"],
+        ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of CERTH runs"],
     ),
     "a host with a core less": (
         BASE[: BASE.index("chains:")].replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 99 ms"),
         [("pc: {cores: 2}", "pc: {cores: 1}")],
         both(
             "pc/cores",
-            "overloads the host `pc` (101 % of its core), where `eye` of certh and `mind` of sssa run",
+            "overloads the host `pc` (101 % of its core), where `eye` of CERTH and `mind` of SSSA run",
             "certh",
             "sssa",
         ),
@@ -290,7 +290,7 @@ TABLE = {
     "a rate that overloads who is fired by it": (
         BASE[: BASE.index("chains:")],
         [("rate: 10 Hz", "rate: 46 Hz")],
-        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of sssa runs"],
+        ["sensing.camera/timing.rate sssa: overloads the host `pc` (101.2 % of its core), where `mind` of SSSA runs"],
     ),
     "a host that was overloaded before": (
         BASE[: BASE.index("chains:")].replace("20 ms", "99 ms"),
@@ -303,7 +303,7 @@ TABLE = {
         [("10 Mbit/s", "500 kbit/s")],
         both(
             "lan/bandwidth",
-            "asks the link `lan` for 160 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
+            "asks the link `lan` for 160 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
             "sssa",
             "tum",
         ),
@@ -311,12 +311,14 @@ TABLE = {
     "larger messages": (
         BASE[: BASE.index("chains:")],
         [("size: 10 kB", "size: 130 kB")],
-        both(
-            "Tracks/size",
-            "asks the link `lan` for 104 % of its bandwidth; `mind` of sssa and `feet` of tum use it",
-            "sssa",
-            "tum",
-        ),
+        [
+            *both(
+                "Tracks/size",
+                "asks the link `lan` for 104 % of its bandwidth; `mind` of SSSA and `feet` of TUM use it",
+                "sssa",
+                "tum",
+            ),
+        ],
     ),
 }
 
@@ -359,3 +361,23 @@ def test_bounds_in_sentences() -> None:
         "no bound",
         "no bound",
     ]
+
+
+DIRECT = SHORT_CUT.replace("[camera, tracker, planner], deadline: 250 ms", "[camera, planner], deadline: 240 ms")
+
+
+def test_a_way_round_that_nobody_meant_is_no_chain(compared: Compared) -> None:
+    edits = [("tracks: tracker.tracks, image: camera.image", "tracks: tracker.tracks")]
+    said = broken(compared, DIRECT.replace("240 ms", "140 ms"), edits)
+    # `mind` is on the way round alone: its partner had no part in the chain.
+    assert said == [
+        "moving.planner.image certh: cuts the chain `react`: `eye` no longer reaches `feet` directly; `eye` of CERTH is on it"
+    ]
+
+
+def test_what_is_put_between_two_parts_makes_the_chain_later(compared: Compared) -> None:
+    edits = [
+        ("image: camera.image}}", "image: filter.image}}\n      filter: {inputs: {image: camera.image}, outputs: {image: Colour image}}"),
+        ("hosts:", "  sieve: {implements: filter, timing: {behaviour: event, wcet: 90 ms}, host: base}\nhosts:"),
+    ]  # fmt: skip
+    assert "cuts" not in " ".join(broken(compared, DIRECT.replace("240 ms", "140 ms"), edits))

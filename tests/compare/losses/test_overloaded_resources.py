@@ -20,7 +20,7 @@ nodes:
   nc: {implements: horn, timing: {rate: 10 Hz, wcet: 40 ms}, host: pc}
 hosts: {pc: {cores: 1}, big: {cores: 2}}
 """
-FULL = "overloads the host `pc` ({} % of its core), where `na` of certh and `nc` of tum run"
+FULL = "overloads the host `pc` ({} % of its core), where `na` of CERTH and `nc` of TUM run"
 WCET = "b.drum/timing.wcet"
 TWO_CORES = THREE.replace("pc: {cores: 1}", "pc: {cores: 2}")
 HOSTS = {
@@ -53,12 +53,12 @@ HOSTS = {
             ("{horn:", "{flute: {outputs: {u: U}}, horn:"),
             ("nodes:\n", "nodes:\n  nf: {implements: flute, timing: {rate: 10 Hz, wcet: 20 ms}, host: pc}\n"),
         ],
-        both("c.flute", "overloads the host `pc` (100 % of its core), where `na` of certh and `nb` of sssa run", "certh", "sssa"),
+        both("c.flute", "overloads the host `pc` (100 % of its core), where `na` of CERTH and `nb` of SSSA run", "certh", "sssa"),
     ),
     "a core to which nodes are pinned": (
         TWO_CORES.replace("wcet: 30 ms", "core: 1, wcet: 30 ms").replace("wcet: 40 ms", "core: 1, wcet: 40 ms"),
         [("wcet: 30 ms", "wcet: 60 ms")],
-        [f"{WCET} tum: overloads `pc core 1` (100 % of its core), where `nc` of tum runs"],
+        [f"{WCET} tum: overloads `pc core 1` (100 % of its core), where `nc` of TUM runs"],
     ),
     "a core that somebody takes for himself": (
         TWO_CORES.replace("wcet: 10 ms", "wcet: 70 ms"),
@@ -75,7 +75,7 @@ HOSTS = {
         .replace("nodes:\n", "nodes:\n  nd: {implements: gong, timing: {rate: 10 Hz, wcet: 9 ms, core: 0}, host: big}\n")
         .replace("{horn:", "{gong: {outputs: {v: V}}, horn:"),
         [("wcet: 30 ms", "wcet: 60 ms"), ("wcet: 10 ms, core", "core")],
-        [f"{WCET} tum: overloads the host `pc` (100 % of its core), where `nc` of tum runs"],
+        [f"{WCET} tum: overloads the host `pc` (100 % of its core), where `nc` of TUM runs"],
     ),
 }  # fmt: skip
 
@@ -92,7 +92,7 @@ MAP = (
     .replace("{tracks: tracker.tracks}", "{tracks: tracker.tracks, map: tracker.map}")
     .replace("types: {", "types: {Map: {message: x_msgs/msg/Map, size: 1 kB}, ")
 )
-ASKS = "asks the link `lan` for {} % of its bandwidth; `mind` of sssa and `feet` of tum use it"
+ASKS = "asks the link `lan` for {} % of its bandwidth; `mind` of SSSA and `feet` of TUM use it"
 LINKS = {
     "a link that is exactly full": (LINKED, [("1 Mbit/s", "800 kbit/s")], both("lan/bandwidth", ASKS.format(100), "sssa", "tum")),
     "a link that is nearly full": (LINKED, [("1 Mbit/s", "801 kbit/s")], []),
@@ -122,12 +122,14 @@ LINKS = {
     "the size of one topic of two": (
         MAP,
         [("size: 1 kB", "size: 4 kB"), ("size: 10 kB", "size: 9.9 kB"), ("size: 1 MB", "size: 2 MB")],
-        both("Map/size", ASKS.format("111.2"), "sssa", "tum"),
+        [
+            *both("Map/size", ASKS.format("111.2"), "sssa", "tum"),
+        ],
     ),
     "a topic that is new on the link": (
         LINKED,
         [("{tracks: tracker.tracks}", "{tracks: tracker.tracks, image: camera.image}"), ("cores: 1}, base", "cores: 2}, base")],
-        ["moving.planner.image sssa: asks the link `lan` for 8080 % of its bandwidth; `mind` of sssa uses it"],
+        ["moving.planner.image sssa: asks the link `lan` for 8080 % of its bandwidth; `mind` of SSSA uses it"],
     ),
 }  # fmt: skip
 

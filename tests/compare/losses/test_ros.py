@@ -16,10 +16,13 @@ nodes:
   mind: {implements: tracker, subscribes: {image: {qos: {reliability: reliable}}}}
 """
 )
-RENAMED = "takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; it is `{}` now"
+FOLLOWED = "{0} sssa: renames what SSSA reads: `sensing.camera.image` is `{0}.image` now; files follow in this change"
+RENAMED = "takes the topic `/eye/image` from SSSA (`mind`); it is `{}` now"
 DERIVED = NODES.replace("topic: /eye/image, ", "")
 FEWER = ("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 50 ms")
-UNHEARD = "offers best effort only on `/eye/image`, where `mind` of sssa asks for reliable delivery: it receives nothing any more"
+UNHEARD = (
+    "offers best effort only on `/eye/image`, where `mind` of SSSA asks for reliable delivery: nothing arrives any more"
+)
 # Both outputs on one topic, of which the reader reads one.
 SHARED = NODES.replace(
     "image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}",
@@ -55,7 +58,7 @@ NAMES = {
         NODES.replace("/eye/image", "image"),
         [("eye: {", "eye: {namespace: /front, ")],
         [
-            "eye.publishes.image/topic sssa: takes the topic `/image` from sssa, whose `mind` subscribes to it; it is `/front/image` now"
+            "eye.publishes.image/topic sssa: takes the topic `/image` from SSSA (`mind`); it is `/front/image` now"
         ],
     ),
     "a namespace that the name does not rest on": (NODES, [("eye: {", "eye: {namespace: /front, ")], []),
@@ -64,19 +67,20 @@ NAMES = {
         [("camera", "colour_camera")],
         [
             (
-                "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; "
+                "sensing.colour_camera sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); "
                 "it is `/sensing/colour_camera/image` now"
-            )
+            ),
+            FOLLOWED.format("sensing.colour_camera"),
         ],
     ),
-    "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], []),
+    "a component, where the topic has a name": (NODES, [("camera", "colour_camera")], [FOLLOWED.format("sensing.colour_camera")]),
     "a node": (NODES, [("  eye: {", "  left_eye: {")], []),
     "a node that writes what another one reads": (
         NODES,
         [(NODES[NODES.index("  eye:") : NODES.index("  mind:")], "")],
         [
             (
-                "eye sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; "
+                "eye sssa: takes the topic `/eye/image` from SSSA (`mind`); "
                 "nobody offers it under that name any more"
             )
         ],
@@ -95,7 +99,7 @@ NAMES = {
         [("publishes: {state: {topic: /eye/state", "publishes: {state: {topic: /eye/status")],
         [
             (
-                "eye.internal.publishes.state/topic sssa: takes the topic `/eye/state` from sssa, whose `mind` subscribes to it; "
+                "eye.internal.publishes.state/topic sssa: takes the topic `/eye/state` from SSSA (`mind`); "
                 "it is `/eye/status` now"
             )
         ],
@@ -103,7 +107,10 @@ NAMES = {
     "a group after which the topic is called": (
         DERIVED,
         [("sensing", "seeing")],
-        ["seeing sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/seeing/camera/image` now"],
+        [
+            "seeing sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is `/seeing/camera/image` now",
+            FOLLOWED.format("seeing.camera").replace("seeing.camera sssa", "seeing sssa"),
+        ],
     ),
     "a shared topic that the output of the reader keeps": (
         SHARED + "ros: {shared_topics: [/eye/all]}\n",
@@ -113,12 +120,12 @@ NAMES = {
     "a topic that the output of the reader keeps, where another one left it": (
         SHARED,
         [("image: {topic: /eye/all}", "image: {topic: /eye/rgb}")],
-        ["eye.publishes.image/topic sssa: takes the topic `/eye/all` from sssa, whose `mind` subscribes to it; it is `/eye/rgb` now"],
+        ["eye.publishes.image/topic sssa: takes the topic `/eye/all` from SSSA (`mind`); it is `/eye/rgb` now"],
     ),
     "a topic that a node without a port of it listens to": (
         SHARED.replace("mind: {", "mind: {internal: {subscribes: {all: {topic: /eye/rgb, message: sensor_msgs/msg/Image}}}, ").replace("image: {topic: /eye/all}", "image: {topic: /eye/rgb}"),
         [("image: {topic: /eye/rgb}", "image: {topic: /eye/rgba}")],
-        ["eye.publishes.image/topic sssa: takes the topic `/eye/rgb` from sssa, whose `mind` subscribes to it; it is `/eye/rgba` now"],
+        ["eye.publishes.image/topic sssa: takes the topic `/eye/rgb` from SSSA (`mind`); it is `/eye/rgba` now"],
     ),
     "a topic that another partner publishes too": (
         NODES.replace("mind: {", "echo: {owner: tum, internal: {publishes: {image: {topic: /eye/image, message: sensor_msgs/msg/Image}}}}\n  mind: {"),
@@ -133,22 +140,42 @@ NAMES = {
     "a topic whose reader is removed with it": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), (INTERNAL[INTERNAL.index("  mind:") :], "")],
-        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from SSSA (`mind`); it is `/t` now"],
+    ),
+    "a topic that only a new, planned node still has": (
+        NODES,
+        [("topic: /eye/image", "topic: /eye/rgb"), ("  mind:", "  ghost: {implements: camera, status: planned, publishes: {image: /eye/image}}\n  mind:")],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")],
+    ),
+    "a topic that a new, planned node takes over": (
+        NODES,
+        [("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}", "status: existing, publishes: {depth: }}\n  lens: {implements: camera, status: planned, publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}")],
+        ["eye.publishes.image sssa: takes the topic `/eye/image` from SSSA (`mind`); nobody offers it under that name any more"],
+    ),
+    "a topic of no component with another message": (
+        INTERNAL,
+        [("publishes: {state: {topic: /s, message: std_msgs/msg/String", "publishes: {state: {topic: /s, message: std_msgs/msg/Bool")],
+        [
+            (
+                "eye.internal.publishes.state/message sssa: sends `std_msgs/msg/Bool` instead of `std_msgs/msg/String` on `/s`, to which "
+                "`mind` of SSSA subscribes"
+            )
+        ],
     ),
     "a topic whose reader is called otherwise": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind:", "brain:")],
-        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `brain` subscribes to it; it is `/t` now"],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from SSSA (`brain`); it is `/t` now"],
     ),
     "a topic of no component beside a new one of another node": (
         INTERNAL,
         [("publishes: {state: {topic: /s", "publishes: {state: {topic: /t"), ("mind: {", "lamp: {internal: {publishes: {on: {topic: /on, message: std_msgs/msg/Bool}}}}\n  mind: {")],
-        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from sssa, whose `mind` subscribes to it; it is `/t` now"],
+        ["eye.internal.publishes.state/topic sssa: takes the topic `/s` from SSSA (`mind`); it is `/t` now"],
     ),
     "a topic that another node publishes under its own name": (
         NODES,
         [("  mind:", "  lens: {implements: camera, publishes: {image: {topic: /lens/image}}}\n  mind:"), ("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}", "publishes: {depth: {topic: /eye/depth}}")],
-        ["eye.publishes.image sssa: takes the topic `/eye/image` from sssa, whose `mind` subscribes to it; it is `/lens/image` now"],
+        ["eye.publishes.image sssa: takes the topic `/eye/image` from SSSA (`mind`); it is `/lens/image` now"],
     ),
     "a service": (
         BASE.replace("Colour image", "std_srvs/srv/Trigger")
@@ -157,7 +184,7 @@ NAMES = {
         ),
         [("/eye/trigger", "/eye/go")],
         [
-            "eye.serves.image/topic sssa: takes the service `/eye/trigger` from sssa, whose `mind` calls it; it is `/eye/go` now"
+            "eye.serves.image/topic sssa: takes the service `/eye/trigger` from SSSA (`mind`); it is `/eye/go` now"
         ],
     ),
     "quality that is not enough": (NODES, [FEWER], [f"eye.publishes.image/qos sssa: {UNHEARD}"]),
@@ -187,8 +214,8 @@ NAMES = {
         [("deadline: 50 ms", "deadline: 80 ms")],
         [
             (
-                "eye.publishes.image/qos sssa: offers one every 80 ms on `/eye/image`, where `mind` of sssa asks for a message every 60 ms: "
-                "it receives nothing any more"
+                "eye.publishes.image/qos sssa: offers one every 80 ms on `/eye/image`, where `mind` of SSSA asks for a message every 60 ms: "
+                "nothing arrives any more"
             )
         ],
     ),
@@ -213,7 +240,7 @@ NAMES = {
     "quality for a node that another partner owns": (
         NODES.replace("mind: {", "mind: {owner: tum, "),
         [FEWER],
-        [f"eye.publishes.image/qos tum: {UNHEARD.replace('sssa', 'tum')}"],
+        [f"eye.publishes.image/qos tum: {UNHEARD.replace('SSSA', 'TUM')}"],
     ),
     "quality for nobody": (NODES.replace("owner: sssa", "title: T"), [FEWER], []),
     "quality of a topic that is called otherwise": (
@@ -227,7 +254,7 @@ NAMES = {
     "quality of two kinds": (
         NODES.replace("{qos: {reliability: reliable}}", "{qos: {reliability: reliable, deadline: 60 ms}}"),
         [("reliability: reliable, deadline: 50 ms", "reliability: best_effort, deadline: 80 ms")],
-        ["eye.publishes.image/qos sssa: offers best effort only and one every 80 ms on `/eye/image`, where `mind` of sssa asks for reliable delivery and a message every 60 ms: it receives nothing any more"],
+        ["eye.publishes.image/qos sssa: offers best effort only and one every 80 ms on `/eye/image`, where `mind` of SSSA asks for reliable delivery and a message every 60 ms: nothing arrives any more"],
     ),
     "quality that is not enough while the reader asks for more": (
         NODES.replace("{qos: {reliability: reliable}}", "{qos: {reliability: reliable, deadline: 60 ms}}"),
@@ -237,7 +264,7 @@ NAMES = {
     "quality of a component that is called otherwise": (
         NODES,
         [FEWER, ("camera", "colour_camera")],
-        [f"eye.publishes.image/qos sssa: {UNHEARD}"],
+        [f"eye.publishes.image/qos sssa: {UNHEARD}", FOLLOWED.format("sensing.colour_camera")],
     ),
     "quality for a component that is called otherwise": (
         NODES,
@@ -278,19 +305,19 @@ DEFINITIONS = {
     "a field less": (
         MESSAGES,
         [("      uint8 blue\n", "")],
-        [f"x_msgs/msg/Pixel/fields sssa: removes `blue` in `x_msgs/msg/Pixel`, which sssa uses; {NEW}"],
+        [f"x_msgs/msg/Pixel/fields sssa: removes `blue` in `x_msgs/msg/Pixel`, which SSSA uses; {NEW}"],
     ),
     "a field of another type": (
         MESSAGES,
         [("Pixel[] pixels", "Pixel[<=9] pixels")],
-        [f"x_msgs/msg/Image/fields sssa: changes the type of `pixels` in `x_msgs/msg/Image`, which sssa uses; {NEW}"],
+        [f"x_msgs/msg/Image/fields sssa: changes the type of `pixels` in `x_msgs/msg/Image`, which SSSA uses; {NEW}"],
     ),
     "a field more": (
         MESSAGES,
         [("uint8 blue", "uint8 blue\n      uint8 green")],
         [
             (
-                "x_msgs/msg/Pixel/fields sssa: adds `green` in `x_msgs/msg/Pixel`, which sssa uses; even a field more makes another message "
+                "x_msgs/msg/Pixel/fields sssa: adds `green` in `x_msgs/msg/Pixel`, which SSSA uses; even a field more makes another message "
                 f"to ROS: {NEW}"
             )
         ],
@@ -298,9 +325,16 @@ DEFINITIONS = {
     "fields in another order": (
         MESSAGES,
         [("      uint8 red\n      uint8 blue\n", "      uint8 blue\n      uint8 red\n")],
-        [f"x_msgs/msg/Pixel/fields sssa: puts fields in another order in `x_msgs/msg/Pixel`, which sssa uses; {NEW}"],
+        [f"x_msgs/msg/Pixel/fields sssa: puts fields in another order in `x_msgs/msg/Pixel`, which SSSA uses; {NEW}"],
     ),
-    "another comment": (MESSAGES, [("# a comment", "# another comment")], []),
+    "another comment": (
+        MESSAGES,
+        [("# a comment", "# another comment")],
+        [
+            "x_msgs/msg/Image/comment sssa: says of `x_msgs/msg/Image` `another comment` instead of `a comment`; SSSA uses it"
+        ],
+    ),
+    "the same comment in other letters": (MESSAGES, [("# a comment", "# A comment.")], []),
     "a message that nobody else reads": (MESSAGES, [("uint32[] ids", "uint32[] numbers")], []),
 }
 

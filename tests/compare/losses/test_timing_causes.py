@@ -42,18 +42,18 @@ RENAMED = [("image: Colour", "images: Colour"), ("picture: camera.image", "pictu
 NODE_OWNED = ("owner: sssa", "title: T"), ("mind: {", "mind: {owner: sssa, ")
 
 MET = "chain `react`, which met its deadline of 250 ms with"
-ALL = "`eye` of certh, `mind` of sssa and `feet` of tum are on it"
-LATE = "makes the chain `react` miss its deadline of 250 ms"
+ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
+LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 CASES = {
     "who is fired by another host": (
         UNCHAINED.replace("wcet: 2 ms}, host: pc", "wcet: 2 ms}, host: base"),
         [("rate: 10 Hz", "rate: 60 Hz")],
-        ["sensing.camera/timing.rate sssa: overloads the host `pc` (120 % of its core), where `mind` of sssa runs"],
+        ["sensing.camera/timing.rate sssa: overloads the host `pc` (120 % of its core), where `mind` of SSSA runs"],
     ),
     "who shares the host": (
         FAN,
         [("wcet: 1 ms, priority", "wcet: 70 ms, priority")],
-        both("tracking.fan/timing.wcet", f"leaves the {MET} 153 ms, without a bound; `eye` of certh and `feet` of tum are on it", "certh", "tum"),
+        both("tracking.fan/timing.wcet", f"leaves the {MET} 153 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
     ),
     "the cores of the host": (
         ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 80 ms"),
@@ -68,62 +68,62 @@ CASES = {
     "the link on the way": (
         ROBOT,
         [("worst: 2 ms", "worst: 200 ms")],
-        both("lan/latency.worst", f"{LATE} (129 ms → 337 ms); {ALL}", "certh", "sssa", "tum"),
+        both("lan/latency.worst", f"{LATE} (151 ms → 359 ms); {ALL}", "certh", "sssa", "tum"),
     ),
     "a source more": (
         FIRED,
         [("image: camera.image", "image: [camera.image, camera.extra]")],
-        ["tracking.tracker.image certh: overloads the host `pc` (126 % of its core), where `eye` of certh runs"],
+        ["tracking.tracker.image certh: overloads the host `pc` (126 % of its core), where `eye` of CERTH runs"],
     ),
     "an input more": (
         FIRED,
         [("image: camera.image", "image: camera.image, extra: camera.extra")],
-        ["tracking.tracker.extra certh: overloads the host `pc` (126 % of its core), where `eye` of certh runs"],
+        ["tracking.tracker.extra certh: overloads the host `pc` (126 % of its core), where `eye` of CERTH runs"],
     ),
     "a node that leaves its component": (
         OTHER,
         [("mind: {implements: tracker", "mind: {implements: other"), ("feet: {implements: planner", "feet: {package: p, implements: planner")],
         [
-            "mind/implements tum: takes the topic `/tracking/tracker/tracks` from tum, whose `feet` subscribes to it; nobody offers it under that name any more",
-            *both("mind/implements", f"leaves the {MET} 129 ms, without a bound; `eye` of certh and `feet` of tum are on it", "certh", "tum"),
+            "mind/implements tum: takes the topic `/tracking/tracker/tracks` from TUM (`feet`); nobody offers it under that name any more",
+            *both("mind/implements", f"leaves the {MET} 151 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
         ],
     ),
     "a node that is removed": (
         ROBOT,
         [("  mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}\n", "")],
         [
-            "mind tum: takes the topic `/tracking/tracker/tracks` from tum, whose `feet` subscribes to it; nobody offers it under that name any more",
-            *both("mind", f"leaves the {MET} 129 ms, without a bound; `eye` of certh and `feet` of tum are on it", "certh", "tum"),
+            "mind tum: takes the topic `/tracking/tracker/tracks` from TUM (`feet`); nobody offers it under that name any more",
+            *both("mind", f"leaves the {MET} 151 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
         ],
     ),
     "an output that the reader does not follow": (
         SCREEN,
         RENAMED,
         [
-            "sensing.camera.images sssa: takes `sensing.camera.image` from sssa, who still reads it under that name as `tracking.tracker.image`",
-            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/sensing/camera/images` now",
-            *both("sensing.camera.images", f"cuts the {MET} 129 ms; `mind` of sssa and `feet` of tum are on it", "sssa", "tum"),
+            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is `/sensing/camera/images` now",
+            "sensing.camera.images sssa: renames what SSSA reads: `sensing.camera.image` is `sensing.camera.images` now; `tracking.tracker.image` has to follow",
+            *both("sensing.camera.images", f"cuts the {MET} 151 ms; `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
         ],
     ),
     "an output that is renamed while its reader turns away": (
         SCREEN,
         [*RENAMED, ("inputs: {image: camera.image}, ", "")],
         [
-            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/sensing/camera/images` now",
-            f"tracking.tracker.image tum: cuts the {MET} 129 ms; `feet` of tum is on it",
+            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is `/sensing/camera/images` now",
+            f"tracking.tracker.image tum: cuts the {MET} 151 ms; `feet` of TUM is on it",
         ],
     ),
     "a node of a partner for a component of nobody": (
         ROBOT.replace(*NODE_OWNED[0]).replace(*NODE_OWNED[1]),
         [("rate: 10 Hz", "rate: 4 Hz")],
-        both("sensing.camera/timing.rate", f"{LATE} (129 ms → 279 ms); `mind` of sssa and `feet` of tum are on it", "sssa", "tum"),
+        both("sensing.camera/timing.rate", f"{LATE} (151 ms → 301 ms); `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
     ),
     "a node of a partner that is cut off, for a component of nobody": (
         SCREEN.replace(*NODE_OWNED[0]).replace(*NODE_OWNED[1]),
         RENAMED,
         [
-            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from sssa, whose `mind` subscribes to it; it is `/sensing/camera/images` now",
-            *both("sensing.camera.images", f"cuts the {MET} 129 ms; `mind` of sssa and `feet` of tum are on it", "sssa", "tum"),
+            "sensing.camera.images sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is `/sensing/camera/images` now",
+            *both("sensing.camera.images", f"cuts the {MET} 151 ms; `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
         ],
     ),
     "a step that is added on the way": (
@@ -133,7 +133,7 @@ CASES = {
             ("{image: camera.image}, outputs: {tracks", "{image: mend.image}, outputs: {tracks"),
             ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 50 ms}, host: far}\n"),
         ],
-        both("sensing.mend", f"leaves the {MET} 129 ms, without a bound; `mind` of sssa and `feet` of tum are on it", "sssa", "tum"),
+        both("sensing.mend", f"leaves the {MET} 151 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
     ),
 }  # fmt: skip
 

@@ -165,17 +165,32 @@ def test_references_lead_to_bookmarks_or_stay_text() -> None:
 
 
 def test_captions_are_fields_and_stand_in_their_lists() -> None:
-    table = Table("t", "Ports", (Column("a"),), (((Text("x"),),),))
-    outline = Outline("T", sections=(Section("a", "A", (Figure("f", "small", "Picture", "alt"), table)),))
-    xml = document(report(outline))
+    tables = [Table(name, name, (Column("a"),), (((Text("x"),),),)) for name in ("Ports", "Nodes")]
+    figures = [Figure(name, "small", name, "alt") for name in ("Picture", "Other")]
+    xml = document(report(Outline("T", sections=(Section("a", "A", (*figures, *tables)),))))
     assert [words(found) for found in re.findall(r'w:history="1">(.*?)<w:r><w:tab/>', xml)] == [
         "1  A",
         "Figure 1: Picture",
+        "Figure 2: Other",
         "Table 1: Ports",
+        "Table 2: Nodes",
     ]
-    assert re.findall(r" (SEQ \w+ \\\* ARABIC) ", xml) == ["SEQ Figure \\* ARABIC", "SEQ Table \\* ARABIC"]
+    assert re.findall(r" (SEQ \w+ \\\* ARABIC) ", xml) == 2 * ["SEQ Figure \\* ARABIC"] + 2 * ["SEQ Table \\* ARABIC"]
     codes = [html.unescape(code).strip() for code in re.findall(r"> (TOC [^<]*)<", xml)]
     assert codes == ['TOC \\o "1-3" \\h \\z \\u', 'TOC \\h \\z \\c "Figure"', 'TOC \\h \\z \\c "Table"']
+
+
+def test_a_single_figure_or_table_needs_no_list() -> None:
+    table = Table("t", "Ports", (Column("a"),), (((Text("x"),),),))
+    xml = document(report(Outline("T", sections=(Section("a", "A", (Figure("f", "small", "Picture", "alt"), table)),))))
+    assert [html.unescape(code).strip() for code in re.findall(r"> (TOC [^<]*)<", xml)] == ['TOC \\o "1-3" \\h \\z \\u']
+
+
+def test_neither_the_first_nor_the_last_row_of_a_table_is_alone_on_a_page() -> None:
+    table = Table("t", "Ports", (Column("a"),), tuple(((Text(f"row {row}"),),) for row in range(40)), numbered=False)
+    xml = document(report(Outline("T", sections=(Section("a", "A", (table,)),))))
+    rows = [row for row in re.findall(r"<w:tr>.*?</w:tr>", xml) if "row " in row]
+    assert [index for index, row in enumerate(rows) if "<w:keepNext/>" in row] == [0, 38]
 
 
 def test_wide_things_turn_the_page_and_back() -> None:

@@ -15,7 +15,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.review_settings import AcceptedChange, BreakPolicy
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -92,24 +92,25 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
     assert (
         told(("wcet: 20 ms", "wcet: 60 ms"))
         == """\
-### 1 change of the architecture: breaks `certh`, also concerns `sssa`
+### 1 change of the architecture: breaks CERTH, also concerns SSSA
 
-`main` → `arm`: 1 changed; new: 1 warning
+`main` → `arm`: 1 changed
 
 #### Breaking changes
 
-- \\~ `display.finder`: worst case execution time `20 ms` → `60 ms`
-  - breaks `certh`: makes the chain `see` miss its deadline of 150 ms (127 ms → 167 ms); `camera` of certh is on it
+- \\~ `display.finder` of SSSA: worst case execution time `20 ms` → `60 ms`
+  - breaks CERTH (promise): takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of CERTH is on it
+  - found as `late-chain` at `robot.yaml:22:10`
+
+#### Load of hosts and links
+
+- \\~ host `pc`: 6.8 % → 16.8 % of its cores; used by CERTH and SSSA
 
 #### Latency of chains
 
 | chain | before | after | difference | deadline | verdict |
 | --- | --- | --- | --- | --- | --- |
-| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **missed (was met)** |
-
-#### New findings
-
-- warning `late-chain`: the chain `see` may take 167 ms, its deadline is 150 ms (`robot.yaml:22:10`)
+| `see` | 127 ms | 167 ms | \\+40 ms | 150 ms | **not proven (was met)** |
 
 ```mermaid
 flowchart LR
@@ -140,41 +141,41 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     assert (kind.element_kind, rate.element_kind) == ("type", "component")
     breaks = (
         PartnerBreak("sssa", "`display.finder` takes `Image`", "agreed in May"),
-        PartnerBreak("sssa", "two", "agreed in May"),
-        PartnerBreak("certh", "two"),
+        PartnerBreak("sssa", "two", "agreed in May", "meaning"),
+        PartnerBreak("certh", "two", category="meaning"),
     )
     claims = (AcceptedChange("Image", "agreed in *June*", "message", Span("archgen.yaml", 1, 1, 1, 1)),)
     kind = replace(kind, breaks=breaks, claims=claims)
     text = written(replace(found, changes=(rate, kind)), broken)
     assert text.startswith("""\
-### 2 changes of the architecture: breaks `certh` and `sssa`
+### 2 changes of the architecture: breaks CERTH and SSSA
 
 `main` → `arm`: 2 changed
 
 #### Breaking changes
 
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
-  - breaks `sssa`: `display.finder` takes `Image`
-  - breaks `certh` and `sssa`: two
-  - accepted by sssa: agreed in May
-  - said in `archgen.yaml`, not by certh and sssa: agreed in \\*June\\*
+  - breaks SSSA (wire): `display.finder` takes `Image`
+  - breaks CERTH and SSSA (meaning): two
+  - accepted by SSSA: agreed in May
+  - said in `archgen.yaml`, not by CERTH and SSSA: agreed in \\*June\\*
 
 #### Other changes
 
-**Sensing · `sensing`**
+**Sensing · `sensing` (CERTH)**
 
 - \\~ `sensing.camera`: rate `10 Hz` → `20 Hz`
 """)
-    refused = replace(found, changes=(kind,), breaking_severity=Severity.ERROR)
+    refused = replace(found, changes=(kind,), policy=BreakPolicy(meaning=Severity.ERROR))
     assert (
-        "\n`review.breaking: error` refuses this: mend it, or certh says why it is right, in `review/certh.yaml`: "
-        "`review: {accepted: {Image: {key: message, reason: THE REASON}}}`\n"
+        "\n`review.breaking: {meaning: error}` refuses this: mend it, or CERTH says why it is right:\n\n"
+        "```yaml\n# review/certh.yaml\nreview:\n  accepted:\n    Image: {key: message, reason: THE REASON}\n```\n"
     ) in written(refused, broken)
 
 
 def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
     text = told(("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"))
-    assert text.startswith("### 1 change of the architecture: breaks `sssa`, also concerns `certh`\n")
+    assert text.startswith("### 1 change of the architecture: breaks SSSA, also concerns CERTH\n")
     assert '  n0 -->|"#126; Image"| n1\n' in text
 
 
@@ -193,19 +194,25 @@ def test_a_version_that_does_not_parse(told: Told) -> None:
     assert told(("types: {", "types: [{")).startswith("### Cannot be judged: `robot.yaml` cannot be read\n")
 
 
-def test_texts_and_cured_findings_are_folded(told: Told) -> None:
-    text = told(
+def test_texts_are_folded_unless_there_is_only_one(told: Told) -> None:
+    one = told(
         ("    title: Display\n", "    title: Screens\n"), ("  screen: {implements", "  screen_node: {implements")
     )
-    assert "<details><summary>1 change of texts and pictures only</summary>\n\n- \\~ " in text
-    assert "\n\n</details>" in text
+    assert "**Texts and pictures only**\n\n- \\~ " in one
+    assert "<details>" not in one
+    two = told(
+        ("    title: Display\n", "    title: Screens\n"),
+        ("    components:\n      finder:", "    description: Shows it\n    components:\n      finder:"),
+    )
+    assert "<details><summary>2 changes of texts and pictures only</summary>\n\n- \\~ " in two
+    assert "\n\n</details>" in two
 
 
 def test_many_changes_of_one_group_are_folded_and_drawn_as_one_box(told: Told) -> None:
     many = "".join(f"      part{at}: {{inputs: {{image: camera.image}}}}\n" for at in range(60))
     text = told(("      finder:", f"{many}      finder:"))
     assert "<details><summary>52 more changes</summary>" in text
-    assert text.startswith("### 60 changes of the architecture: concerns `certh` and `sssa`\n")
+    assert text.startswith("### 60 changes of the architecture: concerns CERTH and SSSA\n")
     assert '("Display<br>#8203;+ 60 components"):::added' in text
     assert "1 group folded to one box each" in text
 

@@ -12,12 +12,12 @@ from archgen.timing.chains import path_states
 from archgen.timing.chains.chain_bounds import (
     bound_all_chains,
     find_data_age,
-    find_missed_chains,
     find_paths_between,
-    judge_deadline,
+    find_unmet_chains,
     list_bounded_paths,
 )
 from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
+from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
 from archgen.timing.figures.timing_values import TimingValue
@@ -110,22 +110,34 @@ def _exact(number: int | None, *assumptions: str) -> TimingValue:
     return TimingValue(None if number is None else Fraction(number), assumptions=assumptions)
 
 
+def _at_least(number: int, *assumptions: str) -> TimingValue:
+    return TimingValue(Fraction(number), complete=False, assumptions=assumptions, side="at least")
+
+
 @pytest.mark.parametrize(
-    ("bound", "deadline", "verdict"),
+    ("bound", "best", "deadline", "verdict"),
     [
-        (_exact(5), _exact(5), "met"),
-        (_exact(6), _exact(5), "missed"),
-        (_exact(6), None, "open"),
-        (_exact(6), _exact(None), "open"),
-        (_exact(None, "overload"), _exact(5), "missed"),
-        (_exact(None, "diverged"), _exact(5), "open"),
-        (TimingValue(Fraction(5), complete=False, side="at least"), _exact(5), "open"),
-        (TimingValue(Fraction(6), complete=False, side="at least"), _exact(5), "missed"),
-        (TimingValue(Fraction(5), side="at most"), _exact(5), "met"),
+        (_exact(5), 0, _exact(5), "met"),
+        (_exact(6), 5, _exact(5), "not proven"),
+        (_exact(7), 6, _exact(5), "missed"),
+        (_exact(6), 6, None, "open"),
+        (_exact(6), 6, _exact(None), "open"),
+        (_exact(None, "overload"), 0, _exact(5), "missed"),
+        (_exact(None, "unbounded"), 0, _exact(5), "missed"),
+        (_exact(None, "diverged"), 0, _exact(5), "not proven"),
+        (_exact(None, "diverged"), 6, _exact(5), "missed"),
+        (_at_least(4, "diverged"), 0, _exact(5), "not proven"),
+        (replace(_at_least(4, "diverged"), missing=("x",)), 0, _exact(5), "open"),
+        (_at_least(5), 0, _exact(5), "open"),
+        (_at_least(6), 0, _exact(5), "not proven"),
+        (_at_least(5), 6, _exact(5), "missed"),
+        (TimingValue(Fraction(5), side="at most"), 0, _exact(5), "met"),
     ],
 )
-def test_what_is_known_may_exceed_a_deadline(bound: TimingValue, deadline: TimingValue | None, verdict: str) -> None:
-    assert judge_deadline(bound, deadline) == verdict
+def test_only_what_is_shown_to_be_possible_is_missed(
+    bound: TimingValue, best: int, deadline: TimingValue | None, verdict: str
+) -> None:
+    assert judge_deadline(bound, _at_least(best), deadline) == verdict
 
 
 LATE = """
@@ -144,17 +156,18 @@ def test_missed_chains_and_the_age_of_data() -> None:
     model = read_sketch(nodes, "a>b b>c", LATE)
     analysis = analyse_architecture(model)
     assert [
-        (late.chain.id, late.bound.value, len(late.terms)) for late in find_missed_chains(analysis, model, Fraction(0))
+        (late.chain.id, late.bound.value, late.verdict, len(late.terms))
+        for late in find_unmet_chains(analysis, model, Fraction(0))
     ] == [
-        ("late", 13 * MS, 2),
-        ("event", 5 * MS, 2),
+        ("late", 13 * MS, "not proven", 2),
+        ("event", 5 * MS, "missed", 2),
     ]
     network, chains = CostNetwork.of_analysis(analysis), bound_all_chains(analysis, model)
     assert find_data_age(network, chains["fine"]).value == 13 * MS
     assert find_data_age(network, chains["event"]).value == (2 + 3 + 10) * MS
     assert find_data_age(network, chains["lost"]) is chains["lost"].bound
     wrong = replace(model, chains={"late": replace(model.chains["late"], unresolved=("x",))})
-    assert list(find_missed_chains(analysis, wrong, Fraction(0))) == []
+    assert list(find_unmet_chains(analysis, wrong, Fraction(0))) == []
     assert show_ms(bound_all_chains(analysis, wrong)["late"].bound) == "none ?x [`x` is not resolved]"
 
 
@@ -278,7 +291,7 @@ chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
 def test_a_margin_is_a_share_of_the_deadline(deadline: str, margin: Fraction, is_late: object) -> None:
     nodes = {"a": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "b": "wcet: 2 ms"}
     model = read_sketch(nodes, "a>b", f"chains: {{way: {{through: [a, b], deadline: {deadline}}}}}")
-    missed = [late.chain.id for late in find_missed_chains(analyse_architecture(model), model, margin)]
+    missed = [late.chain.id for late in find_unmet_chains(analyse_architecture(model), model, margin)]
     assert missed == (["way"] if is_late else [])
 
 

@@ -189,3 +189,13 @@ def test_servers_whose_response_is_open() -> None:
         "poll asked by z: >= 1 ?poll [assuming a dedicated core]; z waits >= 1 ?poll [assuming a dedicated core] takes >= 2 ?poll [assuming a dedicated core]",
         "slow asked by w: 6; w waits 42 takes 43",
     ]
+
+
+def test_a_caller_of_whose_timing_nothing_is_written_gives_no_rate() -> None:
+    """One call for each message that it reads would be a guess, and an overload that follows from it, too."""
+    analysis = analyse_sketch(
+        {"server": "wcet: 300 ms", "sensor": "rate: 100 Hz, wcet: 1 ms", "asker": ""},
+        "sensor>asker asker?server",
+    )
+    assert list_paces(analysis)[0].startswith("server on_demand inferred: none ?asker Hz")
+    assert "called by asker, once for each activation: unknown" in list_reasons(analysis)[0]

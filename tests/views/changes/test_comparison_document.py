@@ -33,10 +33,8 @@ groups:
 chains: {see: {through: [camera, screen], deadline: 100 ms}}
 """
 RETYPED = OLD.replace("msg/Image", "msg/CompressedImage")
-REFUSED = (
-    "mend it, or sssa says why it is right, in `review/sssa.yaml`: "
-    "`review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}`"
-)
+REFUSED = "mend it, or SSSA says why it is right:"
+MISSING = "sensing.camera.image: {key: type, reason: THE REASON}"
 FORMS = ("terminal", "markdown", "page")
 Sides = tuple[ProjectVersion, ProjectVersion]
 ReadSides = Callable[[str, str], Sides]
@@ -78,7 +76,8 @@ def describe(sides: Sides, *, only_breaking: bool = False) -> tuple[ComparisonDo
 def page_texts(data: object) -> list[str]:
     """Return the texts of an outline in their order; runs of one sentence are joined."""
     if isinstance(data, dict):
-        own_texts = [data["title"]] if data.get("shape") == "section" else []
+        key = {"section": "title", "markdown": "text"}.get(data.get("shape", ""))
+        own_texts = [data[key]] if key else []
         return own_texts + [text for value in data.values() for text in page_texts(value)]
     if isinstance(data, list) and data and all(isinstance(item, dict) and item["shape"] == "text" for item in data):
         return ["".join(item["text"] for item in data)]
@@ -137,9 +136,15 @@ def test_a_refused_change_says_what_to_write_in_every_format(read_sides: ReadSid
     for form in FORMS:
         assert f"review.breaking: error refuses this: {REFUSED.replace('`', '')}" in texts[form], form
         assert "names no breaking change here" not in texts[form], form
+        # Behind the change that it speaks of.
+        places = [texts[form].index(part) for part in ("as sensing.camera.image", REFUSED, MISSING)]
+        assert places == sorted(places), form
     _, texts = describe(sides, only_breaking=True)
     for form in FORMS:
-        assert "error: 1 breaking change for sssa; review.breaking: error refuses what is not accepted" in texts[form]
+        assert (
+            "error: 1 breaking change for SSSA (wire); review.breaking: error refuses what is not accepted"
+            in texts[form]
+        )
         assert "names no breaking change here, and nothing in either version has this id" in texts[form], form
         assert REFUSED.replace("`", "") in texts[form], form
 

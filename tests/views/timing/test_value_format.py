@@ -45,7 +45,8 @@ def test_numbers(value: Fraction, text: str) -> None:
         (exact(0), "0 ms"),
         (UNKNOWN_VALUE, "unknown"),
         (TimingValue(None, assumptions=("overload",)), "no bound: the host is overloaded"),
-        (TimingValue(None, assumptions=("unbounded: a is conditional",)), "no bound"),
+        (TimingValue(None, assumptions=("unbounded: a is conditional",)), "unbounded"),
+        (TimingValue(None, assumptions=("diverged",)), "no bound found"),
     ],
 )
 def test_durations(value: TimingValue, text: str) -> None:

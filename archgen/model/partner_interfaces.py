@@ -8,14 +8,14 @@ without a connection (/tf, for instance) are interfaces too.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Literal
 
-from archgen.model.architecture import Architecture
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Input, Output
+from archgen.model.interface_ends import InterfaceEnds, list_interface_ends
 from archgen.model.message_types import flow_of
-from archgen.model.node import Endpoint, Node, Topic
-from archgen.views.lookup import Lookup
+from archgen.model.node import Endpoint, Topic
 
 InterfaceFlow = Literal["topic", "service", "action", "physical"]
 PartnerPair = tuple[str, str]
@@ -52,49 +52,84 @@ class PartnerInterface:
         return tuple(dict.fromkeys(endpoint.name for endpoint in self.giver_endpoints))
 
 
-def find_interfaces_between(lookup: Lookup, first_partner: str, second_partner: str) -> tuple[PartnerInterface, ...]:
+def find_interfaces_between(
+    architecture: Architecture, first_partner: str, second_partner: str
+) -> tuple[PartnerInterface, ...]:
     """Return the interfaces between two partners, those the first one gives before those of the second."""
-    finder = _InterfaceFinder(lookup, (first_partner, second_partner))
-    interfaces = [*finder.find_output_interfaces(), *finder.find_topic_interfaces()]
+    pair, ends = (first_partner, second_partner), list_interface_ends(architecture)
+    return _find_of_pair(_InterfaceFinder(architecture, pair, ends, architecture.edges, architecture.topics.values()))
+
+
+def find_all_interfaces(architecture: Architecture) -> tuple[PartnerInterface, ...]:
+    """Return the interfaces between all partners, pair by pair in the order of their ids."""
+    # Each pair looks only at what may be between the two: with a dozen partners nearly nothing is.
+    ends = list_interface_ends(architecture)
+    edges, topics = _group_edges(ends), _group_topics(ends)
     return tuple(
-        interface for giver in (first_partner, second_partner) for interface in interfaces if interface.pair[0] == giver
+        interface
+        for pair in sorted({*edges, *topics})
+        for interface in _find_of_pair(
+            _InterfaceFinder(architecture, pair, ends, edges.get(pair, ()), topics.get(pair, ()))
+        )
     )
 
 
-def foreign_owners(architecture: Architecture, node: Node) -> tuple[str, ...]:
-    """Return a node's owners if somebody wrote others than those of its components."""
-    component_owners = {owner for component in node.implements for owner in architecture.components[component].owners}
-    return node.owners if set(node.owners) != component_owners else ()
+def _find_of_pair(finder: _InterfaceFinder) -> tuple[PartnerInterface, ...]:
+    interfaces = [*finder.find_output_interfaces(), *finder.find_topic_interfaces()]
+    return tuple(interface for giver in finder.pair for interface in interfaces if interface.pair[0] == giver)
+
+
+def _group_edges(ends: InterfaceEnds) -> Mapping[PartnerPair, list[PortEdge]]:
+    """Return for each pair of partners all edges of the outputs that may be between them."""
+    edges_by_output: dict[str, list[PortEdge]] = {}
+    for edge in ends.architecture.edges:
+        edges_by_output.setdefault(edge.output, []).append(edge)
+    edges_by_pair: dict[PartnerPair, list[PortEdge]] = {}
+    for output, edges in edges_by_output.items():
+        givers = ends.list_port_owners(ends.architecture.outputs[output])
+        takers = {owner for edge in edges for owner in ends.list_port_owners(ends.architecture.inputs[edge.input])}
+        for pair in _pair_partners(givers, takers):
+            edges_by_pair.setdefault(pair, []).extend(edges)
+    return edges_by_pair
+
+
+def _group_topics(ends: InterfaceEnds) -> Mapping[PartnerPair, list[Topic]]:
+    topics_by_pair: dict[PartnerPair, list[Topic]] = {}
+    for topic in ends.architecture.topics.values():
+        givers, takers = (
+            {owner for endpoint in endpoints for owner in ends.list_endpoint_owners(endpoint)}
+            for endpoints in (topic.writers, topic.readers)
+        )
+        for pair in _pair_partners(givers, takers):
+            topics_by_pair.setdefault(pair, []).append(topic)
+    return topics_by_pair
+
+
+def _pair_partners(givers: Collection[str], takers: Collection[str]) -> list[PartnerPair]:
+    """Return the pairs of a giver and a taker, sorted as the ids of each are."""
+    return sorted({(min(giver, taker), max(giver, taker)) for giver in givers for taker in takers if giver != taker})
 
 
 @dataclass(frozen=True, slots=True)
 class _InterfaceFinder:
-    lookup: Lookup
+    architecture: Architecture
     pair: PartnerPair
-    _endpoints_by_port: dict[str, list[Endpoint]] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for endpoint in self.lookup.architecture.endpoints:
-            if endpoint.port is not None:
-                self._endpoints_by_port.setdefault(
-                    f"{endpoint.use in {'publishes', 'serves'}} {endpoint.port}", []
-                ).append(endpoint)
+    ends: InterfaceEnds
+    edges: Iterable[PortEdge]
+    topics: Iterable[Topic]
 
     def find_output_interfaces(self) -> Iterator[PartnerInterface]:
         """Yield an interface for each output and direction: the connections between components."""
-        architecture = self.lookup.architecture
+        architecture = self.architecture
         readers: dict[tuple[str, PartnerPair], dict[str, None]] = {}
         other_readers: dict[str, dict[str, None]] = {}
-        for edge in architecture.edges:
+        for edge in self.edges:
             direction = self._find_direction(architecture.outputs[edge.output], architecture.inputs[edge.input])
             if direction:
                 readers.setdefault((edge.output, direction), {})[edge.input] = None
             else:
                 other_readers.setdefault(edge.output, {})[edge.input] = None
-        output_order = {output: position for position, output in enumerate(architecture.outputs)}
-        for (output, direction), inputs in sorted(
-            readers.items(), key=lambda reader_entry: output_order[reader_entry[0][0]]
-        ):
+        for (output, direction), inputs in sorted(readers.items(), key=lambda entry: self.ends.positions[entry[0][0]]):
             yield self._make_output_interface(
                 architecture.outputs[output], direction, list(inputs), list(other_readers.get(output, ()))
             )
@@ -102,7 +137,7 @@ class _InterfaceFinder:
     def _make_output_interface(
         self, output: Output, direction: PartnerPair, input_ids: Iterable[str], other_ids: Iterable[str]
     ) -> PartnerInterface:
-        architecture = self.lookup.architecture
+        architecture = self.architecture
         partner_inputs = [architecture.inputs[input_id] for input_id in input_ids]
         message = architecture.message_of(output)
         return PartnerInterface(
@@ -119,18 +154,18 @@ class _InterfaceFinder:
         )
 
     def _writing_endpoints(self, output: Output) -> tuple[Endpoint, ...]:
-        return tuple(self._endpoints_by_port.get(f"True {output.id}", ()))
+        return tuple(self.ends.endpoints_by_port.get((True, output.id), ()))
 
     def _reading_endpoints(self, port: Input, output: Output) -> tuple[Endpoint, ...]:
         return tuple(
             endpoint
-            for endpoint in self._endpoints_by_port.get(f"False {port.id}", ())
+            for endpoint in self.ends.endpoints_by_port.get((False, port.id), ())
             if output.id in endpoint.sources
         )
 
     def _find_direction(self, output: Output, port: Input) -> PartnerPair | None:
         """Return who gives whom: by the components' owners, else by those of their nodes as well."""
-        architecture = self.lookup.architecture
+        architecture = self.architecture
         giver, taker = architecture.components[output.component], architecture.components[port.component]
         if set(self.pair) <= set(giver.owners) and set(self.pair) <= set(taker.owners):
             return None
@@ -140,10 +175,7 @@ class _InterfaceFinder:
         )
 
     def _foreign_node_owners(self, endpoints: Iterable[Endpoint]) -> Iterator[str]:
-        architecture = self.lookup.architecture
-        return (
-            owner for endpoint in endpoints for owner in foreign_owners(architecture, architecture.nodes[endpoint.node])
-        )
+        return (owner for endpoint in endpoints for owner in self.ends.foreign_owners[endpoint.node])
 
     def _direction_between(self, givers: Collection[str], takers: Collection[str]) -> PartnerPair | None:
         first, second = self.pair
@@ -156,7 +188,7 @@ class _InterfaceFinder:
 
     def find_topic_interfaces(self) -> Iterator[PartnerInterface]:
         """Yield an interface for each topic that joins nodes of both partners without a connection."""
-        for topic in self.lookup.architecture.topics.values():
+        for topic in self.topics:
             endpoints_by_direction: dict[PartnerPair, tuple[dict[int, Endpoint], dict[int, Endpoint]]] = {}
             for writer in filter(self._is_of_pair, topic.writers):
                 for reader in filter(self._is_of_pair, topic.readers):
@@ -172,19 +204,10 @@ class _InterfaceFinder:
         # What is connected as ports is an interface of the output already.
         if writer.node == reader.node or (writer.port is not None and writer.port in reader.sources):
             return None
-        return self._direction_between(self._endpoint_owners(writer), self._endpoint_owners(reader))
+        return self._direction_between(self.ends.list_endpoint_owners(writer), self.ends.list_endpoint_owners(reader))
 
     def _is_of_pair(self, endpoint: Endpoint) -> bool:
-        return not set(self.pair).isdisjoint(self._endpoint_owners(endpoint))
-
-    def _endpoint_owners(self, endpoint: Endpoint) -> tuple[str, ...]:
-        architecture = self.lookup.architecture
-        written_owners = (
-            architecture.components[endpoint.component].owners
-            if endpoint.component
-            else architecture.nodes[endpoint.node].owners
-        )
-        return (*written_owners, *foreign_owners(architecture, architecture.nodes[endpoint.node]))
+        return not set(self.pair).isdisjoint(self.ends.list_endpoint_owners(endpoint))
 
     def _make_topic_interface(
         self, topic: Topic, direction: PartnerPair, givers: tuple[Endpoint, ...], takers: tuple[Endpoint, ...]
@@ -203,10 +226,9 @@ class _InterfaceFinder:
 
 
 def components_at_ends(
-    lookup: Lookup, interface: PartnerInterface
+    architecture: Architecture, interface: PartnerInterface
 ) -> tuple[tuple[Component, ...], tuple[Component, ...]]:
     """Return the giving and the taking components, each once."""
-    architecture = lookup.architecture
     giving_ids = (
         [interface.output.component]
         if interface.output
@@ -218,3 +240,9 @@ def components_at_ends(
         tuple(components_by_id[name] for name in dict.fromkeys(giving_ids) if name),
         tuple(components_by_id[name] for name in dict.fromkeys(taking_ids) if name),
     )
+
+
+def list_givers(architecture: Architecture, interface: PartnerInterface) -> tuple[Endpoint, ...]:
+    """Return the giving endpoints of nodes that somebody wrote, else those of the planned ones."""
+    written = tuple(endpoint for endpoint in interface.giver_endpoints if architecture.nodes[endpoint.node].written)
+    return written or interface.giver_endpoints

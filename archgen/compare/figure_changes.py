@@ -1,0 +1,89 @@
+"""The data of what follows from changes in figures: at interfaces between partners, and of the load of hosts and links."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from archgen.frozen import dataclass
+from archgen.model.node import Qos
+from archgen.timing.figures.timing_values import TimingValue
+
+BoundaryKind = Literal["added", "removed", "changed"]
+
+
+class FigureKey(NamedTuple):
+    """What a figure is called, and the node that it is of where several nodes have one, by its common id."""
+
+    name: str
+    node: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TravelPath:
+    """The hosts that data leaves and reaches, and the links that it crosses, by common ids."""
+
+    senders: tuple[str, ...]
+    receivers: tuple[str, ...]
+    links: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WireNames:
+    """The topics, services or actions (`flow`) of an interface; compared only where it took the place of another one."""
+
+    flow: str
+    names: tuple[str, ...]
+
+
+Figure = TimingValue | Qos | TravelPath | WireNames
+
+
+@dataclass(frozen=True, slots=True)
+class FigureChange:
+    """A figure before and after; None where the interface was not there, or had no such figure."""
+
+    key: FigureKey
+    before: Figure | None
+    after: Figure | None
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryChange:
+    """What changed of one output (or of a topic that needs none) between givers and takers, by common ids.
+
+    `interface_id` is its id in the second version, in the first one if it is gone; `old_id` is the earlier one where it
+    has another now, or that of the output that its takers read before. `kind` is `added`, `removed` or `changed`.
+    `old_givers` are those who gave it before, and `old_takers` those who took it, if it changed hands.
+    """
+
+    kind: BoundaryKind
+    interface_id: str
+    old_id: str | None
+    givers: tuple[str, ...]
+    takers: tuple[str, ...]
+    figures: tuple[FigureChange, ...]
+    concerned_partners: frozenset[str]
+    old_givers: tuple[str, ...] = ()
+    old_takers: tuple[str, ...] = ()
+    missed_deadline: TimingValue | None = None
+    """The deadline that its subscribers ask for, where the largest gap keeps it no longer; in ns."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadChange:
+    """The load of a host (of all its cores) or of a link, as a share of what it has; `before` None: it was not there.
+
+    `users` are the partners with something on it in the second version.
+    """
+
+    kind: Literal["host", "link"]
+    id: str
+    before: TimingValue | None
+    after: TimingValue
+    users: frozenset[str]
+
+    @property
+    def concerned_partners(self) -> frozenset[str]:
+        """Return whom it concerns: those who use what has less to spare now."""
+        old_share = self.before.value if self.before else None
+        return self.users if (self.after.value or 0) > (old_share or 0) else frozenset()

@@ -1,0 +1,209 @@
+"""Outputs whose owner promises less than before: slower, with longer gaps, only on condition.
+
+Only what is written is a promise. A rate that follows from other components concerns its readers, and breaks nobody. What
+takes only from the margin (a lower rate, more jitter), while all that is asked of it is still kept, breaks where the
+project gives promises a severity of their own.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import NamedTuple
+
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_sorted_names
+from archgen.compare.losses.lost_connections import find_output_causes
+from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import OutputTiming, Timing
+from archgen.model.quantity import Quantity
+from archgen.timing.figures.figure_wording import format_duration, format_rate
+
+_NS_PER_SECOND = 10**9
+
+
+class OutputPromise(NamedTuple):
+    """What the owner of an output says of when it is sent, all its nodes together; rate in Hz, durations in ns."""
+
+    rate: Fraction | None
+    is_steady: bool
+    gap: Fraction | None
+    every: int
+    throttle: Fraction
+    jitter: Fraction | None
+    response: Fraction | None
+    is_conditional: bool
+
+
+class Weakening(NamedTuple):
+    """What is promised less: in words, and the ends of the keys that may say it, most likely first.
+
+    `is_margin`: nothing that is asked of it need suffer. `period` (ns) is the new one, where a lower rate is what is less.
+    """
+
+    words: str
+    keys: tuple[str, ...]
+    is_margin: bool = False
+    period: Fraction | None = None
+
+
+_SharedWeakening = tuple[tuple[int, ...], str]
+"""The indices of the changes, and the words: one slower component is one loss, however many outputs it has."""
+
+
+def find_weakened_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find outputs of which partners were promised more than now."""
+    old_version, new_version = _PromisedOutputs(context.before), _PromisedOutputs(context.after)
+    outputs: dict[_SharedWeakening, dict[str, Mapping[str, list[str]]]] = defaultdict(dict)
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
+        old_id = context.old_id("output", output)
+        old_promise, new_promise = old_version.read_promise(old_id), new_version.read_promise(new_output)
+        # Of what could not be read nobody knows what it promises.
+        if old_promise == new_promise or (new_promise.rate is None and context.after.unread_keys):
+            continue
+        for weakening in _compare_promises(old_promise, new_promise):
+            losers = inputs_by_partner
+            if weakening.is_margin and not context.guards_margins:
+                askers = _find_askers(context, old_id, old_promise.rate, weakening.period)
+                losers = {partner: inputs for partner, inputs in inputs_by_partner.items() if partner in askers}
+            if losers:
+                indices = tuple(_find_causes(context, output, new_output, weakening.keys))
+                outputs[indices, weakening.words][old_id] = losers
+    for (indices, words), readers_by_output in outputs.items():
+        parts: dict[str, list[str]] = defaultdict(list)
+        for inputs_by_partner in readers_by_output.values():
+            for partner, inputs in inputs_by_partner.items():
+                parts[partner] += inputs
+        pronoun = "it" if len(readers_by_output) == 1 else "them"
+        reason_text = f"promises for {tick_sorted_names(readers_by_output)} {words}; {{}} {pronoun}"
+        yield from context.shared_losses(indices, parts, reason_text, "reads")
+
+
+def _find_askers(
+    context: ChangeContext, output_id: str, old_rate: Fraction | None, new_period: Fraction | None
+) -> frozenset[str]:
+    """Return the partners whose subscriptions ask for a message more often than it comes now, and got it before."""
+    if not old_rate or new_period is None:
+        return frozenset()
+    old_period = Fraction(_NS_PER_SECOND) / old_rate
+    return frozenset(
+        context.matched_ids.common_id("partner", owner)
+        for endpoint in context.before.endpoints
+        if endpoint.use == "subscribes" and output_id in endpoint.sources
+        if endpoint.qos.deadline is not None and old_period <= endpoint.qos.deadline.value < new_period
+        if (owner := context.before.nodes[endpoint.node].owner) is not None
+    )
+
+
+class _PromisedOutputs:
+    """The promises of one version."""
+
+    def __init__(self, architecture: Architecture) -> None:
+        self._architecture = architecture
+
+    @cached_property
+    def _nodes_by_output(self) -> Mapping[str, Sequence[str]]:
+        nodes: dict[str, list[str]] = defaultdict(list)
+        for endpoint in self._architecture.endpoints:
+            if endpoint.port and endpoint.use in {"publishes", "serves"}:
+                nodes[endpoint.port].append(endpoint.node)
+        return nodes
+
+    def read_promise(self, output_id: str) -> OutputPromise:
+        """Return what is written of an output, whether its component says it or its nodes."""
+        component_id = output_id.rpartition(".")[0]
+        own_timing = self._architecture.components[component_id].timing or Timing()
+        node_ids = dict.fromkeys(self._nodes_by_output.get(output_id, ()))
+        nodes = [self._architecture.nodes[node_id] for node_id in node_ids]
+        timings = [node.timing.get(component_id) or own_timing for node in nodes] or [own_timing]
+        outputs = [timing.outputs.get(output_id, OutputTiming()) for timing in timings]
+        rates = [_effective_rate(timing) for timing in timings]
+        return OutputPromise(
+            rate=sum((rate for rate in rates if rate), Fraction(0)) if all(rates) else None,
+            is_steady=all(timing.behaviour in {None, "periodic"} for timing in timings),
+            gap=_find_largest(output.max_gap for output in outputs),
+            every=max(timing.every or 1 for timing in timings),
+            throttle=_find_largest(timing.throttle for timing in timings) or Fraction(0),
+            jitter=_find_largest(timing.jitter for timing in timings),
+            response=_find_largest(timing.response for timing in timings),
+            is_conditional=any(output.conditional for output in outputs),
+        )
+
+
+def _effective_rate(timing: Timing) -> Fraction | None:
+    if timing.period is not None and timing.period.value:
+        return Fraction(_NS_PER_SECOND) / timing.period.value
+    return timing.rate.value if timing.rate else None
+
+
+def _find_largest(quantities: Iterable[Quantity | None]) -> Fraction | None:
+    return max((Fraction(quantity.value) for quantity in quantities if quantity is not None), default=None)
+
+
+def _compare_promises(old: OutputPromise, new: OutputPromise) -> Iterator[Weakening]:
+    """Yield what is weaker in the second promise."""
+    if old.rate and (new.rate is None or new.rate < old.rate):
+        words = (
+            f"{format_rate(new.rate)} instead of {format_rate(old.rate)}"
+            if new.rate
+            else f"no rate any more (it was {format_rate(old.rate)})"
+        )
+        period = Fraction(_NS_PER_SECOND) / new.rate if new.rate else None
+        yield Weakening(words, (".rate", ".behaviour"), new.rate is not None, period)
+    if old.rate and old.is_steady and new.rate and not new.is_steady:
+        yield Weakening("no steady rate any more, but messages when something makes it run", (".behaviour",))
+    if new.is_conditional and not old.is_conditional:
+        yield Weakening("messages only on condition, no longer at each run", (".conditional",))
+    old_gap = old.gap
+    if old.rate and new.gap and not (old_gap or old.is_conditional):
+        # Where no gap was written, each run sends something. A run may come late; a longer gap leaves one out.
+        old_gap = 2 * Fraction(_NS_PER_SECOND) / old.rate
+    if old_gap and (new.gap or old_gap) > old_gap:
+        yield Weakening(
+            f"gaps of {format_duration(new.gap or old_gap)} instead of {format_duration(old_gap)}", (".max_gap",)
+        )
+    if old.gap and new.gap is None and (new.is_conditional or not new.rate):
+        yield Weakening(f"no longest gap any more (it was {format_duration(old.gap)})", (".max_gap",))
+    if new.every > old.every:
+        yield Weakening(f"a message for {new.every} arrivals instead of {old.every}", (".every",), is_margin=True)
+    if new.throttle > old.throttle:
+        yield Weakening(f"at most a message in {format_duration(new.throttle)}", (".throttle",), is_margin=True)
+    yield from _compare_durations("jitter", old.jitter, new.jitter)
+    yield from _compare_durations("response", old.response, new.response)
+
+
+def _compare_durations(name: str, before: Fraction | None, after: Fraction | None) -> Iterator[Weakening]:
+    """Yield a duration that grew. One that was not written, or is not any more, is only unknown."""
+    if before is not None and after is not None and after > before:
+        noun = {"jitter": "a jitter", "response": "a response time"}[name]
+        words = f"{noun} of {format_duration(after)} instead of {format_duration(before)}"
+        yield Weakening(words, (f".{name}",), is_margin=True)
+
+
+def _find_causes(context: ChangeContext, old_output: str, new_output: str, keys: tuple[str, ...]) -> list[int]:
+    """Return the indices of the changes that weakened a promise: of its key, else of its nodes, or of the output."""
+    if old_output != new_output:
+        return find_output_causes(context, old_output)
+    component = new_output.rpartition(".")[0]
+    versions = context.versions
+    nodes = {
+        name
+        for elements in (versions.elements_before, versions.elements_after)
+        for (kind, name), element in elements.items()
+        if kind == "node" and component in element.component_refs
+    }
+    elements = [("component", component), *(("node", name) for name in sorted(nodes))]
+    output_part = f".outputs.{new_output.rpartition('.')[2]}." if keys[0] in {".conditional", ".max_gap"} else ""
+    for ending in keys:
+        indices = [
+            index
+            for kind, name in elements
+            for index, change in context.find_changes(kind, name)
+            if change.key and change.key.endswith(ending) and output_part in change.key
+        ]
+        if indices:
+            return list(dict.fromkeys(indices))
+    # A node that came or went, or that carries something else now.
+    return list(dict.fromkeys(index for kind, name in elements for index in context.change_indices(kind, name)))

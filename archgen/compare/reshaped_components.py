@@ -1,0 +1,131 @@
+"""Components that were split, merged or copied: recognised by what became of their outputs, stated with a confidence.
+
+What is recognised below `MIN_LIKENESS` stays what it is to the comparison: elements added and removed.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.compare.comparison import Comparison
+from archgen.compare.copied_components import find_copies
+from archgen.compare.element_likeness import MIN_LIKENESS
+from archgen.compare.match_elements import look_up_pair
+from archgen.compare.output_heirs import (
+    OutputHeir,
+    component_of,
+    find_heirs,
+    has_lost_outputs,
+    outputs_of,
+    sources_of,
+)
+from archgen.compare.reshaping import Reshaping, truncate_confidence
+from archgen.compare.reshaping_sentences import describe_merger, describe_split
+from archgen.compare.sentence_words import shown_id
+from archgen.compare.version_pair import VersionPair
+
+
+def find_reshapings(comparison: Comparison) -> Iterator[Reshaping]:
+    """Yield the components that were split, merged or copied; none takes part in two of them."""
+    versions = comparison.versions
+    added_ids = [
+        name for (kind, name) in versions.elements_after if kind == "component" and versions.is_added(kind, name)
+    ]
+    removed_ids = [
+        name for (kind, name) in versions.elements_before if kind == "component" and versions.is_removed(kind, name)
+    ]
+    if not added_ids and not removed_ids:
+        return
+    relations = look_up_pair(comparison.before.architecture, comparison.after.architecture, comparison.matched_ids)
+    used_ids = set[str]()
+    if has_lost_outputs(versions):
+        heirs = list(find_heirs(versions, relations))
+        for reshaping in (*_find_splits(heirs, versions), *_find_mergers(heirs, versions)):
+            if used_ids.isdisjoint(reshaping.component_ids):
+                used_ids |= reshaping.component_ids
+                yield reshaping
+    yield from find_copies([name for name in added_ids if name not in used_ids], versions, relations[1])
+
+
+def _find_splits(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[Reshaping]:
+    heirs_by_component: dict[str, dict[str, list[OutputHeir]]] = defaultdict(lambda: defaultdict(list))
+    for heir in heirs:
+        if versions.is_added("component", heir.new_component):
+            heirs_by_component[heir.old_component][heir.new_component].append(heir)
+    for old_component, heirs_by_part in sorted(heirs_by_component.items()):
+        stays = ("component", old_component) in versions.elements_after
+        if not (stays or _are_several(heirs_by_part)):
+            continue
+        confidence = min(
+            _judge_part(old_component, part, part_heirs, versions) for part, part_heirs in heirs_by_part.items()
+        )
+        if confidence >= MIN_LIKENESS:
+            yield Reshaping(
+                "split",
+                old_component,
+                tuple(sorted([*heirs_by_part, *([old_component] if stays else [])])),
+                describe_split(old_component, heirs_by_part, versions),
+                confidence,
+                frozenset([old_component, *heirs_by_part]),
+                tuple(heir for part_heirs in heirs_by_part.values() for heir in part_heirs),
+                versions,
+            )
+
+
+def _are_several(heirs_by_part: Mapping[str, object]) -> bool:
+    return len(heirs_by_part) > 1
+
+
+def _judge_part(old_component: str, part: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
+    """Return how sure it is that a new component is a part of an old one: its outputs are, and it reads what that did."""
+    outputs = outputs_of(part, versions.elements_after)
+    mean_likeness = sum(heir.likeness for heir in heirs) / len(heirs)
+    sources = sources_of(part, versions, side=1)
+    own_components = {old_component, *(heir.new_component for heir in heirs)}
+    old_sources = sources_of(old_component, versions, side=0)
+    # The second half of what was one pipeline reads the first.
+    known_sources = {
+        source
+        for source in sources
+        if source in old_sources or component_of(("output", source), versions) in own_components
+    }
+    source_share = len(known_sources) / len(sources) if sources else 1.0
+    return truncate_confidence(0.5 * mean_likeness + 0.25 * source_share + 0.25 * len(heirs) / max(len(outputs), 1))
+
+
+def _find_mergers(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[Reshaping]:
+    heirs_by_whole: dict[str, dict[str, list[OutputHeir]]] = defaultdict(lambda: defaultdict(list))
+    for heir in heirs:
+        if versions.is_removed("component", heir.old_component):
+            heirs_by_whole[heir.new_component][heir.old_component].append(heir)
+    for whole, heirs_by_part in sorted(heirs_by_whole.items()):
+        was_there = ("component", whole) in versions.elements_before
+        if not (was_there or _are_several(heirs_by_part)):
+            continue
+        confidence = min(_judge_merged(part, whole, part_heirs, versions) for part, part_heirs in heirs_by_part.items())
+        if confidence >= MIN_LIKENESS:
+            yield Reshaping(
+                "merged",
+                whole,
+                tuple(sorted(shown_id("component", part, versions) for part in heirs_by_part)),
+                describe_merger(whole, heirs_by_part, versions),
+                confidence,
+                frozenset([whole, *heirs_by_part]),
+                tuple(heir for part_heirs in heirs_by_part.values() for heir in part_heirs),
+                versions,
+            )
+
+
+def _judge_merged(part: str, whole: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
+    """Return how sure it is that a component is a part of another one now: that has its outputs, and reads what it did."""
+    outputs = outputs_of(part, versions.elements_before)
+    likeness = sum(heir.likeness for heir in heirs) / max(len(outputs), 1)
+    own_outputs = {
+        *outputs_of(part, versions.elements_before),
+        *outputs_of(whole, versions.elements_before),
+    }
+    outer_sources = sources_of(part, versions, side=0) - own_outputs
+    read_sources = outer_sources & sources_of(whole, versions, side=1)
+    source_share = len(read_sources) / len(outer_sources) if outer_sources else 1.0
+    return truncate_confidence(0.6 * likeness + 0.4 * source_share)

@@ -1,0 +1,64 @@
+"""Changed figures for programs: of interfaces between partners, and the loads of hosts and links.
+
+Part of the format of comparisons, `schemas/diff.schema.json`. Durations are in milliseconds, rates in Hz, sizes in B,
+traffic in B/s, loads are shares.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from archgen.compare.figure_changes import BoundaryChange, Figure, FigureChange, LoadChange, TravelPath, WireNames
+from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
+from archgen.model.node import Qos
+from archgen.views.inline_text import list_qos_settings
+
+_DURATIONS = frozenset({"largest gap", "answers within", "age on arrival"})
+
+
+def boundary_record(change: BoundaryChange) -> dict[str, Any]:
+    """Return what changed at an interface as plain data; partners by their ids."""
+    return {
+        "kind": change.kind,
+        "interface": change.interface_id,
+        "was": change.old_id,
+        "from": list(change.givers),
+        "given_before_by": list(change.old_givers),
+        "to": list(change.takers),
+        "taken_before_by": list(change.old_takers),
+        "missed_deadline": duration_to_json(change.missed_deadline) if change.missed_deadline else None,
+        "figures": [_figure_record(figure) for figure in change.figures],
+    }
+
+
+def _figure_record(change: FigureChange) -> dict[str, Any]:
+    name = change.key.name
+    return {
+        "name": name,
+        "node": change.key.node or None,
+        "before": _figure_value(name, change.before),
+        "after": _figure_value(name, change.after),
+    }
+
+
+def _figure_value(name: str, figure: Figure | None) -> object:
+    if figure is None:
+        return None
+    if isinstance(figure, Qos):
+        return list_qos_settings(figure)
+    if isinstance(figure, TravelPath):
+        return {"from": list(figure.senders), "to": list(figure.receivers), "over": list(figure.links)}
+    if isinstance(figure, WireNames):
+        return list(figure.names)
+    return duration_to_json(figure) if name in _DURATIONS else quantity_to_json(figure)
+
+
+def load_record(change: LoadChange) -> dict[str, Any]:
+    """Return the load of a host or a link as plain data."""
+    return {
+        "sort": change.kind,
+        "element": change.id,
+        "before": quantity_to_json(change.before) if change.before else None,
+        "after": quantity_to_json(change.after),
+        "users": sorted(change.users),
+    }

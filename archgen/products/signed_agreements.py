@@ -1,0 +1,46 @@
+"""Which agreements of two partners were signed: the tags that record it, and the project as it was then.
+
+A tag counts that is called `signed/A-B/...`, with the ids of both partners in either order, and lies in the history of HEAD.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from archgen.diagnostics.common_wording import shorten_hash
+from archgen.git import GitError
+from archgen.git.tag_list import list_tags_below
+from archgen.pipeline import CheckedProject, VersionCache
+from archgen.products import compared_versions
+from archgen.products.compared_versions import ProjectVersion
+from archgen.project import ProjectNotFoundError
+from archgen.views.agreement import SignedTag
+
+
+def find_signed_tags(root: Path, first: str, second: str) -> tuple[SignedTag, ...]:
+    """Return the tags that record signatures of two partners, newest first."""
+    prefixes = (f"signed/{first}-{second}", f"signed/{second}-{first}")
+    return tuple(
+        SignedTag(tag.name, tag.date, tag.tagger, tag.subject, shorten_hash(tag.commit))
+        for tag in list_tags_below(root, prefixes)
+    )
+
+
+def read_signed_version(checked_project: CheckedProject, signed_tag: SignedTag) -> ProjectVersion | None:
+    """Read a project as it was signed; None where that cannot be read."""
+    try:
+        version = read_version_before(f"refs/tags/{signed_tag.name}", checked_project)
+    except (GitError, ProjectNotFoundError):
+        return None
+    return replace(version, name=signed_tag.name)
+
+
+def read_version_before(revision: str, checked_project: CheckedProject, path: Path | None = None) -> ProjectVersion:
+    """Read a project as it was, also where it lay in another folder. `path` is where it is now, by default its root.
+
+    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    working_tree = ProjectVersion(compared_versions.WORKING_TREE_NAME, checked_project)
+    project_path = path or checked_project.root
+    return compared_versions.read_earlier_version(revision, project_path, VersionCache(), working_tree)

@@ -1,0 +1,98 @@
+"""The version of an interface: a short hash of what passes over the wire, and of what is promised of it.
+
+Titles, ids, order, hosts, nodes and what is only expected are no part of it. The comments of fields are: units stand there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator
+
+from archgen.model.declared_timing import OutputTiming
+from archgen.model.known_interfaces import Interface, Interfaces
+from archgen.model.node import Endpoint
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
+from archgen.model.quantity import Quantity
+from archgen.model.ros_distro import is_ros_1
+from archgen.timing.figures.tick_unit import written_period
+from archgen.views.agreement.interface_timing import find_giver_timing
+from archgen.views.agreement.promise_rows import identify_qos
+from archgen.views.lookup import Lookup
+
+_DIGITS = 6
+
+
+def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
+    """Return the version of an interface, six hexadecimal digits."""
+    architecture = lookup.architecture
+    with_qos = interface.flow == "topic" and not is_ros_1(architecture.distro)
+    givers = list_givers(lookup.architecture, interface)
+    message_type = architecture.types.get(interface.type or "")
+    content = {
+        "flow": interface.flow,
+        "names": sorted(interface.topic_names),
+        # The type is a name of the project's own; without a message it is all that says what flows.
+        "carried": interface.message or f"type {interface.type}",
+        "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
+        "meaning": _collapse_blanks((interface.output.description if interface.output else None) or ""),
+        # To write down what counted before promises it.
+        "promises qos": any(endpoint.qos.written for endpoint in interface.giver_endpoints) and with_qos,
+        "offered": _list_qos(lookup, interface.giver_endpoints) if with_qos else [],
+        "asked": _list_qos(lookup, interface.taker_endpoints) if with_qos else [],
+        "promised": sorted(_list_promises(lookup, endpoint) for endpoint in givers),
+        "size": _write_quantity(message_type.size if message_type else None),
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
+
+
+def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[object]:
+    """Yield the definition of a message and of all that it holds: each once, in the order of their fields."""
+    waiting, seen = [message] if message else [], set[str]()
+    while waiting:
+        name = waiting.pop(0)
+        definition = interfaces.definitions.get(name)
+        if name in seen or definition is None:
+            continue
+        seen.add(name)
+        yield [name, *_write_definition(definition)]
+        waiting += [field.type for part in definition.parts for field in part if "/" in field.type]
+
+
+def _write_definition(definition: Interface) -> Iterator[object]:
+    for part in definition.parts:
+        yield [[field.name, field.type + field.array, field.default, _collapse_blanks(field.comment)] for field in part]
+    # Constants have no place on the wire: their order says nothing.
+    for constants in definition.constants:
+        yield sorted([item.name, item.type, item.value, _collapse_blanks(item.comment)] for item in constants)
+
+
+def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:
+    """Return the distinct qualities of service of written nodes, sorted."""
+    nodes = lookup.architecture.nodes
+    return sorted({identify_qos(endpoint.qos) for endpoint in endpoints if nodes[endpoint.node].written})
+
+
+def _list_promises(lookup: Lookup, endpoint: Endpoint) -> list[str]:
+    timing = find_giver_timing(lookup, endpoint)
+    output_timing = timing.outputs.get(endpoint.port or "", OutputTiming())
+    behaviour = timing.behaviour if timing.behaviour in {"once", "on_demand"} else ""
+    return [
+        str(behaviour),
+        str(written_period(timing)),
+        str(output_timing.conditional),
+        # Of what is sent at each activation `max_gap` says nothing.
+        *map(
+            _write_quantity,
+            (output_timing.max_gap if output_timing.conditional else None, timing.jitter, timing.response),
+        ),
+    ]
+
+
+def _write_quantity(quantity: Quantity | None) -> str:
+    return str(quantity.value) if quantity else ""
+
+
+def _collapse_blanks(text: str) -> str:
+    """Return a text with single spaces: line breaks say nothing."""
+    return " ".join(text.split())

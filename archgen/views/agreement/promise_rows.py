@@ -1,0 +1,78 @@
+"""What is promised of an interface, and what is only expected: two things that an agreement never mixes.
+
+Promised is what an owner wrote. Expected is what follows from other figures, and nobody answers for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from archgen.model.node import Qos
+from archgen.model.quantity import Quantity
+from archgen.views import inline_text
+from archgen.views.shapes import Column, Inlines, Table, Text
+
+PromiseStrength = Mapping[str, Fraction | int]
+"""How much is promised, by aspects (`rate`, `reliability`): less of one, or one that is gone, is a weaker promise."""
+SOURCE_PHRASE = ", follows from "
+"""What stands between an expected figure and what it follows from."""
+_UNLIMITED = 10**30
+
+
+@dataclass(frozen=True, slots=True)
+class PromiseRow:
+    """A term with what is promised and what is expected of it, each empty where there is nothing.
+
+    `promise_identity` is the same for whatever promises the same, in other units or words; left out, it is the text.
+    """
+
+    name: str
+    promised: Inlines = ()
+    expected: Inlines = ()
+    strength: PromiseStrength = field(default_factory=dict)
+    promise_identity: str = ""
+
+
+def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
+    """Return the promise to stay below a limit; `words` has a place for it."""
+    strength = {aspect: -limit.value}
+    return PromiseRow(name, inline_text.to_inlines(words.format(limit)), (), strength, str(limit.value))
+
+
+def is_weaker(old_strength: PromiseStrength, new_strength: PromiseStrength) -> bool:
+    """Whether something that was promised is not, or not as much, any more."""
+    return any(aspect not in new_strength or new_strength[aspect] < figure for aspect, figure in old_strength.items())
+
+
+def measure_qos(qos: Qos) -> PromiseStrength:
+    """Return how much a quality of service promises. Deadline and lease promise more the shorter they are."""
+    limits = {"deadline": qos.deadline, "lease": qos.lease_duration}
+    return {
+        "reliability": int(qos.reliability == "reliable"),
+        "durability": int(qos.durability == "transient_local"),
+        "depth": _UNLIMITED if qos.history == "keep_all" else qos.depth or 0,
+        "lifespan": qos.lifespan.value if qos.lifespan else _UNLIMITED,
+        "liveliness": int(qos.liveliness == "manual_by_topic"),
+        **{aspect: -limit.value for aspect, limit in limits.items() if limit},
+    }
+
+
+def identify_qos(qos: Qos) -> str:
+    """Return a text that two qualities of service share if their values are the same, whatever their profiles are called."""
+    return ", ".join(f"{aspect} {figure}" for aspect, figure in measure_qos(qos).items())
+
+
+def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple[PromiseRow, ...]) -> Table:
+    """Write what is promised beside what is expected; where there is neither, the table says so."""
+    columns = (Column("Term", 0.8), Column(f"Promised by {giver_title}", 1.3), Column("Expected, not promised", 1.7))
+    cells = tuple(
+        (
+            inline_text.to_inlines(row.name),
+            row.promised or inline_text.to_inlines(Text("nothing", muted=True)),
+            row.expected or (() if row.promised else inline_text.to_inlines(Text("not known", muted=True))),
+        )
+        for row in rows
+    )
+    return Table(anchor, caption, columns, cells, numbered=False)

@@ -1,0 +1,84 @@
+"""Changed figures as sentences: of interfaces between partners, and the loads of hosts and links."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from archgen.compare import Comparison
+from archgen.compare.comparison import ChangeKind
+from archgen.compare.figure_changes import Figure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
+from archgen.compare.sentence_words import tick_names
+from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import dataclass
+from archgen.model.node import Qos
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.views.changes.partner_names import name_each
+from archgen.views.inline_text import list_qos_settings
+from archgen.views.timing import value_format
+
+_FIGURE_WORDS: Mapping[str, Callable[[TimingValue], str]] = {
+    "rate": value_format.display_rate,
+    "traffic": value_format.display_traffic,
+    **dict.fromkeys(("largest gap", "answers within", "age on arrival"), value_format.display_duration),
+}
+"""How a figure is written, by its name; all others are sizes."""
+_NO_FIGURE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class FigureLine:
+    """A sentence about figures, with what happened to what it is about; names in backticks."""
+
+    kind: ChangeKind
+    text: str
+
+
+def describe_figure(figure: FigureChange, kind: str) -> str:
+    """Describe a figure before and after; of a new interface as it is."""
+    name = f"{figure.key.name} of `{figure.key.node}`" if figure.key.node else figure.key.name
+    before, after = figure.before, figure.after
+    if kind == "added":
+        return f"{name} {_format_figure(figure.key, after)}"
+    if isinstance(before, Qos) and isinstance(after, Qos):
+        old_settings, new_settings = list_qos_settings(before), list_qos_settings(after)
+        lost = [setting for setting in old_settings if setting not in new_settings]
+        gained = [setting for setting in new_settings if setting not in old_settings]
+        return f"{name} {', '.join(lost) or _NO_FIGURE} → {', '.join(gained) or _NO_FIGURE}"
+    lead = "travels" if isinstance(before, TravelPath) or isinstance(after, TravelPath) else name
+    return f"{lead} {_format_figure(figure.key, before)} → {_format_figure(figure.key, after)}"
+
+
+def _format_figure(key: FigureKey, figure: Figure | None) -> str:
+    if isinstance(figure, Qos):
+        return ", ".join(list_qos_settings(figure))
+    if isinstance(figure, TravelPath):
+        return _format_path(figure)
+    if isinstance(figure, WireNames):
+        return tick_names(figure.names)
+    return _FIGURE_WORDS.get(key.name, value_format.display_bytes)(figure) if figure else _NO_FIGURE
+
+
+def _format_path(path: TravelPath) -> str:
+    """Describe between which hosts data travels."""
+    if path.senders == path.receivers:
+        return f"within {tick_names(path.senders)}"
+    link_note = f" over {tick_names(path.links)}" if path.links else ""
+    return f"from {tick_names(path.senders)} to {tick_names(path.receivers)}{link_note}"
+
+
+def write_load_lines(comparison: Comparison, partner_names: Mapping[str, str]) -> tuple[FigureLine, ...]:
+    """Return a line for each host and link whose load changed noticeably."""
+    return tuple(FigureLine("changed", _describe_load(change, partner_names)) for change in comparison.loads)
+
+
+def _describe_load(change: LoadChange, partner_names: Mapping[str, str]) -> str:
+    before = value_format.display_share(change.before) if change.before else _NO_FIGURE
+    users = join_partners(sorted(change.users), partner_names)
+    what = "bandwidth" if change.kind == "link" else "cores"
+    user_note = f"; used by {users}" if users else ""
+    return f"{change.kind} {tick_names([change.id])}: {before} → {value_format.display_share(change.after)} of its {what}{user_note}"
+
+
+def join_partners(partners: Iterable[str], partner_names: Mapping[str, str]) -> str:
+    """Return partners by what people call them, joined for a sentence."""
+    return join_words(name_each(partners, partner_names))

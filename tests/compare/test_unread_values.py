@@ -1,0 +1,61 @@
+"""Values that cannot be read are errors, and no changes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.compare.conftest import Compared
+
+ROBOT = """\
+groups:
+  g:
+    components:
+      a: {timing: {rate: 10 Hz, wcet: 2 ms, priority: 5, core: 1, every: 2}, outputs: {x: T}}
+      b: {inputs: {x: {from: a.x, optional: true}}, timing: {behaviour: event, wcet: 1 ms}}
+types: {T: {message: sensor_msgs/msg/Image, size: 1 MB}}
+nodes:
+  na: {implements: a, host: pc, publishes: {x: {topic: /x, qos: {depth: 1, reliability: best_effort, deadline: 50 ms}}}}
+  nb: {implements: b, container: box}
+hosts: {pc: {cores: 4}}
+containers: {box: {host: pc, threads: 2}}
+chains: {see: {through: [a, b], deadline: 300 ms}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("depth: 1", 'depth: "1"'),
+        ("cores: 4", 'cores: "4"'),
+        ("cores: 4", "cores: four"),
+        ("cores: 4", "cores: [4]"),
+        ("optional: true", 'optional: "true"'),
+        ("optional: true", "optional: yes please"),
+        ("threads: 2", 'threads: "2"'),
+        ("priority: 5", 'priority: "5"'),
+        ("core: 1", "core: '1'"),
+        ("every: 2", 'every: "2"'),
+        ("rate: 10 Hz", "rate: ten"),
+        ("rate: 10 Hz", "period: soon"),
+        ("wcet: 2 ms", "wcet: 2 parsecs"),
+        ("size: 1 MB", "size: large"),
+        ("reliability: best_effort", "reliability: besteffort"),
+        ("deadline: 50 ms", "deadline: fifty"),
+        ("deadline: 300 ms", "deadline: [300 ms]"),
+        ("behaviour: event", "behaviour: eventually"),
+    ],
+)
+def test_what_cannot_be_read_is_no_change(compared: Compared, old: str, new: str) -> None:
+    assert old in ROBOT
+    comparison = compared(ROBOT, ROBOT.replace(old, new))
+    assert [change.text for change in comparison.changes] == []
+    assert not comparison.is_judged
+    assert [change.text for change in compared(ROBOT.replace(old, new), ROBOT).changes] == []
+
+
+def test_what_can_be_read_beside_it_is_told(compared: Compared) -> None:
+    after = ROBOT.replace("depth: 1, reliability: best_effort", 'depth: "1", reliability: reliable')
+    assert [change.text for change in compared(ROBOT, after.replace("cores: 4", "cores: 8")).changes] == [
+        "`na.publishes.x`: QoS reliability `best_effort` → `reliable`",
+        "host `pc`: cores 4 → 8",
+    ]

@@ -1,0 +1,55 @@
+"""Where the search found no bound: hosts with their load, and those only where that begins."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.unfound_bounds import (
+    describe_unfound_places,
+    find_overloaded_hosts,
+    find_unfound_places,
+    group_by_host,
+)
+from tests.timing.sketches import analyse_sketch, read_sketch
+
+# Each of the three fires the next on one core; what reads on another host has no bound either.
+_NODES = {
+    "a @pc": "period: 100 ms, wcet: {} ms, bcet: {} ms",
+    "b @pc": "wcet: {} ms, bcet: {} ms",
+    "c @pc": "wcet: {} ms, bcet: {} ms",
+    "far @arm": "wcet: 1 ms, bcet: 1 ms",
+    "poll @arm": "period: 50 ms, wcet: 1 ms, bcet: 1 ms",
+}
+_REST = (
+    "hosts: {pc: {cores: CORES}, arm: {cores: 1}}\nlinks: {lan: {connects: [pc, arm], latency: 1 ms}}\n"
+    "chains: {c: {through: [STEPS]}}"
+)
+
+
+@pytest.mark.parametrize(
+    ("cost", "cores", "steps", "places", "overloaded"),
+    [
+        (1, 1, "a, b, c", "", ()),
+        (20, 1, "a, b, c", "on pc at a load of 60 % (in any order)", ()),
+        (30, 2, "a, b, c, far", "on pc at a load of 45 % (several cores in any order)", ()),
+        (20, 1, "c, far", "on pc at a load of 60 % (in any order)", ()),
+        (20, 1, "far, poll", "on pc at a load of 60 % (in any order)", ()),
+        (40, 1, "a, b, c", "", ("pc",)),
+    ],
+)
+def test_the_host_where_it_begins_is_named(
+    cost: int, cores: int, steps: str, places: str, overloaded: tuple[str, ...]
+) -> None:
+    nodes = {head: figures.format(cost, cost) for head, figures in _NODES.items()}
+    sketch = nodes, "a>b b>c c>far far>poll", _REST.replace("CORES", str(cores)).replace("STEPS", steps)
+    analysis = analyse_sketch(*sketch)
+    terms = bound_all_chains(analysis, read_sketch(*sketch))["c"].terms
+    assert describe_unfound_places(find_unfound_places(analysis, terms)) == places
+    assert find_overloaded_hosts(analysis, terms) == overloaded
+
+
+def test_without_a_host_the_elements_are_named() -> None:
+    analysis = analyse_sketch({"a": "period: 10 ms, wcet: 1 ms", "b": "wcet: 1 ms"}, "a>b")
+    (place,) = group_by_host(analysis, ("a", "b"))
+    assert describe_unfound_places((place,)) == "for a, b (each on a core of its own)"
