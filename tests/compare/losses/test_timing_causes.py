@@ -14,7 +14,7 @@ from archgen.compare.matched_ids import MatchedIds
 from tests.compare.conftest import Compared
 from tests.compare.elements import pair
 from tests.compare.losses.test_losses import broken
-from tests.compare.losses.test_missed_deadlines import BASE, both
+from tests.compare.losses.test_missed_deadlines import BASE, LATE_START, both
 
 # A radio on a computer of its own: it changes in every case below, and is never the cause.
 ROBOT = (
@@ -24,13 +24,17 @@ ROBOT = (
 )
 RADIO = ("wcet: 1 ms}, host: far", "wcet: 3 ms}, host: far")
 UNCHAINED = ROBOT[: ROBOT.index("chains:")]
-FAN = ROBOT.replace(
-    "nodes:\n", "nodes:\n  wind: {implements: fan, timing: {rate: 10 Hz, wcet: 1 ms, priority: 9}, host: pc}\n"
-).replace("      tracker: {", "      fan: {outputs: {wind: Wind}}\n      tracker: {")
+FAN = (
+    ROBOT.replace(*LATE_START)
+    .replace(
+        "nodes:\n", "nodes:\n  wind: {implements: fan, timing: {rate: 10 Hz, wcet: 1 ms, priority: 9}, host: pc}\n"
+    )
+    .replace("      tracker: {", "      fan: {outputs: {wind: Wind}}\n      tracker: {")
+)
 BOX = (
     ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}")
-    .replace("wcet: 2 ms}, host: pc", "wcet: 60 ms}, container: box")
-    .replace("wcet: 20 ms}, host: pc", "wcet: 20 ms}, container: box")
+    .replace("wcet: 2 ms}, host: pc", "wcet: 30 ms}, container: box")
+    .replace("behaviour: event, wcet: 20 ms}, host: pc", "behaviour: event, jitter: 1 us, wcet: 20 ms}, container: box")
     + "containers: {box: {host: pc, threads: 2}}\n"
 )
 FIRED = UNCHAINED.replace("{image: Colour image}", "{image: Colour image, extra: Colour image}").replace(
@@ -53,17 +57,17 @@ CASES = {
     "who shares the host": (
         FAN,
         [("wcet: 1 ms, priority", "wcet: 70 ms, priority")],
-        both("tracking.fan/timing.wcet", f"leaves the {MET} 153 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
+        both("tracking.fan/timing.wcet", f"leaves the {MET} 153.001 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
     ),
     "the cores of the host": (
-        ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 80 ms"),
+        ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}").replace(*LATE_START).replace("wcet: 20 ms", "wcet: 80 ms"),
         [("pc: {cores: 2}", "pc: {cores: 1}")],
-        both("pc/cores", f"leaves the {MET} 189 ms, without a bound; {ALL}", "certh", "sssa", "tum"),
+        both("pc/cores", f"leaves the {MET} 189.001 ms, without a bound; {ALL}", "certh", "sssa", "tum"),
     ),
     "the threads of the container": (
         BOX,
         [("threads: 2", "threads: 1")],
-        both("box/threads", f"{LATE} (187 ms → 317 ms); {ALL}", "certh", "sssa", "tum"),
+        both("box/threads", f"{LATE} (157.001 ms → 252.001 ms); {ALL}", "certh", "sssa", "tum"),
     ),
     "the link on the way": (
         ROBOT,
