@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.load import core_responses
+from archgen.timing.load import busy_windows, core_responses
 from archgen.timing.load.busy_windows import DemandFunction, DivergedError, SearchBudget
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show_ms
@@ -157,7 +157,7 @@ def test_strictly_periodic_cascades_may_fill_a_core_up_to_a_limit(monkeypatch: p
 
 def test_what_works_once_says_that_no_bound_was_found_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The busy period is found, and the budget spent before the work at the start is on top."""
-    search = core_responses.longest_busy_period
+    search = busy_windows.longest_busy_period
 
     def search_once(demand: DemandFunction, budget: SearchBudget, *start: int) -> int:
         if start:
