@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from heapq import heappush
 from typing import Any
 
@@ -81,11 +82,15 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
     _, wire, sample = job
-    if wire >= 0:
-        wires.newest_job[wire] = sample
-    elif wire == ALL_WIRES:
-        for input_wire, job_number in zip(run.plan.activities[activity].captured_wires, sample, strict=True):
-            wires.newest_job[input_wire] = job_number
+    fired_by: Iterable[tuple[int, int]] = ((wire, sample),) if wire >= 0 else ()
+    if wire == ALL_WIRES:
+        fired_by = zip(run.plan.activities[activity].captured_wires, sample, strict=True)
+    # What `every` or `throttle` dropped since then came after the samples of this job, and stays for the next one.
+    later_samples: list[tuple[int, int]] = []
+    for input_wire, job_number in fired_by:
+        if wires.newest_job[input_wire] > job_number:
+            later_samples.append((input_wire, wires.newest_job[input_wire]))
+        wires.newest_job[input_wire] = job_number
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
@@ -98,3 +103,5 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
         for input_wire in wires.logged_wires[activity]:
             wires.source_log[input_wire].append(wires.newest_job[input_wire])
     activities.started[activity] += 1
+    for input_wire, job_number in later_samples:
+        wires.newest_job[input_wire] = job_number

@@ -7,8 +7,11 @@ Read the folders in this order; each one imports only from those before it and f
   architecture (`activity_builder`, `arc_builder`, `message_sizes`); then who shares which cores (`core_placement`) and
   who fires whom (`trigger_graph`).
 - `load`: event models and response times, in integer ticks. `event_streams` (how many events fit into a window),
-  `busy_windows` (how long work holds a core), `thread_work`, `response_times` and `multicore_response` (one resource),
-  `event_models` (what is activated, arrives and leaves), `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); last `host_loads`.
+  `busy_windows` (how long work holds a core), `thread_work` and `response_times` (activities one by one on one core);
+  `inner_triggers`, `level_cascades`, `run_ways` and `cascade_demand` (what an event leads to on its core), `inner_core` and
+  `core_responses` (one core), `shared_cores`, `core_paths`, `path_work` and `shared_core_responses` (several); then
+  `event_models` (what is activated, arrives and leaves), `event_propagation` (all resources, to a fixed point),
+  `link_queueing` (links as well); last `host_loads`.
 - `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
   `triggered_rates`, `output_rates`; then `link_traffic`, `edge_fit`, `service_waiting`.
 - `chains`: end to end. `trigger_arrivals` and `step_delays` (what a step adds), `cost_network` and `path_search` (which

@@ -83,6 +83,17 @@ class ResponseTime:
 
 
 @dataclass(frozen=True, slots=True)
+class RunResponse:
+    """How long a run takes at most, in ns: from the event that enters a core until an activity there has ended.
+
+    `arcs` are the arcs by which a run comes to the activity: it starts at the end of the one before, on the same core.
+    """
+
+    worst: TimingValue
+    arcs: tuple[Arc, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class HostLoad:
     """A host's utilisation (of all its cores together), and the bounds that it is compared with."""
 
@@ -180,6 +191,8 @@ class Analysis:
     derived: Mapping[str, EventPace] = field(default_factory=dict)
     """What the inputs would give for those event-driven or on-demand activities that state a period themselves."""
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
+    runs: Mapping[str, RunResponse] = field(default_factory=dict)
+    """The runs that end at each activity that something on its own core fires."""
     notes: tuple[Reason, ...] = ()
 
 

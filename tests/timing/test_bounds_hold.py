@@ -6,6 +6,7 @@ import pytest
 
 from archgen.timing.load import busy_windows
 from tests.timing.exceeded import exceeded
+from tests.timing.random_styles import STYLES, random_style_text
 from tests.timing.random_systems import random_text
 
 
@@ -18,3 +19,18 @@ def test_no_simulation_exceeds_a_bound(first: int, monkeypatch: pytest.MonkeyPat
     found = {seed: exceeded(random_text(seed), seconds=1, seeds=3) for seed in range(first, first + 50)}
     assert {seed: wrong for seed, (wrong, _) in found.items() if wrong} == {}
     assert sum(held for _, held in found.values()) > 250
+
+
+@pytest.mark.parametrize(
+    "first", [0, 35, *(pytest.param(first, marks=pytest.mark.slow) for first in range(70, 420, 35))]
+)
+def test_no_simulation_exceeds_a_bound_of_many_on_one_host(first: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(busy_windows, "_MAX_TERMS_PER_SEARCH", 100_000)
+    found = {seed: exceeded(random_style_text(seed), seconds=1, seeds=4) for seed in range(first, first + 35)}
+    assert {(seed, STYLES[seed % len(STYLES)]): wrong for seed, (wrong, _) in found.items() if wrong} == {}
+    assert sum(held for _, held in found.values()) > 1000
+
+
+def test_what_every_drops_is_not_lost_behind_a_job_that_still_waits() -> None:
+    """`n10` works at every second message. One that is dropped while a job waits for a core is newer than that job's."""
+    assert exceeded(random_style_text(4103), seconds=1, seeds=4)[0] == []

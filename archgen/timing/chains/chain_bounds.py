@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
@@ -49,6 +50,14 @@ class LateChain:
     terms: tuple[ChainTerm, ...]
 
 
+class _ExtremePath(NamedTuple):
+    """The extreme path of a route: in which view of the network, and what it bounds all paths by."""
+
+    view: CostNetwork
+    path: CostedPath
+    value: TimingValue
+
+
 def bound_chain(
     analysis: Analysis, architecture: Architecture, asked_chain: Chain, network: CostNetwork | None = None
 ) -> ChainResult:
@@ -81,10 +90,9 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
         # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
-        path_set = _paths_for_aim(network, regions, "bound") if regions else None
-        path = next(path_set.best_paths(), None) if path_set else None
-        if path_set is not None and path is not None:
-            bound = _bound_path_set(network, path_set, path, "bound")
+        extreme_path = _find_extreme_path(network, regions, "bound")
+        if extreme_path is not None:
+            view, path, bound = extreme_path
             deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
             if is_known_bound(bound) and not may_be_late(bound, deadline):
                 continue
@@ -93,7 +101,7 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
             can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
             if can_be_missed or may_be_late(bound, deadline):
                 verdict: ChainVerdict = "missed" if can_be_missed else "not proven"
-                yield LateChain(asked_chain, bound, best, verdict, build_terms(network, path))
+                yield LateChain(asked_chain, bound, best, verdict, build_terms(view, path))
 
 
 def find_paths_between(
@@ -124,7 +132,7 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
     name = network.names[path.start]
     start_delay = steps.start_delay(name)
     chain_terms = [
-        ChainTerm(name, start_delay.value, steps.response_value(name), ZERO_VALUE, start_delay.why, start_delay.at)
+        ChainTerm(name, start_delay.value, network.start_response(name), ZERO_VALUE, start_delay.why, start_delay.at)
     ]
     for arc in (network.arcs[arc_index] for arc_index in path.arcs):
         step_delay = steps.sampling_delay(arc)
@@ -132,7 +140,7 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
             ChainTerm(
                 arc.target,
                 step_delay.value,
-                steps.response_value(arc.target),
+                network.step_response(arc),
                 steps.link_latency(arc),
                 step_delay.why,
                 step_delay.at,
@@ -149,9 +157,8 @@ def _build_result(
 ) -> ChainResult:
     """Return all figures of a chain, with the terms of its worst path; without terms where there is no path."""
     deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
-    path_set = _paths_for_aim(network, regions, "bound") if regions else None
-    path = next(path_set.best_paths(), None) if path_set else None
-    if asked_chain.unresolved or path_set is None or path is None:
+    extreme_path = _find_extreme_path(network, regions, "bound")
+    if asked_chain.unresolved or extreme_path is None:
         waypoint_ids = tuple(point.id for point in asked_chain.through)
         no_bound = (
             _unresolved_value(asked_chain.unresolved)
@@ -159,13 +166,14 @@ def _build_result(
             else _unconnected_value(network, asked_chain, chain_points)
         )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
-    bound = _note_event_start(network, path, _bound_path_set(network, path_set, path, "bound"))
+    view, path, path_bound = extreme_path
+    bound = _note_event_start(network, path, path_bound)
     best = _extreme_value(network, regions, "best")
     event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
         id=asked_chain.id,
         through=(network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs)),
-        terms=build_terms(network, path),
+        terms=build_terms(view, path),
         bound=bound,
         best=best,
         reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
@@ -236,17 +244,18 @@ def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages:
 
 
 def _ages_from_events(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Iterable[str]
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Sequence[str]
 ) -> Iterator[TimingValue]:
     """Yield the largest data age from each event that may be a chain's stimulus: until the result of the next one."""
+    system = network.steps.analysis.system
     for name in start_ids:
         start = replace(regions[0], members=frozenset({network.vertex_of[name]}), inside=False)
-        is_event = network.steps.analysis.system.activities[name].behaviour != "periodic"
-        path_set = _paths_for_aim(network, (start, *regions[1:]), "bound") if is_event else None
-        path = next(path_set.best_paths(), None) if path_set else None
-        if path_set is not None and path is not None:
-            bound = _bound_path_set(network, path_set, path, "bound")
-            yield sum_bounds((bound, network.steps.arrivals.activation_gap(name)))
+        # A path begins with the samples of its first element where those fire the rest of it.
+        is_inner = regions[0].inside and chain_regions.is_fired_by_samples(system, name, start_ids)
+        is_event = system.activities[name].behaviour != "periodic" and not is_inner
+        extreme_path = _find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
+        if extreme_path is not None:
+            yield sum_bounds((extreme_path.value, network.steps.arrivals.activation_gap(name)))
 
 
 def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:
@@ -257,9 +266,33 @@ def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRe
 
 def _extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
     """Return the extreme figure of a route for an aim."""
-    path_set = _paths_for_aim(network, regions, aim)
-    path = next(path_set.best_paths(), None)
-    return _bound_path_set(network, path_set, path, aim) if path else UNKNOWN_VALUE
+    extreme_path = _find_extreme_path(network, regions, aim)
+    return extreme_path.value if extreme_path else UNKNOWN_VALUE
+
+
+def _find_extreme_path(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
+) -> _ExtremePath | None:
+    """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
+    if not regions:
+        return None
+    extreme_paths: list[_ExtremePath] = []
+    for view in network.list_views() if aim != "best" else (network,):
+        path_set = _paths_for_aim(view, regions, aim)
+        path = next(path_set.best_paths(), None)
+        if path is None:
+            return None
+        extreme_paths.append(_ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
+    return min(extreme_paths, key=_bound_order)
+
+
+def _bound_order(extreme_path: _ExtremePath) -> tuple[bool, bool, Fraction, bool]:
+    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first.
+
+    Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
+    """
+    view, _, bound = extreme_path
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
 
 
 def _path_sum(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:

@@ -23,18 +23,32 @@ _TIE_BITS = 24
 
 @dataclass(frozen=True, slots=True)
 class CostNetwork:
-    """A system's activities as vertices, its arcs with their costs for each aim. Costs are computed on first use."""
+    """A system's activities as vertices, its arcs with their costs for each aim. Costs are computed on first use.
+
+    With `by_runs`, consecutive steps on one core cost together what their run takes; else each its own response. Either
+    bounds all paths, and either may be the smaller bound.
+    """
 
     steps: StepDelays
     names: tuple[str, ...]
     vertex_of: dict[str, int]
+    by_runs: bool = False
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
+    _other_views: list[CostNetwork] = field(default_factory=list)
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
         """Prepare an analysis for questions about paths."""
         names = tuple(analysis.system.activities)
         return cls(StepDelays.of_analysis(analysis), names, {name: vertex for vertex, name in enumerate(names)})
+
+    def list_views(self) -> tuple[CostNetwork, ...]:
+        """Return this network, and the other view of it where there are runs."""
+        if not self.steps.analysis.runs:
+            return (self,)
+        if not self._other_views:
+            self._other_views.append(CostNetwork(self.steps, self.names, self.vertex_of, not self.by_runs))
+        return (self, self._other_views[0])
 
     @property
     def arcs(self) -> tuple[Arc, ...]:
@@ -51,14 +65,27 @@ class CostNetwork:
         """Return what the first activity of a path adds."""
         if aim == "best":
             return (self.steps.response_value(name, worst=False),)
-        return (self.steps.start_delay(name).value if aim == "bound" else ZERO_VALUE, self.steps.response_value(name))
+        return (self.steps.start_delay(name).value if aim == "bound" else ZERO_VALUE, self.start_response(name))
+
+    def start_response(self, name: str) -> TimingValue:
+        """Return what the response of a path's first activity adds."""
+        return self.steps.run_response(name) if self.by_runs else self.steps.response_value(name)
+
+    def step_response(self, arc: Arc) -> TimingValue:
+        """Return what the response of an arc's reader adds."""
+        return self.steps.added_response(arc) if self.by_runs else self.steps.response_value(arc.target)
 
     def step_costs(self, arc: Arc, aim: PathAim) -> tuple[TimingValue, ...]:
         """Return what a step adds: link, sampling (or holding), response."""
         if aim == "best":
             return (self.steps.link_latency(arc, worst=False), self.steps.response_value(arc.target, worst=False))
-        wait = self.steps.holding_age(arc) if aim == "reduced age" else self.steps.sampling_wait(arc)
-        return (self.steps.link_latency(arc), wait, self.steps.response_value(arc.target))
+        if aim != "reduced age":
+            return (self.steps.link_latency(arc), self.steps.sampling_wait(arc), self.step_response(arc))
+        holding_age = self.steps.holding_age(arc)
+        # What is used again, with a later event of something else, is not used in the run that brought it.
+        is_held = self.by_runs and holding_age is not ZERO_VALUE
+        response = self.steps.run_response(arc.target) if is_held else self.step_response(arc)
+        return (self.steps.link_latency(arc), holding_age, response)
 
     def _build_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Build the graph of an aim."""

@@ -121,6 +121,33 @@ class StepDelays:
             value = replace(value, assumptions=(f"the response of {name} is as declared",))
         return name_missing_element(value, name)
 
+    def run_response(self, name: str) -> TimingValue:
+        """Return how long a run takes at most, from the event that enters a core to the end of an activity there.
+
+        Of an activity that nothing on its own core fires, that is its own response.
+        """
+        run = self.analysis.runs.get(name)
+        return run.worst if run else self.response_value(name)
+
+    def added_response(self, arc: Arc) -> TimingValue:
+        """Return what a step adds to a run that comes over an arc; where the run begins here, how long it takes.
+
+        Along a run the sum of what its steps add is never below what the run takes up to there.
+        """
+        if not self.continues_run(arc):
+            return self.run_response(arc.target)
+        before, after = self.run_response(arc.source), self.run_response(arc.target)
+        if before.value is None or after.value is None:
+            return after
+        return replace(after, value=max(after.value - before.value, Fraction(0)))
+
+    def continues_run(self, arc: Arc) -> bool:
+        """Whether an arc's reader starts at the end of its source, on the same core, for this very message."""
+        run = self.analysis.runs.get(arc.target)
+        if run is None or not any(run_arc is arc for run_arc in run.arcs):
+            return False
+        return arc.output not in self.analysis.system.activities[arc.source].max_gaps
+
     def link_latency(self, arc: Arc, *, worst: bool = True) -> TimingValue:
         """Return a link's largest (or smallest) latency, as it is written; its own queueing is not added."""
         ticks = arc.worst if worst else arc.best

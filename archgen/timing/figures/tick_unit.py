@@ -43,7 +43,7 @@ def choose_tick_unit(architecture: Architecture) -> TickUnit:
     """Return the unit: the greatest common divisor of all durations, divided by all numbers of cores and threads."""
     durations = {duration for duration in _collect_durations(architecture) if duration}
     denominator = lcm(*(duration.denominator for duration in durations))
-    # Work is divided by the number of cores (multicore_response): with this divisor such quotients are whole ticks.
+    # Work is divided by the number of cores (path_work): with this divisor such quotients are whole ticks.
     cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()))
     threads = lcm(
         *(container.threads or 1 for container in architecture.containers.values()),

@@ -2,8 +2,7 @@
 
 `longest_busy_period` holds for any work-conserving scheduler. `worst_response` is response-time analysis over all
 activations of a busy period (Lehoczky 1990, with jitter as in Tindell, Burns and Wellings 1994), counted from the
-activation itself (the jitter before it belongs to the event model). `divide_demand` bounds the interference of other
-work on several cores.
+activation itself (the jitter before it belongs to the event model).
 
 The least t with C + W(t) <= t is found by repetition from below. Since eta+(t) >= (t + J)/P for each stream, no t below
 (C + sum of u J)/(1 - sum of u) can be it: the repetition begins there, as far ahead as the average says (M. Sjodin and
@@ -16,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals, max_arrivals
+from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals
 
 _MAX_TERMS = 40_000_000
 """Terms that searches may look at where nobody says how many: some seconds' worth."""
@@ -55,25 +54,10 @@ class SearchBudget:
 
 
 class ActivityWork(NamedTuple):
-    """What one activity asks of a processor: execution time and event model, and its worst response if it matters."""
+    """What one activity asks of a processor: execution time and event model."""
 
     cost: int
     streams: EventStreams
-    response: int = 0
-
-
-def make_work(cost: int, streams: EventStreams, response: int) -> ActivityWork:
-    """Return work, with its response only where that can have more than one job carried into a window."""
-    # Dropping a response that does not matter keeps works equal while the fixed point goes on, and equal threads need
-    # no second look (`find_responses`).
-    if len(streams) == 1 and response <= _job_separation(streams[0]):
-        return ActivityWork(cost, streams)
-    return ActivityWork(cost, streams, response)
-
-
-def _job_separation(stream: EventStream) -> int:
-    """Return the least time between two jobs of a stream, jitter aside."""
-    return min(stream.period // stream.events_per_period, stream.distance or stream.period)
 
 
 class DemandFunction(NamedTuple):
@@ -98,13 +82,12 @@ class GrowingLoad:
         """Begin with some work."""
         self._periodic_costs: dict[tuple[int, int], int] = {}
         self._general_costs: dict[tuple[int, int, int, int], int] = {}
-        self._late_works: list[ActivityWork] = []
-        self._carried_cost = self._scaled_rate = self._scaled_offset = 0
+        self._scaled_rate = self._scaled_offset = 0
         self.add_work(works)
 
     def add_work(self, works: Iterable[ActivityWork]) -> None:
         """Add work."""
-        for cost, streams, _ in works:
+        for cost, streams in works:
             for stream in streams if cost else ():
                 self._note_lower_bound(stream, cost)
                 period, jitter, distance, per_period, batch = stream
@@ -115,23 +98,6 @@ class GrowingLoad:
                 else:
                     self._periodic_costs[period, jitter] = self._periodic_costs.get((period, jitter), 0) + cost * batch
 
-    def add_carried_work(self, works: Iterable[ActivityWork]) -> None:
-        """Add work of which jobs may be carried into the window: they came before it, and are not done yet.
-
-        One job is, unless responses are longer than the time between two jobs: then everything that came within a
-        response counts.
-        """
-        for work in works:
-            if work.cost and work.streams:
-                first_stream = work.streams[0]
-                if len(work.streams) == 1 and work.response <= _job_separation(first_stream):
-                    self.add_work((work,))
-                    self._carried_cost += work.cost * first_stream.batch_size
-                else:
-                    self._late_works.append(work)
-                    for stream in work.streams:
-                        self._note_lower_bound(stream, work.cost)
-
     def _note_lower_bound(self, stream: EventStream, cost: int) -> None:
         """Add a stream to the lower bound of all demand."""
         scaled_rate, scaled_offset = _lower_bound(stream, cost)
@@ -139,23 +105,13 @@ class GrowingLoad:
 
     def demand_function(self) -> DemandFunction:
         """Return the demand function. It is a live view: it goes on growing with the load."""
-        # What one look costs, by the three kinds of terms in `_demand_within`.
-        term_count = (
-            len(self._periodic_costs)
-            + 2 * len(self._general_costs)
-            + 12 * sum(len(work.streams) for work in self._late_works)
-            + 1
-        )
-        return DemandFunction(
-            self._demand_within,
-            term_count,
-            self._scaled_rate,
-            self._scaled_offset + (self._carried_cost << _SHARE_BITS),
-        )
+        # What one look costs, by the two kinds of terms in `_demand_within`.
+        term_count = len(self._periodic_costs) + 2 * len(self._general_costs) + 1
+        return DemandFunction(self._demand_within, term_count, self._scaled_rate, self._scaled_offset)
 
     def _demand_within(self, window: int) -> int:
         """Return the most work in a window."""
-        work_sum = self._carried_cost
+        work_sum = 0
         for (period, jitter), cost in self._periodic_costs.items():
             work_sum -= -(window + jitter) // period * cost
         for (period, jitter, distance, per_period), cost in self._general_costs.items():
@@ -163,10 +119,6 @@ class GrowingLoad:
             if distance:
                 jobs = min(jobs, -(-window // distance))
             work_sum += jobs * cost
-        for cost, streams, response in self._late_works:
-            # Never less than one whole batch on top of what comes inside the window.
-            carried_jobs = max_arrivals(streams, window) + max(stream.batch_size for stream in streams)
-            work_sum += cost * max(carried_jobs, max_arrivals(streams, window + response))
         return work_sum
 
 
@@ -231,23 +183,6 @@ def worst_response(work: ActivityWork, interference: DemandFunction, budget: Sea
         if next_arrival is None or finish <= next_arrival:
             return longest
         arrival = next_arrival
-
-
-def divide_demand(demands_and_cores: Iterable[tuple[DemandFunction, int]]) -> DemandFunction:
-    """Divide each part of the other work by the number of cores (or threads) that it must occupy to interfere."""
-    pairs = tuple(demands_and_cores)
-    # The common case, without the cost of a loop at each look.
-    if len(pairs) == 1:
-        (within, term_count, scaled_rate, scaled_offset), divisor = pairs[0][0], pairs[0][1]
-        return DemandFunction(
-            lambda window: -(-within(window) // divisor), term_count, scaled_rate // divisor, scaled_offset // divisor
-        )
-    return DemandFunction(
-        lambda window: sum(-(-demand.within(window) // cores) for demand, cores in pairs),
-        sum(demand.term_count for demand, _ in pairs),
-        sum(demand.scaled_rate // cores for demand, cores in pairs),
-        sum(demand.scaled_offset // cores for demand, cores in pairs),
-    )
 
 
 def _find_fixed_point(own_work: int, demand: DemandFunction, spend: Callable[[int], None], *, start: int = 0) -> int:

@@ -20,12 +20,10 @@ from archgen.timing.load.event_streams import (
     throttle_streams,
     written_streams,
 )
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
 from archgen.timing.system.trigger_graph import TriggerGraph
-
-_ONE_CALL = Fraction(1)
-
 
 _DOWNSTREAM_WORDS = {"overload": "unbounded"}
 """What a note becomes for those who read the output: what reads from an overload is not overloaded itself."""
@@ -40,6 +38,12 @@ class PropagationState:
     event_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     responses: dict[str, WorstResponse] = field(default_factory=dict)
     diverged: set[str] = field(default_factory=set)
+    ways_to: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
+    """The ways on which events reach each activity of a core with triggers inside."""
+    run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
+    """The arcs by which ways go on to an activity from another of its core."""
+    entering_models: dict[int, EventStreams | UnknownCause] = field(default_factory=dict)
+    """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
 
@@ -129,59 +133,78 @@ def input_model(
     """Return the event model of what arrives at one input."""
     if not arcs or key in state.system.external_inputs.get(activity.id, ()):
         return UnknownCause((key,))
-    return _merge_models(arriving_model(state, arc, state.event_models[arc.source]) for arc in arcs)
+    return _merge_models(arriving_model(state, arc) for arc in arcs)
 
 
 def request_models(state: PropagationState, name: str) -> Iterator[EventStreams | UnknownCause]:
     """Yield the event models of the calls that arrive: they may come at any time while their caller runs."""
     for arc in state.triggers.requests[name]:
-        event_model = state.event_models[arc.source]
-        caller = state.system.activities[arc.source]
-        if not isinstance(event_model, UnknownCause):
-            yield arriving_model(
-                state, arc, streams_of_calls(event_model, caller.calls.get(arc.output, _ONE_CALL)), from_start=True
-            )
-        else:
-            yield event_model
+        yield arriving_model(state, arc)
 
 
-def arriving_model(
-    state: PropagationState, arc: Arc, event_model: EventStreams | UnknownCause, *, from_start: bool = False
-) -> EventStreams | UnknownCause:
-    """Return the event model behind a source's response and a link.
-
-    With `from_start` the event may leave as soon as the source starts, not only after its best case.
-    """
-    if isinstance(event_model, UnknownCause) or not event_model:
-        return event_model
-    source, response = state.system.activities[arc.source], state.responses[arc.source]
-    if response.value is None:
-        return _downstream_cause(response.cause)
+def arriving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
+    """Return the event model of what comes over an arc: behind its source's response and a link."""
+    leaving = leaving_model(state, arc)
+    if isinstance(leaving, UnknownCause) or not leaving:
+        return leaving
     if arc.worst is None:
         return UnknownCause((arc.link,)) if arc.link else UnknownCause((arc.source, arc.target), (UNLINKED_NOTE,))
-    return delay_streams(
-        _completion_streams(source, response.value, event_model, from_start=from_start), arc.worst - (arc.best or 0)
-    )
+    return delay_streams(leaving, arc.worst - (arc.best or 0))
 
 
-def leaving_model(
-    state: PropagationState, arc: Arc, event_model: EventStreams | UnknownCause, *, from_start: bool = False
-) -> EventStreams | UnknownCause:
-    """Return the event model behind a source's response, before any link."""
-    if isinstance(event_model, UnknownCause) or not event_model:
-        return event_model
-    source, response = state.system.activities[arc.source], state.responses[arc.source]
+def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
+    """Return the event model of what its source sends on an arc (data or a call), before any link."""
+    source, event_model = state.system.activities[arc.source], state.event_models[arc.source]
+    calls = calls_per_activation(source, arc) if arc.role == "request" else None
+    if isinstance(event_model, UnknownCause) or not event_model or (calls is not None and calls <= 0):
+        return () if calls is not None and calls <= 0 else event_model
+    response = state.responses[arc.source]
     if response.value is None:
         return _downstream_cause(response.cause)
-    return _completion_streams(source, response.value, event_model, from_start=from_start)
+    # What a declared response says goes for its output, whatever may be computed.
+    ways = state.ways_to.get(arc.source, ()) if source.response is None else ()
+    if (len(ways) == 1 and len(ways[0].steps) == 1) or any(way.delay is None for way in ways):
+        ways = ()
+    if not ways:
+        # Up to R - B later than activations.
+        return _complete_streams(source, event_model, calls, response.value)
+    streams: list[EventStream] = []
+    for way in ways:
+        entering = entering_model(state, way)
+        if isinstance(entering, UnknownCause):
+            return entering
+        entering = streams_of_calls(entering, Fraction(way.multiplicity)) if way.multiplicity > 1 else entering
+        streams += delay_streams(
+            entering if calls is None else streams_of_calls(entering, calls),
+            max((way.delay or 0) - way.best_before - _best_case(source, calls), 0),
+        )
+    return _keep_completions_apart(source, merge_streams(streams), calls)
 
 
-def _completion_streams(source: Activity, response: int, streams: EventStreams, *, from_start: bool) -> EventStreams:
-    """Return the event model of completions: up to R - B later than activations, and at least B apart."""
-    best_case = 0 if from_start else source.bcet or 0
-    completed = delay_streams(streams, max(response - best_case, 0))
+def entering_model(state: PropagationState, way: EntryWay) -> EventStreams | UnknownCause:
+    """Return the event model of what enters a core by a way."""
+    if way.entry_arc is not None:
+        # Looked up, for each of several ways back may lead to several ways on the core before, and so on.
+        known_model = state.entering_models.get(id(way.entry_arc.arc))
+        return arriving_model(state, way.entry_arc.arc) if known_model is None else known_model
+    return state.event_models[str(way.entry.key)]
+
+
+def _complete_streams(source: Activity, streams: EventStreams, calls: Fraction | None, response: int) -> EventStreams:
+    """Return the event model of completions, or of calls: up to R - B later than activations."""
+    sent = streams if calls is None else streams_of_calls(streams, calls)
+    return _keep_completions_apart(source, delay_streams(sent, max(response - _best_case(source, calls), 0)), calls)
+
+
+def _best_case(source: Activity, calls: Fraction | None) -> int:
+    """Return how long after its activation something leaves at the earliest: a call as soon as its caller starts."""
+    return (source.bcet or 0) if calls is None else 0
+
+
+def _keep_completions_apart(source: Activity, streams: EventStreams, calls: Fraction | None) -> EventStreams:
+    """Keep completions at least B apart."""
     # A declared response may rest on several executions at once: its completions are not known to be B apart.
-    return keep_events_apart(completed, best_case) if source.response is None else completed
+    return keep_events_apart(streams, _best_case(source, calls)) if source.response is None else streams
 
 
 def _downstream_cause(cause: UnknownCause) -> UnknownCause:

@@ -11,14 +11,20 @@ from collections.abc import Iterable, Iterator
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
-from archgen.timing.load.event_models import PropagationState, activation_model
-from archgen.timing.load.event_streams import (
-    EventStreams,
-)
+from archgen.timing.load.core_paths import CorePaths
+from archgen.timing.load.core_responses import solve_inner_core
+from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
+from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
+from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
+from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, ThreadWork, WorstResponse
-from archgen.timing.system.core_placement import ProcessingResource, find_resources
+from archgen.timing.load.shared_core_responses import solve_shared_cores
+from archgen.timing.load.shared_cores import prepare_shared_cores
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
+from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
@@ -50,7 +56,8 @@ class _Propagation:
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
-        for index, resource in enumerate(resource_list):
+        divided_resources = (part for resource in resource_list for part in divide_resource(state.system, resource))
+        for index, resource in enumerate(divided_resources):
             # Resources get keys that no activity has: both are steps of one graph.
             key = f"{index} {resource.id}"
             self.resources[key] = resource
@@ -60,8 +67,11 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.inner_cores: dict[str, InnerCore] = {}
+        self.shared_cores: dict[str, CorePaths] = {}
+        self.inner_triggers: dict[str, InnerTriggers] = {}
+        self._prepare_inner_cores()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
-        self.previous_threads: dict[str, tuple[ThreadWork, ...]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
         activities = state.system.activities.values()
         shortest_period = min((activity.period for activity in activities if activity.period), default=1)
@@ -69,6 +79,22 @@ class _Propagation:
         self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
+
+    def _prepare_inner_cores(self) -> None:
+        """Prepare the cores on which activities fire one another, and those that share their work."""
+        system = self.state.system
+        for step, resource in self.resources.items():
+            inner_triggers = find_inner_triggers(system, self.state.triggers, resource)
+            if inner_triggers is None:
+                continue
+            if resource.cores == 1:
+                core = self.inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
+            else:
+                cores = prepare_shared_cores(system, resource, inner_triggers)
+                self.shared_cores[step] = CorePaths(cores)
+                self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
+            self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -85,10 +111,7 @@ class _Propagation:
         """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
         successors: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
-        for step, resource in self.resources.items():
-            successors[step] += (step,) if resource.cores > 1 else ()  # what is carried in depends on responses
-        for name in system.activities:
-            successors[name] += self.disturbed_resources.get(name, ())
+        self._add_resource_steps(successors)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
@@ -97,6 +120,25 @@ class _Propagation:
                     for step in self.resources_of.get(arc.source, ()):
                         successors[step].append(name)
         return successors
+
+    def _add_resource_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what the responses on each resource rest on."""
+        for step, resource in self.resources.items():
+            for name in (name for unit in resource.foreign_units for name in unit):
+                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
+                    successors[foreign_step].append(step)
+        for name in self.state.system.activities:
+            successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
+        for step, inner_triggers in self.inner_triggers.items():
+            for source in dict.fromkeys(inner_triggers.outer_sources):
+                successors[source].append(step)
+                for source_step in self.resources_of.get(source, ()):
+                    successors[source_step].append(step)
+
+    def _rests_on(self, step: str, name: str) -> bool:
+        """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
+        inner_triggers = self.inner_triggers.get(step)
+        return inner_triggers is None or name not in inner_triggers.inner_arcs
 
     def _trigger_arcs(self, name: str) -> Iterator[Arc]:
         """Yield the arcs on which an activity's event model rests."""
@@ -156,6 +198,8 @@ class _Propagation:
         for name in self._activity_ids(steps):
             state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED_CAUSE)
             state.diverged.add(name)
+            if name in state.ways_to:
+                state.ways_to[name] = tuple(way._replace(delay=None) for way in state.ways_to[name])
         for step in steps:
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE
@@ -163,14 +207,18 @@ class _Propagation:
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
+        if step in self.inner_triggers:
+            return self._update_inner_core(step)
         if step in self.resources:
-            new_responses, self.previous_threads[step] = find_responses(
+            new_responses = find_responses(
                 state.system,
                 self.resources[step],
                 state.event_models,
-                state.responses,
-                AnalysisEffort(self.budget_of[step], self._stale_activities(step), self.previous_threads.get(step)),
+                AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
             )
+            new_responses = {
+                name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
+            }
             changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
             state.responses.update(new_responses)
             return changed
@@ -184,6 +232,37 @@ class _Propagation:
                 state.system, step, state.event_models, self.budget_of[step]
             )
         return True
+
+    def _update_inner_core(self, step: str) -> bool:
+        """Find the responses of a core on which activities fire one another, and return whether anything changed."""
+        state = self.state
+        entering_models: dict[int, EventStreams | UnknownCause] = {}
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            if entry_arc is None:
+                return state.event_models[str(origin.key)]
+            key = id(entry_arc.arc)
+            if key not in entering_models:
+                entering_models[key] = arriving_model(state, entry_arc.arc)
+            return entering_models[key]
+
+        new_responses, new_ways = (
+            solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
+            if step in self.inner_cores
+            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
+        )
+        new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
+        changed = any(
+            not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
+        )
+        state.entering_models.update(entering_models)
+        changed = changed or any(
+            _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
+            for name, response in new_responses.items()
+        )
+        state.responses.update(new_responses)
+        state.ways_to.update(new_ways)
+        return changed
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""
@@ -199,6 +278,13 @@ class _Propagation:
             if previous_models is None
             else frozenset(name for name in current_models if current_models[name] is not previous_models[name])
         )
+
+
+def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
+    """Name the tier of a thread that has one of several cores to itself."""
+    if not resource.undisturbed or response.tier in {"declared", "unknown"}:
+        return response
+    return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 
 
 def _has_changed(old: WorstResponse | None, new: WorstResponse) -> bool:

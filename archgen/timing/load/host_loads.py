@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
 
-from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime
+from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
@@ -32,6 +33,7 @@ _TIER_SENTENCES = {
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
+_OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
 _OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
@@ -50,9 +52,12 @@ def _build_response_time(
     """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
+    sentence = _TIER_SENTENCES[worst_response.tier]
+    if resource is not None and resource.undisturbed and worst_response.tier == "cores":
+        sentence = _OWN_CORE_SENTENCE
+    if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
+        sentence = _OPEN_CORES_SENTENCE
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
-    is_open = worst_response.tier == "unknown" and activity.wcet is not None and resource is not None
-    sentence = _OPEN_CORES_SENTENCE if is_open else _TIER_SENTENCES[worst_response.tier]
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,
@@ -60,6 +65,17 @@ def _build_response_time(
         worst_response.tier,
         (Reason(sentence, span, sentence_arguments),),
     )
+
+
+def build_run_responses(state: PropagationState, responses: Mapping[str, ResponseTime]) -> dict[str, RunResponse]:
+    """Return how long runs take, for each activity to which one leads from another of its core."""
+    runs: dict[str, RunResponse] = {}
+    for name, ways in state.ways_to.items():
+        delays = [way.delay for way in ways if way.delay is not None]
+        arcs = state.run_arcs.get(name, ())
+        if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
+            runs[name] = RunResponse(replace(responses[name].worst, value=max(delays) * state.system.tick), arcs)
+    return runs
 
 
 def _cores_text(resource: ProcessingResource | None) -> str:

@@ -1,4 +1,4 @@
-"""Response times on one resource, by tier: any scheduler, fixed priorities, executor, several cores.
+"""Response times on one resource, by tier: any scheduler, fixed priorities, executor.
 
 A utilisation of one or more on a core is overload; with fixed priorities exactly one is bearable where everything is
 strictly periodic (Burns and Wellings' process set C). No result rests on a figure that nobody wrote.
@@ -6,7 +6,7 @@ strictly periodic (Burns and Wellings' process set C). No result rests on a figu
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from math import lcm
 from typing import NamedTuple
 
@@ -23,7 +23,6 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
     worst_response,
 )
-from archgen.timing.load.multicore_response import solve_several_cores
 from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
@@ -41,22 +40,10 @@ from archgen.timing.system.timing_system import TimingSystem
 
 
 class AnalysisEffort(NamedTuple):
-    """How much may still be computed, and for whom.
-
-    `stale_ids` are those whose event models have changed, None at first. `previous_threads` are the threads of the
-    resource as they were when its responses were last found, None at first.
-    """
+    """How much may still be computed, and for whom: `stale_ids` have other event models than before, None at first."""
 
     budget: SearchBudget
     stale_ids: frozenset[str] | None = None
-    previous_threads: tuple[ThreadWork, ...] | None = None
-
-
-class ResourceResponses(NamedTuple):
-    """The responses of activities that may have changed, and the threads that they were found for."""
-
-    response_of: dict[str, WorstResponse]
-    threads: tuple[ThreadWork, ...]
 
 
 def find_dedicated_response(
@@ -66,7 +53,7 @@ def find_dedicated_response(
     activity = system.activities[name]
     if activity.response is not None:
         return WorstResponse(activity.response, "declared")
-    work = find_work(system, name, event_models, {})
+    work = find_work(system, name, event_models)
     if isinstance(work, UnknownCause):
         return WorstResponse(None, "dedicated" if activity.wcet is not None else "unknown", work)
     if work_utilisation(work.cost, work.streams) >= 1:
@@ -79,53 +66,37 @@ def find_dedicated_response(
 
 _MAX_JOBS_IN_ROUND = 20_000
 """Most jobs in the hyperperiod of a core that is busy all the time."""
-_OwnAndForeign = tuple[Sequence[ThreadWork], Sequence[ThreadWork]]
-"""The threads of a resource, and the foreign ones."""
 
 
 def find_responses(
-    system: TimingSystem,
-    resource: ProcessingResource,
-    event_models: EventModels,
-    known_responses: Mapping[str, WorstResponse],
-    effort: AnalysisEffort,
-) -> ResourceResponses:
-    """Return the responses of what a resource runs.
-
-    `known_responses` are those found so far; they matter on several cores. What has a higher priority than everything
-    stale is left out, and so is everything where nothing changed that counts.
-    """
-    budget, stale_ids, previous_threads = effort
-    built_threads = [
-        build_thread(system, unit, event_models, known_responses) for unit in (*resource.units, *resource.foreign_units)
-    ]
-    all_threads = tuple(lower_crowded_threads(system, built_threads, event_models))
-    # On several cores each response rests on all others; if no thread differs from last time, neither does any
-    # response.
-    if resource.cores > 1 and previous_threads == all_threads:
-        return ResourceResponses({}, all_threads)
-    threads, foreign_threads = all_threads[: len(resource.units)], all_threads[len(resource.units) :]
-    one_core = resource.cores == 1 or resource.joined
-    # On one core only what is as urgent or more can interfere: threads above the most urgent stale one keep their
-    # response. Threads without a priority (low None) always wait for everything.
-    if stale_ids is not None and one_core:
+    system: TimingSystem, resource: ProcessingResource, event_models: EventModels, effort: AnalysisEffort
+) -> dict[str, WorstResponse]:
+    """Return the responses on one core, or on cores that are joined; without those that cannot have changed."""
+    budget, stale_ids = effort
+    all_threads = lower_crowded_threads(
+        system,
+        [build_thread(system, unit, event_models) for unit in (*resource.units, *resource.foreign_units)],
+        event_models,
+    )
+    wanted_threads = all_threads[: len(resource.units)]
+    # Only what is as urgent or more can interfere: threads above the most urgent stale one keep their response. Threads
+    # without a priority (low None) always wait for everything.
+    if stale_ids is not None:
         highest_stale = max(
-            (
-                _highest_priority(thread)
-                for thread in (*threads, *foreign_threads)
-                if not stale_ids.isdisjoint(thread.unit)
-            ),
-            default=-1,
+            (_highest_priority(thread) for thread in all_threads if not stale_ids.isdisjoint(thread.unit)), default=-1
         )
-        wanted_threads = tuple(
-            thread for thread in threads if thread.lowest_priority is None or thread.lowest_priority <= highest_stale
-        )
-    else:
-        wanted_threads = threads
+        wanted_threads = [
+            thread
+            for thread in wanted_threads
+            if thread.lowest_priority is None or thread.lowest_priority <= highest_stale
+        ]
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
-    solve_resource = _leave_open if resource.missing else _solve_one_core if one_core else solve_several_cores
     response_of: dict[str, WorstResponse] = {}
-    thread_responses = solve_resource(system, resource, (threads, foreign_threads), wanted_threads, budget)
+    thread_responses = (
+        _leave_open(resource, wanted_threads)
+        if resource.missing
+        else _solve_one_core(all_threads, wanted_threads, budget)
+    )
     for thread, response in map(_soften_overload, thread_responses) if resource.joined else thread_responses:
         for name in thread.unit:
             # A declared response is taken as it is, whatever the rest of the thread does; its work still interferes
@@ -136,7 +107,7 @@ def find_responses(
                 response_of[name] = WorstResponse(
                     None, "unknown", unite_causes((UnknownCause((name,)), response.cause))
                 )
-    return ResourceResponses(response_of, all_threads)
+    return response_of
 
 
 def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
@@ -151,11 +122,7 @@ def _highest_priority(thread: ThreadWork) -> int:
 
 
 def _leave_open(
-    _: TimingSystem,
-    resource: ProcessingResource,
-    __: _OwnAndForeign,
-    wanted_threads: Sequence[ThreadWork],
-    ___: SearchBudget,
+    resource: ProcessingResource, wanted_threads: Iterable[ThreadWork]
 ) -> Iterable[tuple[ThreadWork, WorstResponse]]:
     """Yield no bound for threads of which nobody knows how many cores they have, but what is too much for any core."""
     for thread in wanted_threads:
@@ -164,14 +131,9 @@ def _leave_open(
 
 
 def _solve_one_core(
-    _: TimingSystem,
-    __: ProcessingResource,
-    threads: _OwnAndForeign,
-    wanted_threads: Sequence[ThreadWork],
-    budget: SearchBudget,
+    all_threads: Sequence[ThreadWork], wanted_threads: Sequence[ThreadWork], budget: SearchBudget
 ) -> Iterable[tuple[ThreadWork, WorstResponse]]:
     """Yield the responses of the wanted threads on one core."""
-    all_threads = (*threads[0], *threads[1])
     ranked = RankedThreads(all_threads)
     any_order_response = (
         _bound_any_order(all_threads, budget)
@@ -200,14 +162,20 @@ def _solve_one_core(
 
 
 def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0) -> WorstResponse:
-    """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top."""
+    """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top.
+
+    What is alone on a core works in the order in which it is activated.
+    """
     if sum_fractions(thread.share for thread in threads) >= 1:
         return WorstResponse(None, "host", OVERLOAD_CAUSE)
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
         return WorstResponse(None, "host", unite_causes(causes))
+    works = [work for thread in threads for work in thread.works]
     try:
-        load = GrowingLoad(work for thread in threads for work in thread.works)
+        if len(works) == 1 and works[0].streams:
+            return WorstResponse(worst_response(works[0], NO_DEMAND, budget), "host")
+        load = GrowingLoad(works)
         return WorstResponse(
             longest_busy_period(
                 add_demands(load.demand_function(), DemandFunction(lambda _: once_cost)), budget, once_cost

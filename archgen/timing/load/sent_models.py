@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_models import PropagationState, leaving_model
-from archgen.timing.load.event_streams import EventStreams, delay_streams, streams_of_calls
-from archgen.timing.system.timing_system import Activity, Arc
+from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.system.timing_system import Arc
 
 
 def sent_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
     """Return the event model of what is sent along an arc, at its source."""
     if arc.role == "answer":
         return _answer_model(state, arc)
-    event_model = state.event_models[arc.source]
-    if isinstance(event_model, UnknownCause):
-        return event_model
-    if arc.role == "data":
-        return sample_model(state, arc)
-    return leaving_model(
-        state,
-        arc,
-        streams_of_calls(event_model, calls_per_activation(state.system.activities[arc.source], arc)),
-        from_start=True,
-    )
+    return sample_model(state, arc) if arc.role == "data" else leaving_model(state, arc)
 
 
 def sample_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
@@ -34,13 +22,8 @@ def sample_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCau
     """
     model = state.leaving_models.get(arc.source)
     if model is None:
-        model = state.leaving_models[arc.source] = leaving_model(state, arc, state.event_models[arc.source])
+        model = state.leaving_models[arc.source] = leaving_model(state, arc)
     return model
-
-
-def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
-    """Return how many calls a client makes in each of its activations."""
-    return caller.calls.get(request.output, Fraction(1))
 
 
 def _answer_model(state: PropagationState, answer: Arc) -> EventStreams | UnknownCause:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 from archgen.timing.analysis import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
-from archgen.timing.load.busy_windows import ActivityWork, make_work
+from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
@@ -38,9 +38,7 @@ def work_utilisation(cost: int, streams: EventStreams) -> Fraction:
     return Fraction(numerator * cost, denominator)
 
 
-def find_work(
-    system: TimingSystem, name: str, event_models: EventModels, known_responses: Mapping[str, WorstResponse]
-) -> ActivityWork | UnknownCause:
+def find_work(system: TimingSystem, name: str, event_models: EventModels) -> ActivityWork | UnknownCause:
     """Return the work of an activity, or what is missing of it."""
     cost, streams = system.activities[name].wcet, event_models[name]
     if cost == 0:
@@ -48,10 +46,7 @@ def find_work(
     if cost is None:  # only what is missing of its events: a note such as `overload` does not say how long it takes
         event_cause = UnknownCause(streams.missing) if isinstance(streams, UnknownCause) else UnknownCause()
         return unite_causes((UnknownCause((name,)), event_cause))
-    if isinstance(streams, UnknownCause):
-        return streams
-    response = known_responses.get(name)
-    return make_work(cost, streams, (response.value or 0) if response else 0)
+    return streams if isinstance(streams, UnknownCause) else ActivityWork(cost, streams)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +60,14 @@ class ThreadWork:
     highest_priority: int | None
     share: Fraction
     container: str | None
-    boundless: bool = False
-    """Whether no response can be given though nothing is missing: any amount of its work may then be waiting."""
 
 
-def build_thread(
-    system: TimingSystem, unit: ThreadUnit, event_models: EventModels, known_responses: Mapping[str, WorstResponse]
-) -> ThreadWork:
+def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
     """Build a unit's thread from the work of its members."""
     # What never fires, or only at the start, interferes with nobody, even if its execution time is unknown.
     idle_ids = {name for name in unit if event_models[name] == () and system.activities[name].wcet is None}
     works_or_causes = [
-        ActivityWork(0, ()) if name in idle_ids else find_work(system, name, event_models, known_responses)
-        for name in unit
+        ActivityWork(0, ()) if name in idle_ids else find_work(system, name, event_models) for name in unit
     ]
     causes = [item for item in works_or_causes if isinstance(item, UnknownCause)]
     works = tuple(item for item in works_or_causes if isinstance(item, ActivityWork))
@@ -90,13 +80,7 @@ def build_thread(
         max(priorities, default=None),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
         system.activities[unit[0]].container,
-        any(name in known_responses and _has_no_bound(known_responses[name]) for name in unit),
     )
-
-
-def _has_no_bound(response: WorstResponse) -> bool:
-    """Whether a response has no bound although nothing is missing."""
-    return response.value is None and not response.cause.missing
 
 
 def lower_crowded_threads(

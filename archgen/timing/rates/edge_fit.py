@@ -167,7 +167,7 @@ def _needed_queue(context: EdgeContext, arc: Arc, *, is_fired: bool) -> TimingVa
     event_model = sample_model(context.state, arc)
     # Without the link's latency nothing is known of arrivals: `arriving_model` returns the cause that names the link.
     if event_model and arc.worst is None:
-        event_model = arriving_model(context.state, arc, context.state.event_models[arc.source])
+        event_model = arriving_model(context.state, arc)
     if isinstance(event_model, UnknownCause):
         return value_of_cause(event_model)
     window = context.reader_windows.get((arc.target, is_fired))

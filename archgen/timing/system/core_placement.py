@@ -35,6 +35,8 @@ class ProcessingResource:
     assumptions: tuple[str, ...] = ()
     joined: bool = False
     missing: tuple[str, ...] = ()
+    undisturbed: bool = False
+    """One thread, of no more threads than there are cores: it always has one to itself."""
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -58,6 +60,20 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
         for resource in _resources_of_host(system, host, members)
     )
     return (*on_hosts, *_resources_of_containers(system))
+
+
+def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is."""
+    if resource.cores == 1 or resource.joined or resource.foreign_units or len(resource.units) > resource.cores:
+        return (resource,)
+    containers = [system.activities[name].container for name in resource.members]
+    is_crowded = any(
+        container is not None and 1 < (system.threads.get(container) or 1) < containers.count(container)
+        for container in containers
+    )
+    if is_crowded:
+        return (resource,)
+    return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
 
 
 def find_unplaced_containers(system: TimingSystem) -> dict[str, list[Activity]]:

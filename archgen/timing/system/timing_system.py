@@ -216,3 +216,8 @@ def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:
     return source.period is not None or any(
         other_arc.role == "request" or other_arc.input in source.triggers for other_arc in other_arcs
     )
+
+
+def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
+    """Return how many calls a client makes in each of its activations."""
+    return caller.calls.get(request.output, Fraction(1))

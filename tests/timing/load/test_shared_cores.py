@@ -11,6 +11,10 @@ from tests.timing.sketches import analyse_sketch, list_hosts, list_reasons, list
 def test_cores_containers_and_pins() -> None:
     """`a` alone beside no more threads than cores waits for nobody; a container's threads divide its own work; where every core has
     a pin, what has none may run anywhere.
+
+    c: 3 + (4 + 5) / 2 + 6 / 3; d: 4 + (3 + 5) / 2 + 2; e: 5 + (2 x 3 + 2 x 4) / 2 + 2, as two of each come within 14 and the
+    response before it. f: 6 + B, where 3 B = 3 + min(4, B) + min(5, B). i: 2 + (3 + 4) / 2; j: 3 + (2 x 2 + 4) / 2; k: 4 + (2 x 2 + 3) / 2.
+    n: 4 + B, where 2 B = 2 x 2 + min(2 x 3, B): what is pinned may have waited for its core, so that two of each count.
     """
     analysis = analyse_sketch(
         {
@@ -45,18 +49,18 @@ def test_cores_containers_and_pins() -> None:
     assert list_responses(analysis) == [
         "a none ?a..4 cores",
         "b none ?b..9 cores",
-        "c none ?c..16 cores",
-        "d none ?d..16 cores",
-        "e none ?e..16 cores",
-        "f none ?f..14 cores",
+        "c none ?c..19/2 cores",
+        "d none ?d..10 cores",
+        "e none ?e..14 cores",
+        "f none ?f..9 cores",
         "g none ?g..5 [assuming a dedicated core for container lone] executor",
         "h none ?h..5 [assuming a dedicated core for container lone] executor",
-        "i none ?i..9 [assuming 2 dedicated cores for container duo] cores",
-        "j none ?j..9 [assuming 2 dedicated cores for container duo] cores",
-        "k none ?k..9 [assuming 2 dedicated cores for container duo] cores",
+        "i none ?i..11/2 [assuming 2 dedicated cores for container duo] cores",
+        "j none ?j..7 [assuming 2 dedicated cores for container duo] cores",
+        "k none ?k..15/2 [assuming 2 dedicated cores for container duo] cores",
         "l none ?l..6 host",
         "m none ?m..7 host",
-        "n none ?n..9 cores",
+        "n none ?n..8 cores",
         "o none ?o..6 [container torn has one thread: it runs where the first pinned member is] executor",
         "p none ?p..6 [container torn has one thread: it runs where the first pinned member is] executor",
         "q none ?q..6 [container torn has one thread: it runs where the first pinned member is] executor",
@@ -91,8 +95,8 @@ def test_cores_containers_and_pins() -> None:
         "u: every 10 ms, as written @48:50",
         "v: every 10 ms, as written @49:56",
         "w: every 20 ms, as written @50:56",
-        "a takes: its own work, and a share of all other work on the 2 cores of two @28:63",
-        "b takes: its own work, and a share of all other work on the 2 cores of two @29:63",
+        "a takes: its own work: two has no more threads than cores @28:63",
+        "b takes: its own work: two has no more threads than cores @29:63",
         "c takes: its own work, and a share of all other work on the 3 cores of four @30:69",
         "d takes: its own work, and a share of all other work on the 3 cores of four @31:69",
         "e takes: its own work, and a share of all other work on the 3 cores of four @32:69",
@@ -111,7 +115,7 @@ def test_cores_containers_and_pins() -> None:
         "r takes: the longest time for which all work on rift core 0 and on those that wait with it for a container's threads (one of them works while any waits) can keep it busy, in whatever order @45:70",
         "s takes: the longest time for which all work on rift core 1 and on those that wait with it for a container's threads (one of them works while any waits) can keep it busy, in whatever order @46:70",
         "t takes: the longest time for which all work on rift core 1 and on those that wait with it for a container's threads (one of them works while any waits) can keep it busy, in whatever order @47:70",
-        "u takes: its own work, and a share of all other work on the 2 cores of gap @48:63",
+        "u takes: its own work: gap has no more threads than cores @48:63",
         "v takes: all work of its executor on ex, in whatever order @49:69",
         "w takes: all work of its executor on ex, in whatever order @50:69",
     ]
@@ -141,7 +145,11 @@ def test_cores_containers_and_pins() -> None:
 
 
 def test_full_and_open_cores() -> None:
-    """Two cores are full at 2; a thread of 1 is too much for itself; what nobody wrote leaves all beside it open."""
+    """Two cores are full at 2; a thread of 1 is too much for itself; what nobody wrote leaves all beside it open.
+
+    p: two at once, 2 x 3 + B, where 2 B = min(4 x 4, B) + 2 x 5; q: 2 x 4 + B, where 2 B = min(5 x 3, B) + 2 x 5; r: 5 + (4 x 3 + 3 x 4 + 4) / 2,
+    as one thread was busy before.
+    """
     analysis = analyse_sketch(
         {
             "a @full": "period: 10 ms, wcet: 10 ms",
@@ -182,9 +190,9 @@ def test_full_and_open_cores() -> None:
         "m none ?m..none [overload] cores",
         "n none ?n..none [overload] cores",
         "o none ?o..none [overload] cores",
-        "p none ?p..47/2 cores",
-        "q none ?q..49/2 cores",
-        "r none ?r..24 cores",
+        "p none ?p..16 cores",
+        "q none ?q..18 cores",
+        "r none ?r..19 cores",
     ]
     assert list_hosts(analysis) == [
         "full: 2 of 2: overload; rm none [one core only], edf none [one core only]",

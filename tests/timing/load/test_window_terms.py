@@ -12,9 +12,7 @@ from archgen.timing.load.busy_windows import (
     GrowingLoad,
     SearchBudget,
     add_demands,
-    divide_demand,
     longest_busy_period,
-    make_work,
     subtract_demand,
     worst_response,
 )
@@ -24,23 +22,6 @@ WHOLE = 2**64
 PLAIN, LATE = EventStream(10), EventStream(10, 25)
 APART = EventStream(10, 25, 4)
 MANY = EventStream(10, 5, 0, 3, 2)
-
-
-@pytest.mark.parametrize(
-    ("streams", "response", "kept"),
-    [
-        ((PLAIN,), 10, 0),  # done when the next one comes
-        ((PLAIN,), 11, 11),
-        ((APART,), 4, 0),
-        ((APART,), 5, 5),
-        ((MANY,), 3, 0),  # three in ten: one each 3
-        ((MANY,), 4, 4),
-        ((PLAIN, PLAIN), 1, 1),
-        ((), 1, 1),
-    ],
-)
-def test_a_response_is_kept_only_where_it_matters(streams: tuple[EventStream, ...], response: int, kept: int) -> None:
-    assert make_work(2, streams, response) == ActivityWork(2, streams, kept)
 
 
 @pytest.mark.parametrize(
@@ -66,28 +47,6 @@ def test_demand_is_the_sum_of_all_events_in_a_window(
 
 
 @pytest.mark.parametrize(
-    ("work", "window", "demand", "term_count"),
-    [
-        (ActivityWork(3, (PLAIN,), 10), 1, 6, 2),  # one that comes, one that is carried in
-        (ActivityWork(3, (EventStream(10, 0, 0, 1, 2),), 10), 1, 12, 2),
-        (ActivityWork(3, (PLAIN,), 11), 1, 6, 13),  # what came within 11 is 2, as one carried in and one that comes
-        (ActivityWork(3, (PLAIN,), 35), 1, 12, 13),  # ceil(36 / 10)
-        (ActivityWork(3, (PLAIN, EventStream(10, 0, 0, 1, 4)), 1), 1, 3 * (5 + 4), 25),
-        (ActivityWork(0, (PLAIN,), 35), 1, 0, 1),
-        (ActivityWork(3, (), 35), 1, 0, 1),
-    ],
-)
-def test_carried_work_came_before_the_window(work: ActivityWork, window: int, demand: int, term_count: int) -> None:
-    load = GrowingLoad()
-    load.add_carried_work([work])
-    function = load.demand_function()
-    assert (function.within(window), function.term_count) == (demand, term_count)
-    # The lower bound lies below the demand at every window.
-    for length in range(1, 80):
-        assert function.scaled_rate * length + function.scaled_offset <= function.within(length) * WHOLE
-
-
-@pytest.mark.parametrize(
     ("stream", "rate", "offset"),
     [
         (EventStream(8), 3 * WHOLE // 8, 0),
@@ -101,20 +60,19 @@ def test_the_lower_bound_is_the_average(stream: EventStream, rate: int, offset: 
     function = GrowingLoad([ActivityWork(3, (stream,))]).demand_function()
     assert (function.scaled_rate, function.scaled_offset) == (rate, offset)
     load = GrowingLoad([ActivityWork(3, (stream,))])
-    load.add_carried_work([ActivityWork(5, (EventStream(4),))])
+    load.add_work([ActivityWork(5, (EventStream(4),))])
     both = load.demand_function()
-    assert (both.scaled_rate, both.scaled_offset) == (rate + 5 * WHOLE // 4, offset + 5 * WHOLE)
+    assert (both.scaled_rate, both.scaled_offset) == (rate + 5 * WHOLE // 4, offset)
+    # The lower bound lies below the demand at every window.
+    for length in range(1, 80):
+        assert both.scaled_rate * length + both.scaled_offset <= both.within(length) * WHOLE
 
 
-def test_demands_are_added_subtracted_and_divided() -> None:
+def test_demands_are_added_and_subtracted() -> None:
     seven, three = DemandFunction(lambda t: 7 * t, 2, 70, 700), DemandFunction(lambda t: 3 * t, 1, 30, 300)
     total, rest = add_demands(seven, three), subtract_demand(seven, three)
     assert (total.within(2), *total[1:]) == (20, 3, 100, 1000)
     assert (rest.within(2), *rest[1:]) == (8, 3, 40, 400)
-    half = divide_demand([(seven, 2)])
-    assert (half.within(3), *half[1:]) == (11, 2, 35, 350)  # 21 / 2, rounded up
-    several = divide_demand([(seven, 2), (three, 4)])
-    assert (several.within(3), *several[1:]) == (11 + 3, 3, 35 + 7, 350 + 75)  # each rounded by itself
     assert (NO_DEMAND.within(9), NO_DEMAND[1:]) == (0, (0, 0, 0))
 
 

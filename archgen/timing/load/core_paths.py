@@ -1,0 +1,176 @@
+"""What comes in the way of consecutive steps on cores that share their work: in their own threads, and beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import field
+
+from archgen.frozen import dataclass
+from archgen.timing.load.inner_core import urgency_of
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.run_ways import Priority
+from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
+from archgen.timing.system.core_placement import ThreadUnit
+
+
+@dataclass(frozen=True, slots=True)
+class LastStep:
+    """The last step of a path where it has a thread of its own, so that its activations follow one another in order.
+
+    `arrivals` are what fires it: for each way the origin, how many activations an event makes, the way to the step before
+    (None where nothing can be pending on it while the path's threads are idle), and how long that takes at least.
+    """
+
+    cost: int
+    arrivals: tuple[tuple[Origin, int, WayKey | None, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CorePath:
+    """What counts for some steps: their own time, and the work in their threads and beside them, by its place in the jobs.
+
+    `own_jobs` are those of the steps' threads, but of `last_step`, where that is known. Each has the way that leads to it
+    from other threads: what is pending of it can only be on that way. `crowds` are the jobs of each container whose threads
+    the steps wait for, with the number of those that can work at once. Of the other threads only those count that may be
+    as urgent. `held_jobs` are the jobs among theirs that may wait though a core is idle: of what is foreign, and behind
+    something less urgent. `lanes_of_origin` says which of the other threads, or containers, what comes of an origin may wait
+    for. `start_cost` is the work of a step that works only at the start, and so has no events.
+    """
+
+    cost: int
+    start_cost: int
+    last_step: LastStep | None
+    own_jobs: tuple[tuple[int, WayKey | None], ...]
+    crowds: tuple[tuple[list[int], int], ...]
+    other_lanes: tuple[list[int], ...]
+    held_jobs: frozenset[int]
+    lanes_of_origin: Mapping[Origin, list[int]]
+    lane_count: int
+
+    def list_jobs(self) -> Iterator[int]:
+        """Yield the jobs that come in the way."""
+        yield from (number for number, _ in self.own_jobs)
+        for lane in (*self.other_lanes, *(numbers for numbers, _ in self.crowds)):
+            yield from lane
+
+
+@dataclass(frozen=True, slots=True)
+class CorePaths:
+    """The paths on some cores, each built when it is first asked for."""
+
+    cores: SharedCores
+    _paths: dict[tuple[str, ...], CorePath] = field(default_factory=dict)
+
+    def look_up(self, steps: tuple[str, ...]) -> CorePath:
+        """Return what counts for some steps."""
+        path = self._paths.get(steps)
+        if path is None:
+            path = self._paths[steps] = self._build_path(steps)
+        return path
+
+    def _build_path(self, steps: tuple[str, ...]) -> CorePath:
+        cores = self.cores
+        units = dict.fromkeys(cores.unit_of[step] for step in steps)
+        level = min((cores.threads[unit].lowest_priority for unit in units), key=urgency_of)
+        crowds = self._find_crowds(steps, units)
+        # What holds the threads of a container does so k at a time, with k threads: that counts for more than the cores.
+        other_units = [
+            unit
+            for unit, numbers in cores.job_numbers.items()
+            if unit not in units
+            and (numbers or cores.origins_of_unit[unit])
+            and self._counts_at(unit, level)
+            and cores.crowd_of.get(unit[0]) not in crowds
+        ]
+        other_jobs = tuple(number for unit in other_units for number in cores.job_numbers[unit])
+        waiting_lanes = self._list_waiting_lanes(other_units)
+        lanes_of_origin: dict[Origin, list[int]] = {cores.jobs[number].origin: [] for number in other_jobs}
+        for lane, origins in enumerate(waiting_lanes):
+            for origin in origins:
+                lanes_of_origin.setdefault(origin, []).append(lane)
+        last_step = self._find_last_step(steps, units)
+        costs = [cores.system.activities[step].wcet or 0 for step in steps]
+        return CorePath(
+            sum(costs),
+            costs[-1] if steps[-1] in cores.inner_triggers.silent_ids and last_step is None else 0,
+            last_step,
+            tuple(
+                (number, self._find_way_before(cores.jobs[number], units))
+                for unit in units
+                for number in cores.job_numbers[unit]
+                if last_step is None or cores.jobs[number].key[0] != steps[-1]
+            ),
+            tuple((numbers, min(threads, cores.core_count)) for (_, threads), numbers in crowds.items()),
+            tuple(cores.job_numbers[unit] for unit in other_units if cores.job_numbers[unit]),
+            frozenset(number for number in other_jobs if self._is_held(number, units, level)),
+            lanes_of_origin,
+            len(waiting_lanes),
+        )
+
+    def _find_last_step(self, steps: tuple[str, ...], units: Mapping[ThreadUnit, None]) -> LastStep | None:
+        """Return the last step where its activations can be looked at one by one; the first is that of the first event."""
+        cores, name = self.cores, steps[-1]
+        cost, ways = cores.system.activities[name].wcet, cores.ways_to[name]
+        is_only_way = len(steps) == 1 or len(ways) == 1
+        if not cost or len(cores.unit_of[name]) > 1 or not is_only_way:
+            return None
+        if not all(cores.cascades.volumes.get(way.entry) for way in ways):
+            return None
+        return LastStep(
+            cost,
+            tuple(
+                (
+                    way.entry,
+                    way.multiplicity,
+                    self._find_way_before(ThreadJob((name, number), way.entry, cost, (name,), way.steps), units),
+                    way.best_before,
+                )
+                for number, way in enumerate(ways)
+            ),
+        )
+
+    def _find_crowds(self, steps: Iterable[str], units: Mapping[ThreadUnit, None]) -> dict[tuple[str, int], list[int]]:
+        """Return the containers whose threads some steps wait for, each with the jobs of its other members."""
+        crowd_of = self.cores.crowd_of
+        crowds: dict[tuple[str, int], list[int]] = {crowd_of[step]: [] for step in steps if step in crowd_of}
+        for number, job in enumerate(self.cores.jobs if crowds else ()):
+            crowd = crowd_of.get(job.key[0])
+            if crowd is not None and crowd in crowds and job.unit not in units:
+                crowds[crowd].append(number)
+        return crowds
+
+    def _is_held(self, number: int, units: Mapping[ThreadUnit, None], level: Priority) -> bool:
+        """Whether a job is foreign, or something less urgent that is not of the path itself leads to it."""
+        job, unit_of = self.cores.jobs[number], self.cores.unit_of
+        return job.key[0] in self.cores.foreign_ids or not all(
+            unit_of[step] in units or self._counts_at(unit_of[step], level) for step in job.steps
+        )
+
+    def _counts_at(self, unit: ThreadUnit, level: Priority) -> bool:
+        """Whether a thread may be as urgent as a level."""
+        highest = self.cores.threads[unit].highest_priority
+        return level is None or (highest is not None and highest >= level)
+
+    def _find_way_before(self, job: ThreadJob, units: Mapping[ThreadUnit, None]) -> WayKey | None:
+        """Return the way to the step before a job, where that leads through other threads than these, else None."""
+        if all(self.cores.unit_of[step] in units for step in job.steps[:-1]):
+            return None
+        before = job.steps[-2]
+        return next(
+            (before, number)
+            for number, way in enumerate(self.cores.ways_to[before])
+            if way.entry == job.origin and way.steps == job.steps[:-1]
+        )
+
+    def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> tuple[frozenset[Origin], ...]:
+        """Return what waits in each thread, or container, that takes an idle core as soon as it has work."""
+        cores = self.cores
+        origins_by_crowd: dict[object, frozenset[Origin]] = {}
+        lanes: list[frozenset[Origin]] = []
+        for unit in units:
+            crowd = cores.crowd_of.get(unit[0])
+            if crowd is not None:
+                origins_by_crowd[crowd] = origins_by_crowd.get(crowd, frozenset()) | cores.origins_of_unit[unit]
+            elif unit[0] not in cores.foreign_ids:
+                lanes.append(cores.origins_of_unit[unit])
+        return (*lanes, *origins_by_crowd.values())

@@ -1,0 +1,246 @@
+"""Response times on one core on which activities fire one another: of each activity, and of whole runs of them.
+
+From the arrival of an event until the last activity that it leads to has ended, the core always has work of the level of
+the least urgent of them. So the busy period of that level bounds them all together: J. Lehoczky's level-i busy period
+(RTSS 1990) of cascades instead of jobs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+from math import lcm
+from typing import NamedTuple
+
+from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.load.busy_windows import (
+    ActivityWork,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    add_demands,
+    longest_busy_period,
+    subtract_demand,
+    worst_response,
+)
+from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.event_streams import EventStreams, streams_of_calls
+from archgen.timing.load.inner_core import InnerCore, urgency_of
+from archgen.timing.load.inner_triggers import FiringArc
+from archgen.timing.load.level_cascades import LevelCascades, Origin
+from archgen.timing.load.run_ways import EntryWay, Priority
+from archgen.timing.load.thread_work import (
+    DIVERGED_CAUSE,
+    OVERLOAD_CAUSE,
+    ThreadWork,
+    WorstResponse,
+)
+
+_MAX_JOBS_IN_ROUND = 20_000
+"""Most events in the hyperperiod of a core that is busy all the time."""
+
+
+class CoreResponses(NamedTuple):
+    """The responses of what a core runs, and the ways to each activity with their delays."""
+
+    response_of: dict[str, WorstResponse]
+    ways_to: dict[str, tuple[EntryWay, ...]]
+
+
+class _LevelBound(NamedTuple):
+    busy_period: int | None
+    cause: UnknownCause
+    demand: CascadeDemand
+
+
+def solve_inner_core(
+    inner_core: InnerCore,
+    model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
+    budget: SearchBudget,
+) -> CoreResponses:
+    """Return the responses on a core, for the event models of what enters it (`model_of`)."""
+
+    def find_model(origin: Origin) -> EventStreams | UnknownCause:
+        return model_of(origin, inner_core.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
+
+    return _CoreSolver(inner_core, find_model, budget).solve()
+
+
+class _CoreSolver:
+    def __init__(
+        self,
+        inner_core: InnerCore,
+        find_model: Callable[[Origin], EventStreams | UnknownCause],
+        budget: SearchBudget,
+    ) -> None:
+        self.core = inner_core
+        self.find_model = find_model
+        self.budget = budget
+        self.bounds: dict[Priority, _LevelBound] = {}
+
+    def solve(self) -> CoreResponses:
+        """Find the busy periods level by level, then the responses and the delays of ways in the order of triggers."""
+        for level, cascades in self.core.levels.items():
+            self.bounds[level] = self._bound_level(level, cascades)
+        responses: dict[str, WorstResponse] = {}
+        ways_to: dict[str, tuple[EntryWay, ...]] = {}
+        delays: dict[tuple[str, ...], int | None] = {}
+        for name in self.core.inner_triggers.order:
+            activity = self.core.system.activities[name]
+            response = self._find_response(name)
+            whole_delay = self._delay_of_only_way(name, self.core.ways_to[name])
+            if whole_delay is not None and response.value is not None:
+                response = response._replace(
+                    value=min(response.value, whole_delay - self.core.ways_to[name][0].best_before)
+                )
+            if activity.response is not None:
+                response = WorstResponse(activity.response, "declared")
+            if self._is_idle(name):  # its work is not in the busy periods, nor has it any events
+                responses[name], ways_to[name] = response, self.core.ways_to[name]
+                continue
+            ways: list[EntryWay] = []
+            for way in self.core.ways_to[name]:
+                candidates = [whole_delay, self._period_of_steps(way.steps)]
+                if response.value is not None:
+                    before = delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
+                    candidates.append(None if before is None else before + response.value)
+                delay = min((each for each in candidates if each is not None), default=None)
+                delays[(*map(str, way.entry), *way.steps)] = delay
+                ways.append(way._replace(delay=delay))
+            if ways and all(way.delay is not None for way in ways) and response.tier != "declared":
+                longest = max((way.delay or 0) - way.best_before for way in ways)
+                if response.value is not None and longest < response.value:
+                    response = response._replace(value=longest)
+            responses[name] = response
+            ways_to[name] = tuple(ways)
+        return CoreResponses(responses, ways_to)
+
+    def _bound_level(self, level: Priority, cascades: LevelCascades) -> _LevelBound:
+        """Return the busy period of a level, or why there is none."""
+        demand = CascadeDemand(cascades, self.find_model)
+        share = demand.share()
+        if share > 1 or (share == 1 and (level is None or not _settles_at_full_load(demand))):
+            return _LevelBound(None, OVERLOAD_CAUSE, demand)
+        unknown_costs = [name for name in cascades.unknown_costs if not self._is_idle(name)]
+        if unknown_costs or demand.causes:
+            return _LevelBound(
+                None, unite_causes((*(UnknownCause((name,)) for name in unknown_costs), *demand.causes)), demand
+            )
+        previous = next(reversed(self.bounds.values()), None)
+        if previous is not None and previous.cause == DIVERGED_CAUSE:
+            return _LevelBound(None, DIVERGED_CAUSE, demand)
+        try:
+            busy_period = longest_busy_period(demand.demand_function(), self.budget)
+        except DivergedError:
+            return _LevelBound(None, DIVERGED_CAUSE, demand)
+        return _LevelBound(busy_period, UnknownCause(), demand)
+
+    def _is_idle(self, name: str) -> bool:
+        """Whether an activity never works, or only at the start."""
+        return name in self.core.inner_triggers.silent_ids
+
+    def _find_response(self, name: str) -> WorstResponse:
+        """Return the response of an activity from its activation on, as far as its level says."""
+        thread, activity = self.core.thread_of[name], self.core.system.activities[name]
+        level = thread.lowest_priority
+        bound = self.bounds[level]
+        if activity.wcet is None:
+            return WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), bound.cause)))
+        tier = self._tier_of(thread)
+        if bound.busy_period is None:
+            return WorstResponse(None, tier, bound.cause)
+        start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
+        if start_work:
+            extended_period = self._extend_busy_period(bound, start_work)
+            return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
+        if level is None or len(thread.unit) > 1:
+            return WorstResponse(bound.busy_period, tier)
+        return WorstResponse(self._response_by_activation(name, bound), tier)
+
+    def _tier_of(self, thread: ThreadWork) -> ResponseTier:
+        if thread.lowest_priority is None:
+            return "executor" if len(self.core.threads) == 1 and len(thread.unit) > 1 else "host"
+        return "priorities" if len(thread.unit) == 1 else "executor"
+
+    def _extend_busy_period(self, bound: _LevelBound, start_work: int) -> int | None:
+        """Return the busy period with work that is done once, at the start, on top."""
+        demand = add_demands(bound.demand.demand_function(), DemandFunction(lambda _: start_work))
+        try:
+            return longest_busy_period(demand, self.budget, bound.busy_period or 0)
+        except DivergedError:
+            return None
+
+    def _response_by_activation(self, name: str, bound: _LevelBound) -> int:
+        """Return the response of an activity over all its activations in the busy period of its level.
+
+        Its n-th activation comes no sooner than the n-th event that leads to it, on whatever way.
+        """
+        busy_period = bound.busy_period or 0
+        ways = self.core.ways_to[name]
+        if any(way.entry.kind == "activity" and not self._enters(str(way.entry.key)) for way in ways):
+            return busy_period  # behind a gate: how its events follow one another is not known here
+        if not self.core.system.activities[name].wcet or not self._all_at_level(ways, name):
+            return busy_period
+        streams = tuple(
+            stream
+            for way in ways
+            for stream in streams_of_calls(bound.demand.streams_of(way.entry), Fraction(way.multiplicity))
+        )
+        finish = self._last_finish(name, streams, bound)
+        return min(busy_period, finish - min((way.best_before for way in ways), default=0))
+
+    def _enters(self, name: str) -> bool:
+        return name in self.core.inner_triggers.entry_ids
+
+    def _all_at_level(self, ways: Sequence[EntryWay], name: str) -> bool:
+        """Whether all steps that lead to an activity may run at its level: then all its activations count from them."""
+        return all(step in self.bounds_ids(name) for way in ways for step in way.steps)
+
+    def bounds_ids(self, name: str) -> Mapping[str, object]:
+        """Return the activities that count at the level of one."""
+        return self.bounds[self.core.thread_of[name].lowest_priority].demand.level.activations
+
+    def _last_finish(self, name: str, streams: EventStreams, bound: _LevelBound) -> int:
+        """Return the longest time from an event to the end of the activation that it makes of `name`."""
+        cost = self.core.system.activities[name].wcet or 0
+        own_work = ActivityWork(cost, streams)
+        interference = subtract_demand(bound.demand.demand_function(), GrowingLoad((own_work,)).demand_function())
+        try:
+            return worst_response(own_work, interference, self.budget, bound.busy_period or 0)
+        except DivergedError:
+            return bound.busy_period or 0
+
+    def _delay_of_only_way(self, name: str, ways: Sequence[EntryWay]) -> int | None:
+        """Return the delay of a way, activation by activation, where no other leads to its last step."""
+        if len(ways) != 1 or ways[0].multiplicity != 1 or len(ways[0].steps) == 1:
+            return None
+        level = self._level_of_steps(ways[0].steps)
+        bound = self.bounds.get(level)
+        if level is None or bound is None or bound.busy_period is None or len(self.core.thread_of[name].unit) > 1:
+            return None
+        if ways[0].entry.kind == "activity" and not self._enters(str(ways[0].entry.key)):
+            return None
+        if not self.core.system.activities[name].wcet:
+            return None
+        return min(bound.busy_period, self._last_finish(name, bound.demand.streams_of(ways[0].entry), bound))
+
+    def _level_of_steps(self, steps: Iterable[str]) -> Priority:
+        """Return the level of the least urgent of some steps."""
+        return min((self.core.thread_of[step].lowest_priority for step in steps), key=urgency_of)
+
+    def _period_of_steps(self, steps: Iterable[str]) -> int | None:
+        """Return the busy period of the level at which all of a run's steps count."""
+        return self.bounds[self._level_of_steps(steps)].busy_period
+
+
+def _settles_at_full_load(demand: CascadeDemand) -> bool:
+    """Whether work that fills a core is sure to be done at the end of each hyperperiod."""
+    streams = [stream for model in demand.list_streams() for stream in model]
+    if demand.has_gates or any(stream.jitter or stream.distance or stream.events_per_period != 1 for stream in streams):
+        return False
+    # Strictly periodic work with a load of exactly 1 is done at each common multiple of the periods. Any jitter would
+    # let the busy period go on for ever.
+    hyperperiod = lcm(*(stream.period for stream in streams))
+    return sum(hyperperiod // stream.period for stream in streams) <= _MAX_JOBS_IN_ROUND

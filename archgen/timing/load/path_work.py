@@ -1,0 +1,156 @@
+"""How long all takes that comes in the way of a path on several cores: in its own threads, and beside them (A + B)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from heapq import nlargest
+
+from archgen.timing.load.busy_cores import divide_among_cores
+from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.core_paths import CorePath
+from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.shared_cores import SharedCores, WayKey
+
+_ENDLESS = 1 << 200
+"""Longer than any window, in ticks."""
+
+
+class PathWork:
+    """The work that comes in the way of paths, for given event models; `delays` are how long ways take at most."""
+
+    def __init__(self, cores: SharedCores, demand: CascadeDemand) -> None:
+        """Find the longest windows in which no more comes of an origin, or of all of them, than at once."""
+        self.cores = cores
+        self.delays: dict[WayKey, int] = {}
+        self.longest_delay = 0
+        self.streams: dict[Origin, EventStreams] = {
+            origin: demand.streams_of(origin) for origin, volume in cores.cascades.volumes.items() if volume
+        }
+        self.calm_arrivals = {origin: max_arrivals(model, 1) for origin, model in self.streams.items()}
+        self.calm_windows = {
+            origin: min((_find_calm_time(stream) for stream in model), default=_ENDLESS)
+            for origin, model in self.streams.items()
+        }
+        self.calm_window = min(self.calm_windows.values(), default=0)
+        self.calm_times: dict[int, int] = {}
+
+    def note_delay(self, key: WayKey, delay: int) -> bool:
+        """Note how long a way takes, unless it was longer before; return whether it grew."""
+        if delay <= self.delays.get(key, 0):
+            self.delays.setdefault(key, delay)
+            return False
+        self.delays[key] = delay
+        self.longest_delay = max(self.longest_delay, delay)
+        return True
+
+    def find_time_beside(self, path: CorePath, window: int, spend: Callable[[int], None]) -> int:
+        """Return how long all takes in a window but the last step's activations: A + B."""
+        if window + self.longest_delay > self.calm_window:
+            spend(2 * (len(self.streams) + len(self.cores.jobs)))
+            calm_windows = self.calm_windows
+            arrivals = {
+                origin: count if window <= calm_windows[origin] else max_arrivals(self.streams[origin], window)
+                for origin, count in self.calm_arrivals.items()
+            }
+            return self._path_work(path, window, arrivals) + self._blocked_time(path, window, arrivals)
+        # In such a window nothing comes twice, and nothing is pending: its length does not matter.
+        time = self.calm_times.get(id(path))
+        if time is None:
+            arrivals = self.calm_arrivals
+            time = self._path_work(path, window, arrivals) + self._blocked_time(path, window, arrivals)
+            self.calm_times[id(path)] = time
+        return time
+
+    def _count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
+        """Return how many events more there are in a window and up to `delay` before it than in a window."""
+        if not delay or window + delay <= self.calm_windows[origin]:
+            return 0
+        return max_arrivals(self.streams[origin], window + delay) - arrivals[origin]
+
+    def _path_work(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
+        """Return the work of the threads of a path in a window, as the time for which they can hold it up."""
+        total, jobs = path.start_cost, self.cores.jobs
+        for number, way_before in path.own_jobs:
+            _, origin, work, _, _ = jobs[number]
+            # At t0 nothing waits in the threads of the path themselves.
+            delay = self.delays.get(way_before, 0) if way_before else 0
+            total += work * (arrivals[origin] + self._count_pending(origin, window, delay, arrivals))
+        for numbers, threads in path.crowds:
+            crowd_work = 0
+            for key, origin, work, _, _ in (jobs[number] for number in numbers):
+                pending = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                crowd_work += work * (arrivals[origin] + pending)
+            total -= -crowd_work // threads
+        return total
+
+    def _blocked_time(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
+        """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
+
+        Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
+        own.
+        """
+        core_count = self.cores.core_count
+        lane_works: list[int] = []
+        pending_works: list[int] = []
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        for lane in path.other_lanes:
+            lane_work = pending_work = 0
+            for number in lane:
+                key, origin, work, _, _ = self.cores.jobs[number]
+                lane_work += work * arrivals[origin]
+                count = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                if count:
+                    pending_work += work * count
+                    if number in path.held_jobs:
+                        held_work += work * count
+                    else:
+                        pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
+            lane_works.append(lane_work)
+            pending_works.append(pending_work)
+        if not any(pending_works) and not path.crowds:
+            return divide_among_cores(lane_works, 0, core_count)
+        most_pending = held_work + self._most_waiting(path, pending_by_origin)
+        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
+        if path.crowds:
+            return blocked_time
+        # All that each thread may have in the end: less, where a single one has most of it.
+        all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
+        blocked_time = min(blocked_time, divide_among_cores(all_works, 0, core_count))
+        if max(lane_works) > blocked_time:
+            blocked_time = min(blocked_time, divide_among_cores(lane_works, self._most_pending(path), core_count))
+        return blocked_time
+
+    def _most_pending(self, path: CorePath) -> int:
+        """Return the most work that can be pending at t0 at all.
+
+        The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
+        """
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        for lane in path.other_lanes:
+            for number in lane:
+                key, origin, work, _, _ = self.cores.jobs[number]
+                delay = self.delays.get(key, 0)
+                pending_work = work * max_arrivals(self.streams[origin], delay) if delay else 0
+                if number in path.held_jobs:
+                    held_work += pending_work
+                else:
+                    pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
+        return held_work + self._most_waiting(path, pending_by_origin)
+
+    def _most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
+        """Return the most work that may have waited for m - 1 threads."""
+        waiting_works = [0] * path.lane_count
+        for origin, work in work_by_origin.items():
+            for lane in path.lanes_of_origin[origin]:
+                waiting_works[lane] += work
+        return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+
+
+def _find_calm_time(stream: EventStream) -> int:
+    """Return the longest window in which no more of a stream comes than at once."""
+    period, jitter, distance, per_period, batch = stream
+    batches = max_arrivals((stream,), 1) // batch
+    return max(batches * period // per_period - jitter, batches * distance)

@@ -1,0 +1,276 @@
+"""Response times on several cores that share their work, under any global work-conserving scheduler.
+
+A path is one step, or the steps of a run one after the other. Let t0 be the last instant up to an arrival at which
+nothing waited in the threads of the path and a core was idle, or busy with something less urgent. From then on until the
+last step of the path has ended, one of the m cores works for a thread of the path, or all m are busy with other threads.
+The former takes at most A, the work of those threads; the latter takes B with m B = sum of min(W, B) over the other
+threads, since none works more than B in a time B. So the path has ended A + B after t0: were it not, more work would have
+been done than there is. W is what arrives in that time, and what was pending at t0: at most m - 1 threads had work then,
+and each pending cascade waits for one of them.
+
+In a container with k threads and more members a step may also wait for a thread, while k members work (or as many as
+there are cores). Of the time in which it waits, each member's work then counts divided by k, and everybody else's divided
+by m: whatever is running, the two together are used up at least as fast as time passes. Where fewer than k members run,
+others take the cores, however much of it is one thread's: so no thread's work is cut to B there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep
+from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.core_shares import CoreShares
+from archgen.timing.load.event_streams import (
+    EventStream,
+    EventStreams,
+    delay_streams,
+    earliest_arrivals,
+    streams_of_calls,
+)
+from archgen.timing.load.inner_triggers import FiringArc
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.path_work import PathWork
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.shared_cores import WayKey
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
+
+_MAX_SWEEPS = 60
+"""Sweeps over all runs of some cores before their responses are given up."""
+
+
+def solve_shared_cores(
+    paths: CorePaths,
+    model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
+    known_responses: Mapping[str, WorstResponse],
+    budget: SearchBudget,
+) -> CoreResponses:
+    """Return the responses on some cores, for the event models of what enters them (`model_of`).
+
+    `known_responses` have those of the foreign units, which are found elsewhere.
+    """
+    cores = paths.cores
+
+    def find_model(origin: Origin) -> EventStreams | UnknownCause:
+        return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
+
+    demand = CascadeDemand(cores.cascades, find_model)
+    return _SharedCoreSolver(paths, demand, known_responses, budget).solve()
+
+
+class _SharedCoreSolver:
+    def __init__(
+        self,
+        paths: CorePaths,
+        demand: CascadeDemand,
+        known_responses: Mapping[str, WorstResponse],
+        budget: SearchBudget,
+    ) -> None:
+        self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
+        self.known_responses = known_responses
+        self.step_responses: dict[str, int] = {}
+        self.cause_of: dict[str, UnknownCause] = {}
+        self.way_before = {
+            (name, number): self._find_way_before(way)
+            for name, ways in self.cores.ways_to.items()
+            for number, way in enumerate(ways)
+            if len(way.steps) > 1
+        }
+        # The longest ways first: each passes on what it is bounded by.
+        self.ways_before = sorted(
+            self.way_before.items(), key=lambda pair: -len(self.cores.ways_to[pair[0][0]][pair[0][1]].steps)
+        )
+        self.last_windows: dict[tuple[int, int], int] = {}
+
+    def _find_way_before(self, way: EntryWay) -> WayKey:
+        """Return the way to the step before the last one of a way."""
+        before = way.steps[-2]
+        return next(
+            (before, number)
+            for number, shorter_way in enumerate(self.cores.ways_to[before])
+            if shorter_way.entry == way.entry and shorter_way.steps == way.steps[:-1]
+        )
+
+    def solve(self) -> CoreResponses:
+        """Find the responses of all runs together, from below, and those of the activities."""
+        cause = self._find_common_cause()
+        if cause is not None:
+            self.cause_of = dict.fromkeys(self.cores.inner_triggers.order, cause)
+            return self._build_responses()
+        self.work = PathWork(self.cores, self.demand)
+        self._mark_full_threads()
+        for name in sorted(self.cores.foreign_ids):
+            self.work.note_delay((name, 0), self.known_responses[name].value or 0)
+        while stuck_names := self._repeat_sweeps():
+            # What still grows has no bound that is found, and neither has what it comes in the way of.
+            self._mark_boundless(stuck_names, DIVERGED_CAUSE)
+        return self._build_responses()
+
+    def _find_common_cause(self) -> UnknownCause | None:
+        """Return why nothing is known of any response here, None where all is well."""
+        if self.demand.share() >= self.cores.core_count:
+            return OVERLOAD_CAUSE
+        unknown_costs = [
+            UnknownCause((name,))
+            for name in self.cores.cascades.unknown_costs
+            if name not in self.cores.inner_triggers.silent_ids
+        ]
+        if unknown_costs or self.demand.causes:
+            return unite_causes((*unknown_costs, *self.demand.causes))
+        return None
+
+    def _mark_full_threads(self) -> None:
+        """Mark what has no bound as its thread, or a core with what is beside it, is busy all the time."""
+        shares = CoreShares(self.cores, self.demand)
+        for unit in self.cores.own_units:
+            if shares.fills_thread(unit):
+                self._mark_boundless(unit, OVERLOAD_CAUSE)
+        boundless_ids = [
+            name
+            for name in sorted(self.cores.foreign_ids)
+            if (response := self.known_responses.get(name)) is None or response.value is None
+        ]
+        order = self.cores.inner_triggers.order
+        full_names = [name for name in order if shares.fills_core((name,), self.paths.look_up((name,)))]
+        self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
+
+    def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
+        """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""
+        marked_names = [name for name in names if name not in self.cause_of]
+        self.cause_of.update(dict.fromkeys(marked_names, cause))
+        lasting_cause = DIVERGED_CAUSE if cause == OVERLOAD_CAUSE else cause
+        boundless_jobs = {number for number, job in enumerate(self.cores.jobs) if job.key[0] in self.cause_of}
+        has_grown = bool(marked_names)
+        while has_grown:
+            has_grown = False
+            for name in self.cores.inner_triggers.order:
+                if name not in self.cause_of and self._is_disturbed(name, boundless_jobs):
+                    self.cause_of[name] = lasting_cause
+                    boundless_jobs.update(number for number, job in enumerate(self.cores.jobs) if job.key[0] == name)
+                    has_grown = True
+
+    def _is_disturbed(self, name: str, boundless_jobs: set[int]) -> bool:
+        """Whether something without a bound comes in the way of an activity, or leads to it."""
+        if not boundless_jobs.isdisjoint(self.paths.look_up((name,)).list_jobs()):
+            return True
+        return any(step in self.cause_of for way in self.cores.ways_to[name] for step in way.steps)
+
+    def _repeat_sweeps(self) -> list[str]:
+        """Sweep until nothing grows; return what still does where the end is not reached."""
+        grown_names: list[str] = []
+        for _ in range(_MAX_SWEEPS):
+            spend = self.budget.start_search()
+            delays: dict[WayKey, int] = {}
+            for name in self._list_bounded():
+                try:
+                    self._find_way_delays(name, delays, spend)
+                except DivergedError:
+                    return [name]
+            # A step has ended before the one that it fires: what bounds all of them bounds each.
+            for key, way_before in self.ways_before:
+                if key in delays and delays[key] < delays[way_before]:
+                    delays[way_before] = delays[key]
+            grown_names = [key[0] for key, delay in delays.items() if self.work.note_delay(key, delay)]
+            if not grown_names:
+                break
+        return grown_names
+
+    def _list_bounded(self) -> list[str]:
+        """Return the activities of which a bound may be found, each behind what fires it."""
+        return [name for name in self.cores.inner_triggers.order if name not in self.cause_of]
+
+    def _find_way_delays(self, name: str, delays: dict[WayKey, int], spend: Callable[[int], None]) -> None:
+        """Find the delays of the ways to an activity anew, for what may be pending now."""
+        response = self._find_delay(self.paths.look_up((name,)), spend)
+        # What a declared response says may be more than is computed: so long it may be pending.
+        response = max(response, self.cores.system.activities[name].response or 0)
+        self.step_responses[name] = response
+        for number, way in enumerate(self.cores.ways_to[name]):
+            delay = response
+            if len(way.steps) > 1:
+                delay += delays[self.way_before[name, number]]
+                delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)
+            delays[name, number] = delay
+
+    def _find_delay(self, path: CorePath, spend: Callable[[int], None], limit: int | None = None) -> int:
+        """Return how long a path takes at most from the event on, or `limit` where that is not less.
+
+        Where the last step has a thread of its own, each activation of it since t0 is looked at. None waited then, so
+        that the n-th comes no sooner than the n-th of all that fires it.
+        """
+        if path.last_step is None:
+            return self._find_window(path, 0, max(path.cost, 1), spend, limit)
+        arrival_times = earliest_arrivals(self._activation_streams(path.last_step))
+        arrival, longest, count, window = next(arrival_times, 0), 0, 0, max(path.cost, 1)
+        while True:
+            spend(1)
+            count += 1
+            next_arrival = next(arrival_times, None)
+            if next_arrival == arrival:  # the last of those that come at once ends last
+                continue
+            window = self._find_window(path, count, window, spend, None if limit is None else arrival + limit)
+            longest = max(longest, window - arrival)
+            if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
+                return longest
+            arrival = next_arrival
+
+    def _activation_streams(self, last_step: LastStep) -> EventStreams:
+        """Return the event model of what fires the last step of a path: behind the steps that are not of the path."""
+        streams: list[EventStream] = []
+        for origin, multiplicity, way_before, best_before in last_step.arrivals:
+            model = self.demand.streams_of(origin)
+            if multiplicity > 1:
+                model = streams_of_calls(model, Fraction(multiplicity))
+            jitter = max(self.work.delays.get(way_before, 0) - best_before, 0) if way_before else 0
+            streams += delay_streams(model, jitter)
+        return tuple(streams)
+
+    def _find_window(
+        self, path: CorePath, count: int, window: int, spend: Callable[[int], None], limit: int | None
+    ) -> int:
+        """Return the least window in which a path is sure to be done, or `limit` where it is not less.
+
+        It is not below `window`, nor below what it was when less was pending. So many activations (`count`) of the last
+        step are looked at, where they are counted.
+        """
+        last_work = count * path.last_step.cost if path.last_step else 0
+        key = (id(path), count)
+        window = max(window, self.last_windows.get(key, 0))
+        while limit is None or window < limit:
+            spend(2)
+            needed = max(last_work + self.work.find_time_beside(path, window, spend), path.cost)
+            if needed <= window:
+                self.last_windows[key] = window
+                return needed if window == 1 else window
+            window = needed
+        return limit
+
+    def _build_responses(self) -> CoreResponses:
+        """Return what was found, or why nothing was."""
+        ways_to = {
+            name: ways
+            if name in self.cause_of
+            else tuple(way._replace(delay=self.work.delays[name, number]) for number, way in enumerate(ways))
+            for name, ways in self.cores.ways_to.items()
+        }
+        return CoreResponses(
+            {name: self._build_response(name, ways_to[name]) for name in self.cores.inner_triggers.order}, ways_to
+        )
+
+    def _build_response(self, name: str, ways: Sequence[EntryWay]) -> WorstResponse:
+        activity = self.cores.system.activities[name]
+        if activity.response is not None:
+            return WorstResponse(activity.response, "declared")
+        cause = self.cause_of.get(name, UnknownCause())
+        if activity.wcet is None:
+            return WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), cause)))
+        tier: ResponseTier = "executor" if len(self.cores.unit_of[name]) > 1 else "cores"
+        if name in self.cause_of:
+            return WorstResponse(None, tier, cause)
+        longest = max((way.delay or 0) - way.best_before for way in ways)
+        return WorstResponse(min(self.step_responses[name], longest), tier)
