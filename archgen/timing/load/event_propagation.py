@@ -133,7 +133,7 @@ class _Propagation:
                 for arc in self._trigger_arcs(name):
                     successors[arc.source].append(name)
                     # What arrives rests on the source's response as well, and that is found by its resource.
-                    for step in self.resources_of.get(arc.source, ()):
+                    for step in self._response_steps(arc.source):
                         successors[step].append(name)
         return successors
 
@@ -155,8 +155,15 @@ class _Propagation:
         for step, inner_triggers in all_inner_triggers.items():
             for source in dict.fromkeys(inner_triggers.outer_sources):
                 successors[source].append(step)
-                for source_step in self.resources_of.get(source, ()):
+                for source_step in self._response_steps(source):
                     successors[source_step].append(step)
+
+    def _response_steps(self, name: str) -> Iterator[str]:
+        """Yield the steps that find how long an activity takes: its resource, and its host as a whole."""
+        yield from self.resources_of.get(name, ())
+        whole_step = f"whole {self.state.system.activities[name].host}"
+        if whole_step in self.whole_hosts:
+            yield whole_step
 
     def _rests_on(self, step: str, name: str) -> bool:
         """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
@@ -225,7 +232,8 @@ class _Propagation:
             if name in state.ways_to:
                 state.ways_to[name] = tuple(way._replace(delay=None) for way in state.ways_to[name])
         for step in steps:
-            self.host_limits.pop(step, None)
+            for name in self.host_limits.pop(step, ()):
+                state.host_ways_to.pop(name, None)
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE
 
@@ -283,9 +291,11 @@ class _Propagation:
     def _update_whole_host(self, step: str) -> bool:
         """Find how long a host taken as one core is busy, and return whether anything changed."""
         find_model = self._model_finder({})
-        limits = list_host_limits(solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step]))
+        core_responses = solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step])
+        limits = list_host_limits(core_responses)
         changed = self.host_limits.get(step) != limits
         self.host_limits[step] = limits
+        self.state.host_ways_to.update({name: core_responses.ways_to[name] for name in limits})
         return changed
 
     def _update_inner_core(self, step: str) -> bool:
