@@ -34,6 +34,7 @@ _TIERS = {
     "priorities": "by the priorities that are written",
     "executor": "callbacks of one thread, holds for any order of them",
     "cores": "several cores, holds for any order of their work",
+    "whole host": "several cores taken as one, holds for any order of their work",
     "unknown": "an execution time, or the number of cores, is not written",
 }
 _SIGNS = {

@@ -18,6 +18,7 @@ _TIER_PHRASES: Mapping[ResponseTier, str] = {
     "priorities": "by their priorities",
     "executor": "one thread in any order",
     "cores": "several cores in any order",
+    "whole host": "several cores as one",
 }
 """What was analysed, by how responses were asked for."""
 

@@ -40,6 +40,8 @@ class PropagationState:
     diverged: set[str] = field(default_factory=set)
     ways_to: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
     """The ways on which events reach each activity of a core with triggers inside."""
+    host_ways_to: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
+    """The same from where events enter a host of several cores, where that is bounded as a whole."""
     run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
     """The arcs by which ways go on to an activity from another of its core."""
     entering_models: dict[int, EventStreams | UnknownCause] = field(default_factory=dict)
@@ -165,9 +167,28 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
     ways = state.ways_to.get(arc.source, ()) if source.response is None else ()
     if (len(ways) == 1 and len(ways[0].steps) == 1) or any(way.delay is None for way in ways):
         ways = ()
-    if not ways:
-        # Up to R - B later than activations.
-        return _complete_streams(source, event_model, calls, response.value)
+    # Up to R - B later than activations.
+    leaving = (
+        _stream_ways(state, source, ways, calls)
+        if ways
+        else _complete_streams(source, event_model, calls, response.value)
+    )
+    host_ways = state.host_ways_to.get(arc.source, ()) if source.response is None else ()
+    if not host_ways or isinstance(leaving, UnknownCause):
+        return leaving
+    # Over many cores delays add up on the way, while the host as a whole bounds all of them together.
+    leaving_host = _stream_ways(state, source, host_ways, calls)
+    return leaving if isinstance(leaving_host, UnknownCause) else min(leaving, leaving_host, key=_largest_jitter)
+
+
+def _largest_jitter(streams: EventStreams) -> int:
+    return max((stream.jitter for stream in streams), default=0)
+
+
+def _stream_ways(
+    state: PropagationState, source: Activity, ways: Iterable[EntryWay], calls: Fraction | None
+) -> EventStreams | UnknownCause:
+    """Return the event model of completions, or of calls, by the ways on which events reach their source."""
     streams: list[EventStream] = []
     for way in ways:
         entering = entering_model(state, way)

@@ -7,12 +7,12 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
 from archgen.timing.load.core_paths import CorePaths
-from archgen.timing.load.core_responses import solve_inner_core
+from archgen.timing.load.core_responses import CoreResponses, solve_inner_core
 from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
@@ -24,6 +24,7 @@ from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
+from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
@@ -71,6 +72,10 @@ class _Propagation:
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
+        self.whole_hosts: dict[str, InnerCore] = {}
+        self.resources_of_host: dict[str, list[str]] = {}
+        self.host_limits: dict[str, dict[str, HostLimit]] = {}
+        self._prepare_whole_hosts()
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
         activities = state.system.activities.values()
@@ -96,9 +101,18 @@ class _Propagation:
                 self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
             self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
 
+    def _prepare_whole_hosts(self) -> None:
+        """Prepare the hosts that bound their activities as if they had one core."""
+        whole_hosts = find_whole_hosts(self.state.system, self.state.triggers, self.resources.values())
+        for host, core in whole_hosts.items():
+            step = f"whole {host}"
+            self.whole_hosts[step] = core
+            self.resources_of_host[step] = [key for key, resource in self.resources.items() if resource.host == host]
+
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
-        for steps in find_strong_components([*self.state.triggers.order, *self.resources], self.successors.__getitem__):
+        all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources]
+        for steps in find_strong_components(all_steps, self.successors.__getitem__):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one
             # pass.
             if len(steps) == 1 and steps[0] not in self.successors[steps[0]]:
@@ -110,14 +124,16 @@ class _Propagation:
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
-        successors: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
+        successors: dict[str, list[str]] = {
+            step: [] for step in (*system.activities, *self.whole_hosts, *self.resources)
+        }
         self._add_resource_steps(successors)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
                     successors[arc.source].append(name)
                     # What arrives rests on the source's response as well, and that is found by its resource.
-                    for step in self.resources_of.get(arc.source, ()):
+                    for step in self._response_steps(arc.source):
                         successors[step].append(name)
         return successors
 
@@ -129,11 +145,25 @@ class _Propagation:
                     successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
-        for step, inner_triggers in self.inner_triggers.items():
+        for step, core in self.whole_hosts.items():
+            successors[step] += self.resources_of_host[step]
+            for name in core.inner_triggers.entry_ids:
+                successors[name].append(step)
+        all_inner_triggers = self.inner_triggers | {
+            step: core.inner_triggers for step, core in self.whole_hosts.items()
+        }
+        for step, inner_triggers in all_inner_triggers.items():
             for source in dict.fromkeys(inner_triggers.outer_sources):
                 successors[source].append(step)
-                for source_step in self.resources_of.get(source, ()):
+                for source_step in self._response_steps(source):
                     successors[source_step].append(step)
+
+    def _response_steps(self, name: str) -> Iterator[str]:
+        """Yield the steps that find how long an activity takes: its resource, and its host as a whole."""
+        yield from self.resources_of.get(name, ())
+        whole_step = f"whole {self.state.system.activities[name].host}"
+        if whole_step in self.whole_hosts:
+            yield whole_step
 
     def _rests_on(self, step: str, name: str) -> bool:
         """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
@@ -190,7 +220,8 @@ class _Propagation:
     def _activity_ids(self, steps: tuple[str, ...]) -> Iterator[str]:
         """Yield the activities whose figures some steps find."""
         for step in steps:
-            yield from self.resources[step].members if step in self.resources else (step,)
+            if step not in self.whole_hosts:
+                yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up_steps(self, steps: tuple[str, ...]) -> None:
         """Mark everything in a loop as diverged: the last iterate is below the truth, so it is no bound."""
@@ -201,12 +232,16 @@ class _Propagation:
             if name in state.ways_to:
                 state.ways_to[name] = tuple(way._replace(delay=None) for way in state.ways_to[name])
         for step in steps:
+            for name in self.host_limits.pop(step, ()):
+                state.host_ways_to.pop(name, None)
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE
 
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
+        if step in self.whole_hosts:
+            return self._update_whole_host(step)
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
@@ -216,6 +251,7 @@ class _Propagation:
                 state.event_models,
                 AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
             )
+            new_responses = limit_responses(CoreResponses(new_responses, {}), self._limits_of(step)).response_of
             new_responses = {
                 name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
             }
@@ -233,23 +269,44 @@ class _Propagation:
             )
         return True
 
-    def _update_inner_core(self, step: str) -> bool:
-        """Find the responses of a core on which activities fire one another, and return whether anything changed."""
-        state = self.state
-        entering_models: dict[int, EventStreams | UnknownCause] = {}
+    def _limits_of(self, step: str) -> dict[str, HostLimit]:
+        """Return what bounds the activities of a resource on its host as a whole."""
+        return self.host_limits.get(f"whole {self.resources[step].host}", {})
+
+    def _model_finder(
+        self, entering_models: dict[int, EventStreams | UnknownCause]
+    ) -> Callable[[Origin, FiringArc | None], EventStreams | UnknownCause]:
+        """Return a look-up of event models of what enters a core, which notes those of arcs (by identity)."""
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
-                return state.event_models[str(origin.key)]
+                return self.state.event_models[str(origin.key)]
             key = id(entry_arc.arc)
             if key not in entering_models:
-                entering_models[key] = arriving_model(state, entry_arc.arc)
+                entering_models[key] = arriving_model(self.state, entry_arc.arc)
             return entering_models[key]
 
+        return find_model
+
+    def _update_whole_host(self, step: str) -> bool:
+        """Find how long a host taken as one core is busy, and return whether anything changed."""
+        find_model = self._model_finder({})
+        core_responses = solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step])
+        limits = list_host_limits(core_responses)
+        changed = self.host_limits.get(step) != limits
+        self.host_limits[step] = limits
+        self.state.host_ways_to.update({name: core_responses.ways_to[name] for name in limits})
+        return changed
+
+    def _update_inner_core(self, step: str) -> bool:
+        """Find the responses of a core on which activities fire one another, and return whether anything changed."""
+        state, limits, budget = self.state, self._limits_of(step), self.budget_of[step]
+        entering_models: dict[int, EventStreams | UnknownCause] = {}
+        find_model = self._model_finder(entering_models)
         new_responses, new_ways = (
-            solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
+            limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
             if step in self.inner_cores
-            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
+            else solve_shared_cores(self.shared_cores[step], find_model, (state.responses, limits), budget)
         )
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
         changed = any(
@@ -282,7 +339,7 @@ class _Propagation:
 
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
     """Name the tier of a thread that has one of several cores to itself."""
-    if not resource.undisturbed or response.tier in {"declared", "unknown"}:
+    if not resource.undisturbed or response.tier in {"declared", "unknown", "whole host"}:
         return response
     return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 

@@ -31,6 +31,7 @@ _TIER_SENTENCES = {
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
     "executor": "all work of its executor on {0}, in whatever order",
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
+    "whole host": "the longest time for which all work on {0} can keep one core busy (while anything waits there, one works)",
     "unknown": "no execution time is written",
 }
 _OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
@@ -58,6 +59,8 @@ def _build_response_time(
     if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
         sentence = _OPEN_CORES_SENTENCE
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
+    if worst_response.tier == "whole host":
+        sentence_arguments = (activity.host or "", 1)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,

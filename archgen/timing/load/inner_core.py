@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
@@ -29,9 +30,16 @@ class InnerCore:
     ways_to: Mapping[str, tuple[EntryWay, ...]]
 
 
-def prepare_inner_core(system: TimingSystem, resource: ProcessingResource, inner_triggers: InnerTriggers) -> InnerCore:
-    """Find the threads of a core, its levels of urgency, and the cascades that count at each."""
+def prepare_inner_core(
+    system: TimingSystem, resource: ProcessingResource, inner_triggers: InnerTriggers, *, is_ranked: bool = True
+) -> InnerCore:
+    """Find the threads of a core, its levels of urgency, and the cascades that count at each.
+
+    Without `is_ranked` no priority counts, and all that works on the core is one level.
+    """
     threads = rank_threads(system, (*resource.units, *resource.foreign_units), inner_triggers.silent_ids)
+    if not is_ranked:
+        threads = tuple(replace(thread, lowest_priority=None, highest_priority=None) for thread in threads)
     own_threads = threads[: len(resource.units)]
     foreign_ids = [name for thread in threads[len(resource.units) :] for name in thread.unit]
     arc_numbers, entering_arcs = number_arcs(inner_triggers)

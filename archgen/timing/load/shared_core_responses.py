@@ -39,6 +39,7 @@ from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
+from archgen.timing.load.whole_hosts import HostLimit
 
 _MAX_SWEEPS = 60
 """Sweeps over all runs of some cores before their responses are given up."""
@@ -47,12 +48,13 @@ _MAX_SWEEPS = 60
 def solve_shared_cores(
     paths: CorePaths,
     model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
-    known_responses: Mapping[str, WorstResponse],
+    known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
     budget: SearchBudget,
 ) -> CoreResponses:
     """Return the responses on some cores, for the event models of what enters them (`model_of`).
 
-    `known_responses` have those of the foreign units, which are found elsewhere.
+    `known_bounds` have the responses of the foreign units, which are found elsewhere, and what bounds each activity on
+    its host as a whole.
     """
     cores = paths.cores
 
@@ -60,7 +62,7 @@ def solve_shared_cores(
         return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
     demand = CascadeDemand(cores.cascades, find_model)
-    return _SharedCoreSolver(paths, demand, known_responses, budget).solve()
+    return _SharedCoreSolver(paths, demand, known_bounds, budget).solve()
 
 
 class _SharedCoreSolver:
@@ -68,13 +70,14 @@ class _SharedCoreSolver:
         self,
         paths: CorePaths,
         demand: CascadeDemand,
-        known_responses: Mapping[str, WorstResponse],
+        known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
         budget: SearchBudget,
     ) -> None:
         self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
-        self.known_responses = known_responses
+        self.known_responses, self.limits = known_bounds
         self.step_responses: dict[str, int] = {}
         self.cause_of: dict[str, UnknownCause] = {}
+        self.raised_names: set[str] = set()
         self.way_before = {
             (name, number): self._find_way_before(way)
             for name, ways in self.cores.ways_to.items()
@@ -107,8 +110,10 @@ class _SharedCoreSolver:
         for name in sorted(self.cores.foreign_ids):
             self.work.note_delay((name, 0), self.known_responses[name].value or 0)
         while stuck_names := self._repeat_sweeps():
-            # What still grows has no bound that is found, and neither has what it comes in the way of.
-            self._mark_boundless(stuck_names, DIVERGED_CAUSE)
+            # What still grows has the bound of the whole host, or none that is found; what it comes in the way of then
+            # has none either.
+            self.raised_names.update(name for name in stuck_names if name in self.limits)
+            self._mark_boundless([name for name in stuck_names if name not in self.limits], DIVERGED_CAUSE)
         return self._build_responses()
 
     def _find_common_cause(self) -> UnknownCause | None:
@@ -136,7 +141,11 @@ class _SharedCoreSolver:
             if (response := self.known_responses.get(name)) is None or response.value is None
         ]
         order = self.cores.inner_triggers.order
-        full_names = [name for name in order if shares.fills_core((name,), self.paths.look_up((name,)))]
+        full_names = [
+            name
+            for name in order
+            if name not in self.limits and shares.fills_core((name,), self.paths.look_up((name,)))
+        ]
         self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
 
     def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
@@ -186,7 +195,12 @@ class _SharedCoreSolver:
 
     def _find_way_delays(self, name: str, delays: dict[WayKey, int], spend: Callable[[int], None]) -> None:
         """Find the delays of the ways to an activity anew, for what may be pending now."""
-        response = self._find_delay(self.paths.look_up((name,)), spend)
+        limit = self.limits.get(name)
+        if limit is not None and name in self.raised_names:
+            self.step_responses[name] = limit.response
+            delays.update({(name, number): limit.delay for number in range(len(self.cores.ways_to[name]))})
+            return
+        response = self._find_delay(self.paths.look_up((name,)), spend, limit and limit.response)
         # What a declared response says may be more than is computed: so long it may be pending.
         response = max(response, self.cores.system.activities[name].response or 0)
         self.step_responses[name] = response
@@ -194,6 +208,7 @@ class _SharedCoreSolver:
             delay = response
             if len(way.steps) > 1:
                 delay += delays[self.way_before[name, number]]
+                delay = min(delay, limit.delay) if limit else delay
                 delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)
             delays[name, number] = delay
 
@@ -272,5 +287,6 @@ class _SharedCoreSolver:
         tier: ResponseTier = "executor" if len(self.cores.unit_of[name]) > 1 else "cores"
         if name in self.cause_of:
             return WorstResponse(None, tier, cause)
-        longest = max((way.delay or 0) - way.best_before for way in ways)
-        return WorstResponse(min(self.step_responses[name], longest), tier)
+        response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
+        is_limited = name in self.limits and response >= self.limits[name].response
+        return WorstResponse(response, "whole host" if is_limited else tier)

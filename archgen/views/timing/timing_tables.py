@@ -19,6 +19,7 @@ TIER_WORDS = {
     "priorities": "by fixed priorities",
     "executor": "single-threaded executor",
     "cores": "several cores",
+    "whole host": "several cores as one",
     "unknown": "",
 }
 """How a response time was found, in words; see `Tier` in the timing analysis."""

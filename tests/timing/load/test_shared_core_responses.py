@@ -190,7 +190,7 @@ def test_work_beside_a_path_is_what_comes_and_what_was_pending() -> None:
     assert not shares.fills_core(("b",), paths.look_up(("b",)))
     # Every 100: 4 + 3; 6 + B, where 2 B = min(4, B) + 3; 3 + B, where 2 B = min(6, B) + 4.
     rare_streams = (EventStream(100 * tick),)
-    found = solve_shared_cores(paths, lambda _, __: rare_streams, {}, busy_windows.SearchBudget())
+    found = solve_shared_cores(paths, lambda _, __: rare_streams, ({}, {}), busy_windows.SearchBudget())
     assert {name: response.value and response.value // tick for name, response in found.response_of.items()} == {
         "a": 7,
         "b": 9,
