@@ -15,6 +15,8 @@ from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
     from archgen.diagnostics.diagnostic import Diagnostic
+    from archgen.importers.recordings.recorded_names import RecordedNames
+    from archgen.importers.recordings.recording_import import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.timing.analysis import Analysis, ChainResult
@@ -55,9 +57,12 @@ class TimingRequest:
 )
 @click.option(
     "--measured",
+    "recordings",
     metavar="FILE",
+    multiple=True,
     type=click.Path(path_type=Path),
-    help="Hold observed figures (YAML, CSV) against the design.",
+    help="Hold recordings against the design: a trace (text of babeltrace2), tables of CARET, logs of `ros2 topic hz` and "
+    "`delay`, metadata.yaml of a bag, or figures (YAML, CSV); may be repeated.",
 )
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
@@ -69,7 +74,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     most: int,
     written: tuple[str, ...],
     sensitivity: str | None,
-    measured: Path | None,
+    recordings: tuple[Path, ...],
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
@@ -78,7 +83,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if (source is None) != (target is None):
         msg = "--from and --to belong together"
         raise click.UsageError(msg)
-    questions = [q for q in (chain, why, source, sensitivity, measured) if q is not None]
+    questions = [q for q in (chain, why, source, sensitivity, recordings or None) if q is not None]
     if len(questions) > 1:
         msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
         raise click.UsageError(msg)
@@ -97,8 +102,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         _print_paths(request, source, target, most)
     elif sensitivity is not None:
         _print_sensitivity(request, sensitivity)
-    elif measured is not None:
-        _print_measured(request, measured)
+    elif recordings:
+        _print_measured(request, recordings)
     else:
         _print_summary(request)
     command_support.exit_by_findings(checked_project)
@@ -205,31 +210,38 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
         _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
 
 
-def _print_measured(request: TimingRequest, file: Path) -> None:
-    from archgen.emit.terminal import timing_answers
-    from archgen.project import observation_reading as reading
-    from archgen.syntax.folder_files import read_named_file
+def _print_measured(request: TimingRequest, paths: tuple[Path, ...]) -> None:
+    from archgen.emit.terminal import measured_text
+    from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains import measured_comparison
-    from archgen.timing.run_analysis import analyse_architecture
 
-    with command_support.explain_write_errors():
-        try:
-            text = read_named_file(file).decode("utf-8-sig")
-        except UnicodeDecodeError:
-            _raise_usage_error(f"{file} is not UTF-8 text")
-    # So that excerpts below can show the lines of this file too.
-    request.checked_project.sources.add_text(str(file), text)
-    observed, unread = reading.read_observations(str(file), text)
-    compared, unknown = measured_comparison.compare_measured(analyse_architecture(request.architecture), observed)
-    problems = _settle_problems((*unread, *unknown))
+    analysis, chains = _analyse_chains(request.architecture)
+    recordings = _read_recordings(paths, RecordedNames(request.architecture, analysis.system, chains))
+    # So that excerpts below can show the lines of these files too.
+    for file, text in recordings.texts:
+        request.checked_project.sources.add_text(file, text)
+    compared, unknown = measured_comparison.compare_measured(analysis, recordings.observations, chains)
+    problems = _settle_problems((*recordings.diagnostics, *unknown))
     if problems:
         command_support.print_findings(problems, request.checked_project, sys.stderr)
     if request.as_json:
-        _print_json(timing_answers.measured_to_json(compared))
+        _print_json(measured_text.measured_to_json(compared, recordings.observations, recordings.unmapped))
     else:
-        _print_lines(timing_answers.format_measured(compared, find_width(sys.stdout)))
-    if problems:
+        width = find_width(sys.stdout)
+        _print_lines(measured_text.format_measured(compared, recordings.observations, recordings.unmapped, width))
+    if command_support.exit_status(problems):
         raise click.exceptions.Exit(1)
+
+
+def _read_recordings(paths: tuple[Path, ...], names: RecordedNames) -> ReadRecordings:
+    from archgen.importers.recordings.recording_formats import RecordingRefusedError
+    from archgen.importers.recordings.recording_import import read_recordings
+
+    with command_support.explain_write_errors():
+        try:
+            return read_recordings(paths, names)
+        except RecordingRefusedError as error:
+            _raise_usage_error(str(error))
 
 
 def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
