@@ -61,13 +61,15 @@ def _measured_row(row: MeasuredComparison) -> TextRow:
 
 
 def _statistics_row(element: str, kind: str, samples: SampleStatistics) -> TextRow:
+    # Everything in this table is rounded alike; `~` is left for percentiles that are not exact.
     about = "~" if samples.is_stepped else ""
-    least, largest = (figure_wording.format_duration(Fraction(value)) for value in (samples.least, samples.largest))
-    percentiles = (
-        f"{about}{figure_wording.format_duration(Fraction(value)).lstrip('~')}"
-        for value in samples.percentiles.values()
-    )
-    return element, kind, f"{samples.count:,}", least, *percentiles, largest
+    percentiles = (f"{about}{_round_duration(value)}" for value in samples.percentiles.values())
+    ends = (_round_duration(samples.least), _round_duration(samples.largest))
+    return element, kind, f"{samples.count:,}", ends[0], *percentiles, ends[1]
+
+
+def _round_duration(ns: int) -> str:
+    return figure_wording.format_duration(Fraction(ns)).lstrip("~")
 
 
 def _unmapped_lines(unmapped: Sequence[UnmappedSamples], width: int | None) -> Iterator[str]:
