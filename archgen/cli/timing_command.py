@@ -9,14 +9,11 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, shared_options
+from archgen.cli import command_support, measured_recordings, shared_options
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.importers.recordings.recorded_names import RecordedNames
-    from archgen.importers.recordings.recording_import import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.timing.analysis import Analysis, ChainResult
@@ -64,6 +61,15 @@ class TimingRequest:
     help="Hold recordings against the design: a trace (text of babeltrace2), tables of CARET, logs of `ros2 topic hz` and "
     "`delay`, metadata.yaml of a bag, or figures (YAML, CSV); may be repeated.",
 )
+@click.option(
+    "--adopt",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value=measured_recordings.DEFAULT_SLICE,
+    type=click.Path(path_type=Path),
+    help="With --measured: write the longest and shortest execution times into a slice, wherever no other file has one.  "
+    "[default: measured.yaml in the project]",
+)
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
     form: str,
@@ -75,6 +81,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     written: tuple[str, ...],
     sensitivity: str | None,
     recordings: tuple[Path, ...],
+    adopt: Path | None,
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
@@ -86,6 +93,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     questions = [q for q in (chain, why, source, sensitivity, recordings or None) if q is not None]
     if len(questions) > 1:
         msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
+        raise click.UsageError(msg)
+    if adopt is not None and (written or not recordings):
+        msg = "--adopt writes what --measured reads, and goes with no --set"
         raise click.UsageError(msg)
     checked_project = command_support.check_or_exit(project)
     from archgen.diagnostics.diagnostic import Severity
@@ -103,7 +113,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     elif sensitivity is not None:
         _print_sensitivity(request, sensitivity)
     elif recordings:
-        _print_measured(request, recordings)
+        measured_recordings.answer_recordings(
+            checked_project, request.architecture, recordings, adopt, as_json=request.as_json
+        )
     else:
         _print_summary(request)
     command_support.exit_by_findings(checked_project)
@@ -208,48 +220,6 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
         _print_json(timing_answers.sensitivity_to_json(result, ranking))
     else:
         _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
-
-
-def _print_measured(request: TimingRequest, paths: tuple[Path, ...]) -> None:
-    from archgen.emit.terminal import measured_text
-    from archgen.importers.recordings.recorded_names import RecordedNames
-    from archgen.timing.chains import measured_comparison
-
-    analysis, chains = _analyse_chains(request.architecture)
-    recordings = _read_recordings(paths, RecordedNames(request.architecture, analysis.system, chains))
-    # So that excerpts below can show the lines of these files too.
-    for file, text in recordings.texts:
-        request.checked_project.sources.add_text(file, text)
-    compared, unknown = measured_comparison.compare_measured(analysis, recordings.observations, chains)
-    problems = _settle_problems((*recordings.diagnostics, *unknown))
-    if problems:
-        command_support.print_findings(problems, request.checked_project, sys.stderr)
-    if request.as_json:
-        _print_json(measured_text.measured_to_json(compared, recordings.observations, recordings.unmapped))
-    else:
-        width = find_width(sys.stdout)
-        _print_lines(measured_text.format_measured(compared, recordings.observations, recordings.unmapped, width))
-    if command_support.exit_status(problems):
-        raise click.exceptions.Exit(1)
-
-
-def _read_recordings(paths: tuple[Path, ...], names: RecordedNames) -> ReadRecordings:
-    from archgen.importers.recordings.recording_formats import RecordingRefusedError
-    from archgen.importers.recordings.recording_import import read_recordings
-
-    with command_support.explain_write_errors():
-        try:
-            return read_recordings(paths, names)
-        except RecordingRefusedError as error:
-            _raise_usage_error(str(error))
-
-
-def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
-
-    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
