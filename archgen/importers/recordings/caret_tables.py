@@ -66,10 +66,18 @@ class _Figure:
 
 def is_caret_heading(lines: Sequence[str]) -> bool:
     """Whether the first lines of a file are the headings of CARET's tables."""
-    rows = [next(csv.reader([line]), []) for line in lines[:2]]
-    return any(_EVENT_COLUMN.match(cell) for cell in rows[0] if rows) or any(
+    rows = [row for line in lines[:2] if (row := _split_row(line))]
+    return any(map(_EVENT_COLUMN.match, rows[0] if rows else ())) or any(
         _PLOT_COLUMN.match(cell) for row in rows for cell in row
     )
+
+
+def _split_row(line: str) -> list[str] | None:
+    """Return the cells of a line, None where it is no row of a CSV."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line]), [])]
+    except csv.Error:
+        return None
 
 
 def read_caret_table(source: RecordingSource, names: RecordedNames, figures: RecordedFigures) -> None:
@@ -85,12 +93,10 @@ def _read_rows(source: RecordingSource) -> Iterator[tuple[int, list[str]]]:
     """Yield the rows with their line; CARET's cells hold no line breaks."""
     for number, line in source.read_lines():
         if line.strip():
-            try:
-                yield number, [cell.strip() for cell in next(csv.reader([line]), [])]
-            except csv.Error as error:
-                raise source.refuse(
-                    number, f"this is no CSV: {error}", "save it with `to_csv`", "syntax-error"
-                ) from None
+            row = _split_row(line)
+            if row is None:
+                raise source.refuse(number, "this is no row of a CSV", "save the table with `to_csv`", "syntax-error")
+            yield number, row
 
 
 class _TableReader:

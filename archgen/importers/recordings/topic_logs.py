@@ -29,7 +29,7 @@ _EXTREMES = re.compile(rf"\s*min: {_NUMBER}(\w+) max: {_NUMBER}(\w+) std dev: {_
 _TABLE_HEAD = re.compile(r"\s*topic\s+rate\s+min_delta\s+max_delta\s+std_dev\s+window\s*$")
 _TABLE_ROW = re.compile(rf"\s*(/\S+)\s+{_NUMBER}\s+{_NUMBER}\s+{_NUMBER}\s+{_NUMBER}\s+(\d{{1,12}})\s*$")
 _RESET = "time has reset, resetting counters"
-_IDLE_LINE = re.compile(r"\s*(?:no new messages|=+|\^C.*|\[(?:INFO|WARN)\].*|WARNING: .*|Subscribed to .*)?\s*$")
+_IDLE_LINE = re.compile(r"\s*(?:no new messages|=+|\[(?:INFO|WARN)\].*|WARNING: .*|Subscribed to .*)?\s*$")
 _ROUNDING = dict.fromkeys(("min_period", "max_period", "delay"), Fraction(10**6, 2))
 """Half a millisecond: the tools round to the next one."""
 _MAX_TOPICS = 10_000
@@ -47,7 +47,7 @@ _ODDITIES = {
     ),
     "cut off": OddityText(
         "syntax-error",
-        "the log is cut off: {count} average{s} without the line of extremes, here for the first time",
+        "the log is cut off: {count} average{s} without the line of extremes, here first",
         Severity.NOTE,
     ),
     "unreadable": OddityText(
@@ -95,6 +95,8 @@ class _LogReader:
         self._figures: dict[tuple[str, str], _TopicFigures] = {}
 
     def read_line(self, number: int, line: str) -> None:
+        # A terminal shows the keys that end the command in front of what is printed then.
+        line = line.removeprefix("^C")
         if average := _AVERAGE.match(line):
             self._note_open_average()
             self._open_average = (number, average[1], Fraction(average[2]))

@@ -20,6 +20,7 @@ _EVENT_PATTERN = re.compile(
     r"\[(?P<time>[-0-9:. ]+)\] (?:\(\+[0-9?.]+\) )?(?:(?P<host>[^ {}]+) )?(?P<provider>[\w-]+):(?P<event>\w+): (?P<fields>\{.*\})$"
 )
 _ANY_EVENT = re.compile(r"\[[-0-9:. ]+\] (?:\(\+[0-9?.]+\) )?(?:[^ {}]+ )?[\w:-]+: \{")
+_ROS_EVENT = re.compile(r"(?:^| )ros2:\w+: \{")
 _FIELD_PATTERN = re.compile(r'(\w+) = (?:"((?:[^"\\]|\\.)*)"|(-?\w+))')
 _TIME_PATTERN = re.compile(
     r"(?:(?P<date>\d{4}-\d\d-\d\d) )?(?P<hour>\d\d):(?P<minute>[0-5]\d):(?P<second>[0-5]\d)\.(?P<fraction>\d{1,9})\Z",
@@ -59,7 +60,7 @@ class TraceLoss:
 
 def is_trace_line(line: str) -> bool:
     """Whether a line is an event as babeltrace prints it."""
-    return _ANY_EVENT.match(line) is not None
+    return _ANY_EVENT.match(line) is not None or _ROS_EVENT.search(line) is not None
 
 
 def read_trace_events(source: RecordingSource, oddities: Oddities) -> Iterator[TraceEvent | TraceLoss]:
@@ -68,6 +69,7 @@ def read_trace_events(source: RecordingSource, oddities: Oddities) -> Iterator[T
     What is no event is noted: a line that is cut off, times in two formats.
     """
     clock = _TraceClock(source)
+    has_events = False
     for line_number, line in source.read_lines():
         if "ros2:" not in line:
             if "discarded" in line and (loss := _LOSS_PATTERN.search(line)):
@@ -77,7 +79,7 @@ def read_trace_events(source: RecordingSource, oddities: Oddities) -> Iterator[T
         match = _EVENT_PATTERN.match(line)
         if match is None:
             # A kernel event or a log line may have the word in a text.
-            if not is_trace_line(line) or line.count(" ros2:") == 1:
+            if _ROS_EVENT.search(line):
                 oddities.note("unreadable", line_number)
             continue
         time_text, host, provider, name, field_text = match.groups()
@@ -85,7 +87,12 @@ def read_trace_events(source: RecordingSource, oddities: Oddities) -> Iterator[T
             continue
         fields = {key: quoted or plain for key, quoted, plain in _FIELD_PATTERN.findall(field_text)}
         time = clock.advance(line_number, time_text)
+        has_events = True
         yield TraceEvent(line_number, time, name, (host or "", fields.get("vpid", "")), fields.get("vtid", ""), fields)
+    if not has_events:
+        message = "the trace has no event of ros2_tracing with a time that can be read"
+        help_line = "record with `ros2 trace`, and print what it recorded with `babeltrace2 FOLDER`"
+        raise source.refuse(1, message, help_line, "missing-key")
 
 
 class _TraceClock:

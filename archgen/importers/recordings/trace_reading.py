@@ -27,13 +27,13 @@ _TWIN_REASON = "several processes have a node of this name"
 _ODDITIES = {
     "backwards": OddityText(
         "wrong-value",
-        "time goes backwards here, {count} time{s} in all: what lasted across is not counted",
+        "time goes backwards {count} time{s}, here first: what lasted across is not counted",
         Severity.WARNING,
         "a clock was set, or two recordings follow one another: give them as two files",
     ),
     "lost": OddityText(
         "wrong-value",
-        "the tracer discarded {count} event{s}, here for the first time: what was going on meanwhile is not counted",
+        "the tracer discarded {count} event{s}, here first: what was going on meanwhile is not counted",
         Severity.WARNING,
         "record fewer events, or with larger buffers (`ros2 trace --subbuffer-size-ust`)",
     ),
@@ -51,13 +51,13 @@ _ODDITIES = {
     ),
     "begun again": OddityText(
         "wrong-value",
-        "{count} callback{s} began again in the same thread before an end, here for the first time: events are missing, "
+        "{count} callback{s} began again in the same thread before an end, here first: events are missing, "
         "and these runs are not counted",
         Severity.WARNING,
     ),
     "without start": OddityText(
         "wrong-value",
-        "{count} callback{s} end without a beginning, here for the first time: not counted",
+        "{count} callback{s} end without a beginning, here first: not counted",
         Severity.NOTE,
     ),
     "without end": OddityText(
