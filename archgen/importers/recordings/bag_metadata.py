@@ -63,8 +63,13 @@ def _parse_bag(source: RecordingSource, figures: RecordedFigures) -> MappingNode
         raise source.refuse(1, message, "give the file that rosbag2 wrote", "too-large")
     document, diagnostics = parse_yaml(source.name, data.decode("utf-8", "replace").removeprefix("\ufeff"))
     figures.diagnostics += diagnostics
-    bag = document.root.get(BAG_KEY) if document else None
-    return bag if isinstance(bag, MappingNode) else None
+    if document is None:
+        return None
+    bag = document.root.get(BAG_KEY)
+    if not isinstance(bag, MappingNode):
+        message = f"`{BAG_KEY}` is no mapping: this is not what rosbag2 wrote"
+        raise source.refuse(1, message, "write the file again with `ros2 bag reindex FOLDER`", "missing-key")
+    return bag
 
 
 def _list_topics(bag: MappingNode) -> Iterator[tuple[str, int, YamlNode]]:

@@ -52,7 +52,7 @@ _ODDITIES = {
     ),
     "unreadable": OddityText(
         "syntax-error",
-        "{count} line{s} are none that `ros2 topic hz` or `delay` prints, this one first; not counted",
+        "{count} line{s} that `ros2 topic hz` and `delay` do not print, this one first; not counted",
         Severity.NOTE,
     ),
 }

@@ -57,7 +57,7 @@ _ODDITIES = {
     ),
     "without start": OddityText(
         "wrong-value",
-        "{count} callback{s} end without a beginning, here first: not counted",
+        "of {count} callback{s} only the end was recorded, here first; not counted",
         Severity.NOTE,
     ),
     "without end": OddityText(
