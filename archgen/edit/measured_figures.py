@@ -179,7 +179,7 @@ class FigureSorter:
         self.left_out.append(LeftOutFigure(times.element, key, why, f"{key}: {text}", at))
 
     def _leave_out_homeless(self, times: MeasuredTimes) -> Iterator[tuple[str, str]]:
-        why = "the language has no place for it: it belongs to several nodes, or to no component's input"
+        why = "the language has no place for it: it is no input of a component, or several nodes share the component"
         self._leave_out(times, "wcet", why, _write_up(times.longest or Fraction(0)), NO_SPAN)
         return iter(())
 

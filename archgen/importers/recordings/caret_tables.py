@@ -43,8 +43,7 @@ _ODDITIES = {
     ),
     "lost": OddityText(
         "wrong-value",
-        "{count} row{s} of a path without an end, this one first: messages that were lost or were still on their way; not "
-        "counted",
+        "{count} row{s} of a path without an end, this one first: lost, or still on its way; not counted",
         Severity.NOTE,
     ),
 }

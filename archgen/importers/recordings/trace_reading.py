@@ -51,8 +51,7 @@ _ODDITIES = {
     ),
     "begun again": OddityText(
         "wrong-value",
-        "{count} callback{s} began again in the same thread before an end, here first: events are missing, "
-        "and these runs are not counted",
+        "{count} callback{s} began again before an end, in one thread, here first: events are missing; not counted",
         Severity.WARNING,
     ),
     "without start": OddityText(

@@ -70,8 +70,7 @@ def test_a_path_is_held_against_the_chain_through_the_same_nodes(tmp_path: Path)
     assert list_figures(recordings) == ["avoid: latency 40 ms"]
     assert recordings.observations[0].samples["latency"].count == 2
     assert list_problems(recordings) == [
-        "3 note: 1 row of a path without an end, this one first: messages that were lost or were still on their way; not "
-        "counted"
+        "3 note: 1 row of a path without an end, this one first: lost, or still on its way; not counted"
     ]
 
 

@@ -26,12 +26,8 @@ def test_subscriptions_fire_or_store(tmp_path: Path) -> None:
 def test_two_nodes_of_one_name_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     project = recorded.PROJECT.replace("  drive: {implements: base}", "  drive: {implements: base, name: plan}")
     monkeypatch.setattr(recorded, "PROJECT", project)
-    try:
-        names = make_names(tmp_path)
-    except AssertionError:
-        pytest.skip("the design itself is refused")
     with pytest.raises(UnmappedError, match="several nodes of the design have this name"):
-        names.find_node("/plan")
+        make_names(tmp_path).find_node("/plan")
 
 
 def test_one_topic_that_two_activities_of_a_node_read_is_not_guessed(
@@ -39,7 +35,7 @@ def test_one_topic_that_two_activities_of_a_node_read_is_not_guessed(
 ) -> None:
     project = recorded.PROJECT.replace("checker: {outputs", "checker: {inputs: {scan: scanner.scan}, outputs")
     monkeypatch.setattr(recorded, "PROJECT", project)
-    with pytest.raises(UnmappedError, match="several activities of this node use it: maps.mapper, maps.checker"):
+    with pytest.raises(UnmappedError, match=r"several activities of this node use it: maps.mapper, maps.checker"):
         make_names(tmp_path).find_subscription("/maps", "/scan")
 
 

@@ -155,8 +155,7 @@ def test_two_nodes_of_one_name_are_seen_without_processes_too(tmp_path: Path) ->
         (
             begin("1", "0x1", 0) + run("1", "0x1", 50, 52),
             "bcet 2 ms, wcet 2 ms",
-            "6 warning: 1 callback began again in the same thread before an end, here first: events are missing, and these "
-            "runs are not counted",
+            "6 warning: 1 callback began again before an end, in one thread, here first: events are missing; not counted",
         ),
         (
             run("1", "0x1", 500, 502) + begin("1", "0x1", 550) + run("1", "0x1", 100, 104),
