@@ -88,4 +88,4 @@ def test_a_slice_that_would_be_an_error_says_so(tmp_path: Path) -> None:
     checked_project = pipeline.check_project(tmp_path)
     (tmp_path / "measured.yaml").write_text("nodes: {scan: {timing: {wcet: 5 ms}, tilttle: x}}\n", encoding="utf-8")
     measured_slice = make_measured_slice(checked_project, [_observe("scan", wcet=5000)], "measured.yaml")
-    assert [error.message for error in measured_slice.errors] == ["unknown key `tilttle`"]
+    assert [error.message for error in measured_slice.errors] == ["a ROS node has no key `tilttle`"]

@@ -6,7 +6,6 @@ of a callback is the time on the clock from its start to its end: what preempts 
 
 from __future__ import annotations
 
-import heapq
 from collections import defaultdict
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -16,13 +15,13 @@ from archgen.importers.recordings.recorded_figures import RecordedFigures, Sampl
 from archgen.importers.recordings.recorded_names import CallbackPlace, RecordedNames, UnmappedError, is_common_callback
 from archgen.importers.recordings.recording_lines import Oddities, OddityText, RecordingSource
 from archgen.importers.recordings.trace_events import TraceEvent, TraceLoss, read_trace_events
+from archgen.importers.recordings.trace_losses import LossTimes
 from archgen.importers.recordings.trace_registry import Address, CallbackOwner, Process, TraceRegistry
 from archgen.timing.chains.sample_statistics import SampleCounter
 from archgen.timing.figures.figure_wording import format_duration
 
 _PUBLISH_EVENTS = frozenset({"rclcpp_intra_publish", "rclcpp_publish", "rcl_publish"})
 _NO_ADDRESS: Address = (("", ""), "")
-_MAX_LOSSES = 10_000
 _TWIN_REASON = "several processes have a node of this name"
 _ODDITIES = {
     "backwards": OddityText(
@@ -109,7 +108,7 @@ class _TraceReader:
         self._source = source
         self._names = names
         self._registry = TraceRegistry()
-        self._silence = _LossTimes()
+        self._silence = LossTimes()
         self._time = 0
         self._epoch = 0
         """Counts the interruptions: what lasted across one was not seen whole."""
@@ -299,30 +298,3 @@ class _TraceReader:
 
     def _add_unmapped(self, figures: RecordedFigures, name: str, samples: _Samples, why: str) -> None:
         figures.add_unmapped(name, samples.count, why, self._source.span_of(samples.line))
-
-
-class _LossTimes:
-    """The times between which the tracer lost events."""
-
-    def __init__(self) -> None:
-        self._times: list[tuple[int, int]] = []
-        self._end = -1
-        """The end of those that have begun."""
-
-    def add_times(self, start: int, end: int) -> None:
-        """Add a time in which events were lost."""
-        heapq.heappush(self._times, (start, end))
-        if len(self._times) > _MAX_LOSSES:
-            self._times = [(self._times[0][0], max(end for _, end in self._times))]
-
-    def has_begun(self, time: int) -> bool:
-        """Whether such a time has begun since the last call, or still lasts."""
-        has_begun = self.covers(time)
-        while self._times and self._times[0][0] <= time:
-            self._end = max(self._end, heapq.heappop(self._times)[1])
-            has_begun = True
-        return has_begun
-
-    def covers(self, time: int) -> bool:
-        """Whether events of this time may be lost."""
-        return time <= self._end

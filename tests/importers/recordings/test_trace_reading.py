@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.recordings import trace_reading, trace_registry
+from archgen.importers.recordings import trace_losses, trace_registry
 from tests.importers.recordings import recorded
 from tests.importers.recordings.recorded import (
     begin,
@@ -222,7 +222,7 @@ def test_a_trace_of_too_many_things_is_refused_whole(tmp_path: Path, monkeypatch
 
 
 def test_many_losses_take_no_more_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trace_reading, "_MAX_LOSSES", 3)
+    monkeypatch.setattr(trace_losses, "_MAX_LOSSES", 3)
     assert list_figures(read(tmp_path, SCANNER + LOSS * 10 + run("1", "0x1", 100, 104))) == [
         "scan: bcet 4 ms, wcet 4 ms"
     ]
