@@ -42,6 +42,8 @@ def answer_recordings(
     from archgen.timing.chains.measured_comparison import compare_measured
     from archgen.timing.run_analysis import analyse_architecture
 
+    if slice_path is not None:
+        _refuse_target(checked_project, slice_path)
     analysis = analyse_architecture(architecture)
     chains = bound_all_chains(analysis, architecture)
     recordings = _read_recordings(paths, RecordedNames(architecture, analysis.system, chains))
@@ -103,12 +105,18 @@ def _print_answer(
         click.echo("\n".join(wrap_line(make_visible(line), width)))
 
 
-def _refuse_errors(checked_project: CheckedProject, *, has_errors: bool) -> None:
+def _refuse_target(checked_project: CheckedProject, slice_path: Path) -> None:
     from archgen.project import PROJECT_FILE
 
     if checked_project.loaded_project.first_file != PROJECT_FILE:
         msg = "a project of a single file reads no slices: there is nothing that --adopt could write into"
         raise click.UsageError(msg)
+    if slice_path.is_dir():
+        msg = f"--adopt takes the name of a file, and {slice_path} is a folder; name the project first, or with -C"
+        raise click.UsageError(make_visible(msg))
+
+
+def _refuse_errors(checked_project: CheckedProject, *, has_errors: bool) -> None:
     if has_errors or checked_project.has_errors:
         click.echo("Nothing was written: there are errors.", err=True)
         raise click.exceptions.Exit(1)
@@ -141,14 +149,17 @@ def _name_slice(root: Path, slice_path: Path) -> str:
 def _write_slice(
     checked_project: CheckedProject, measured_slice: MeasuredSlice, slice_path: Path, *, as_json: bool
 ) -> None:
-    from archgen.emit import file_tree
+    from archgen.emit.file_tree import OutputError, write_file
 
     if not measured_slice.adopted:
         click.echo("Nothing was written: there is nothing to adopt.", err=True)
         return
     path = _find_slice(checked_project.root, slice_path)
-    with command_support.explain_write_errors():
-        file_tree.write_file(path, measured_slice.text.encode())
+    try:
+        write_file(path, measured_slice.text.encode())
+    except OutputError as error:
+        msg = f"{error.message}; nothing was changed; name another file behind --adopt, or move that one away"
+        raise click.ClickException(make_visible(msg)) from None
     if not as_json:
         count = len(measured_slice.adopted)
         command_support.print_written(path, f"{count} figure{'s' if count != 1 else ''}, measured and not proven")

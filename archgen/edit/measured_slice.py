@@ -45,10 +45,15 @@ def make_measured_slice(
 ) -> MeasuredSlice:
     """Return the slice that adopts what was measured; `file` is its path in the project."""
     files = checked_project.loaded_project.files
-    old_text = read_text_file(files, file).text if files.has_path(file) else ""
+    old_file = read_text_file(files, file) if files.has_path(file) else None
+    old_text = old_file.text if old_file else ""
+    data, diagnostics = _read_data(file, old_text)
+    errors = [*diagnostics, *([old_file.problem] if old_file and old_file.problem else [])]
+    if errors:
+        # What cannot be read cannot be kept either.
+        return MeasuredSlice(file, "", (), (), tuple(errors), is_read=True)
     # Without the slice itself, so that what it holds already is not taken for written elsewhere.
     others = pipeline.judge_project(load_with_text(checked_project, file, "{}\n")) if old_text else checked_project
-    data = _read_data(old_text)
     sorter = FigureSorter(others.architecture, data)
     adopted = [entry for times in collect_times(observations) for entry in sorter.add_times(times)]
     text = MEASURED_HEADER + write_yaml(data, dict.fromkeys(sorter.storing_paths, "measured, not proven"))
@@ -56,14 +61,17 @@ def make_measured_slice(
     is_read = file in loaded_project.sources.file_names()
     if not is_read:
         loaded_project = _add_slice(loaded_project, file, text)
-    errors = tuple(list_new_errors(checked_project, pipeline.judge_project(loaded_project)))
-    return MeasuredSlice(file, text, tuple(adopted), tuple(sorter.left_out), errors, is_read)
+    new_errors = tuple(list_new_errors(checked_project, pipeline.judge_project(loaded_project)))
+    return MeasuredSlice(file, text, tuple(adopted), tuple(sorter.left_out), new_errors, is_read)
 
 
-def _read_data(text: str) -> dict[str, Any]:
-    document, _ = yaml_parser.parse_yaml(MEASURED_FILE, text) if text else (None, ())
-    data = node_to_data(document.root) if document else {}
-    return data if isinstance(data, dict) else {}
+def _read_data(file: str, text: str) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
+    """Return what a slice holds, and why it cannot be read."""
+    if not text.strip():
+        return {}, ()
+    document, diagnostics = yaml_parser.parse_yaml(file, text)
+    data = node_to_data(document.root) if document else None
+    return (data, ()) if isinstance(data, dict) else ({}, diagnostics)
 
 
 def _add_slice(loaded_project: LoadedProject, file: str, text: str) -> LoadedProject:

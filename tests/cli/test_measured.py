@@ -276,3 +276,27 @@ def test_a_project_of_one_file_has_no_slices(run: Run, robot: Path) -> None:
     (robot / "archgen.yaml").rename(robot / "robot.yaml")
     ran = run("timing", robot / "robot.yaml", "--measured", robot.parent / "trace.txt", "--adopt")
     assert (ran.status, "a project of a single file reads no slices" in ran.err) == (2, True)
+
+
+def test_a_folder_is_no_slice(run: Run, robot: Path) -> None:
+    ran = run("timing", "-C", robot, "--measured", robot.parent / "trace.txt", "--adopt", robot)
+    assert (ran.status, "--adopt takes the name of a file" in ran.err) == (2, True)
+
+
+def test_a_slice_that_cannot_be_read_is_not_replaced(run: Run, robot: Path) -> None:
+    robot_text = OPEN.partition("\n")[2].partition("\n")[2]
+    (robot / "rest.yaml").write_text(robot_text, encoding="utf-8")
+    (robot / "archgen.yaml").write_text("archgen: 1\nsources: [rest.yaml]\n", encoding="utf-8")
+    (robot / "measured.yaml").write_text("nodes: {scan: [\n", encoding="utf-8")
+    ran = run("timing", robot, "--measured", robot.parent / "trace.txt", "--adopt")
+    assert (ran.status, "error[syntax-error]" in ran.err, "Nothing was written" in ran.err) == (1, True, True)
+    assert (robot / "measured.yaml").read_text(encoding="utf-8") == "nodes: {scan: [\n"
+
+
+def test_colours_of_a_terminal_are_no_text(run: Run, robot: Path) -> None:
+    trace = robot.parent / "trace.txt"
+    coloured = TRACE.replace("ros2:", "\x1b[1mros2:").replace("callback =", "\x1b[0;33mcallback\x1b[0m =")
+    trace.write_text(coloured, encoding="utf-8")
+    ran = run("timing", robot, "--measured", trace)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.endswith("7 figures measured, no outliers\n")

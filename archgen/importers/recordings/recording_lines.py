@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import BinaryIO, NamedTuple
 
@@ -11,6 +12,9 @@ from archgen.frozen import dataclass
 
 MAX_LINE_BYTES = 65_536
 """A line that is longer is no event and no row; its end is skipped without being kept."""
+
+_COLOUR_PATTERN = re.compile(r"\x1b\[[0-9;]*[mK]")
+"""How terminals are told colours, which `script` records too."""
 
 
 class RecordingError(Exception):
@@ -37,7 +41,7 @@ class RecordingSource:
         return RecordingError(Diagnostic(rule, message, self.span_of(line), Severity.ERROR, help=help_line))
 
     def read_lines(self) -> Iterator[tuple[int, str]]:
-        """Yield each line with its number, without its end. Bytes that are no UTF-8 become `\ufffd`."""
+        """Yield each line with its number, without its end and colours. Bytes that are no UTF-8 become `\ufffd`."""
         self.stream.seek(0)
         number = 0
         while line := self.stream.readline(MAX_LINE_BYTES):
@@ -46,6 +50,8 @@ class RecordingSource:
             while not is_whole and (more := self.stream.readline(MAX_LINE_BYTES)):
                 is_whole, line = more.endswith(b"\n"), b""
             text = line.decode("utf-8", "replace").rstrip("\r\n")
+            if "\x1b" in text:
+                text = _COLOUR_PATTERN.sub("", text)
             yield number, text.removeprefix("\ufeff") if number == 1 else text
 
 

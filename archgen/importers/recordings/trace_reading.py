@@ -34,7 +34,7 @@ _ODDITIES = {
         "wrong-value",
         "the tracer discarded {count} event{s}, here first: what was going on meanwhile is not counted",
         Severity.WARNING,
-        "record fewer events, or with larger buffers (`ros2 trace --subbuffer-size-ust`)",
+        "record fewer events, or with larger buffers (`subbuffer_size_ust` of the launch action `Trace`)",
     ),
     "undated loss": OddityText(
         "wrong-value",

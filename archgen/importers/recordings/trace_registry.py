@@ -46,6 +46,7 @@ class TraceRegistry:
     def __init__(self) -> None:
         """Start without any."""
         self._rows: dict[tuple[str, Process, str], tuple[str, ...]] = {}
+        self._names_by_process: dict[Process, set[str]] = {}
         self.node_lines: dict[str, dict[tuple[str, ...], int]] = {}
         """The processes in which each node runs, by its full name, and the lines that say so."""
 
@@ -62,6 +63,7 @@ class TraceRegistry:
             # Without a process in the trace, two nodes of one name are told apart by their addresses.
             process = event.process if event.process[1] else (*event.process, address)
             self.node_lines.setdefault(name, {}).setdefault(process, event.line)
+            self._names_by_process.setdefault(event.process, set()).add(name)
         elif table.endswith("callback"):
             self._forget_callback(table, event.process, address)
         return True
@@ -95,8 +97,8 @@ class TraceRegistry:
         return CallbackOwner("timer", name, period[0]) if name and period and period[0].isdecimal() else None
 
     def _find_only_node(self, process: Process) -> str:
-        names = [name for name, lines in self.node_lines.items() if process[1] and process in lines]
-        return names[0] if len(names) == 1 else ""
+        names = self._names_by_process.get(process, set()) if process[1] else set()
+        return next(iter(names)) if len(names) == 1 else ""
 
     def _find_named(self, table: str, process: Process, handle: str) -> tuple[str, str] | None:
         """Return the full name of the node that something belongs to, and its own name."""
