@@ -22,6 +22,8 @@ from archgen.timing.figures.figure_wording import format_duration
 
 _PUBLISH_EVENTS = frozenset({"rclcpp_intra_publish", "rclcpp_publish", "rcl_publish"})
 _NO_ADDRESS: Address = (("", ""), "")
+MAX_CALLBACKS = 50_000
+"""A trace of more callbacks than this is not that of a robot; it bounds memory."""
 _TWIN_REASON = "several processes have a node of this name"
 _ODDITIES = {
     "backwards": OddityText(
@@ -158,7 +160,10 @@ class _TraceReader:
         self._epoch += 1
 
     def _check_size(self, event: TraceEvent) -> None:
-        if self._registry.is_too_large():
+        if (
+            self._registry.is_too_large()
+            or max(len(self._owned) + len(self._unowned), len(self._running)) > MAX_CALLBACKS
+        ):
             message = "the trace tells of more things than any robot has"
             raise self._source.refuse(event.line, message, "record one robot at a time", "too-large")
 
@@ -168,6 +173,7 @@ class _TraceReader:
         if key in self._running:
             self.oddities.note("begun again", event.line)
         self._running[key] = event
+        self._check_size(event)
         owner = self._registry.find_owner(event.process, callback)
         self._samples_of(owner, event).add_event(event.time, self._epoch)
         place = self._find_place(owner) if owner and owner.kind != "timer" else None

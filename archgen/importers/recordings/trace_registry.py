@@ -70,7 +70,7 @@ class TraceRegistry:
 
     def is_too_large(self) -> bool:
         """Whether there are more things than any robot has."""
-        return len(self._rows) > MAX_ADDRESSES
+        return len(self._rows) + len(self.node_lines) > MAX_ADDRESSES
 
     def find_topic(self, process: Process, publisher: str) -> str | None:
         """Return a publisher's topic."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.recordings import trace_losses, trace_registry
+from archgen.importers.recordings import trace_losses, trace_reading, trace_registry
 from tests.importers.recordings import recorded
 from tests.importers.recordings.recorded import (
     begin,
@@ -215,10 +215,23 @@ def test_a_session_that_began_after_the_nodes_says_so(tmp_path: Path) -> None:
 
 
 def test_a_trace_of_too_many_things_is_refused_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trace_registry, "MAX_ADDRESSES", 4)
+    monkeypatch.setattr(trace_registry, "MAX_ADDRESSES", 6)
     recordings = read(tmp_path, SCANNER + THREE_RUNS + subscription("1", "0x8", "/a"))
     assert list_figures(recordings) == []
-    assert list_problems(recordings) == ["11 error: the trace tells of more things than any robot has"]
+    assert list_problems(recordings) == ["12 error: the trace tells of more things than any robot has"]
+
+
+@pytest.mark.parametrize("is_open", [True, False])
+def test_a_trace_of_too_many_callbacks_is_refused_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, is_open: bool
+) -> None:
+    monkeypatch.setattr(trace_reading, "MAX_CALLBACKS", 4)
+    lines = [begin("1", f"0x{n}", n) if is_open else run(str(n), "0x5", n, n + 0.5) for n in range(9)]
+    recordings = read(tmp_path, SCANNER + THREE_RUNS + "".join(lines))
+    assert list_figures(recordings) == []
+    assert list_problems(recordings) == [
+        f"{15 if is_open else 19} error: the trace tells of more things than any robot has"
+    ]
 
 
 def test_many_losses_take_no_more_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
