@@ -55,6 +55,23 @@ def test_several_observations_of_one_element_count_together(tmp_path: Path) -> N
     assert (timing["wcet"]["max"], timing["bcet"]) == ("5 us", "2 us")
 
 
+def test_the_shortest_alone_is_adopted_alone(tmp_path: Path) -> None:
+    data: dict[str, Any] = {}
+    _sort(tmp_path, data, _observe("scan", bcet=3000))
+    assert data == {"nodes": {"scan": {"timing": {"bcet": "3 us"}}}}
+
+
+def test_a_part_of_two_nodes_of_several_components_has_no_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    twins = OPEN.replace("  maps:", "  maps2: {implements: [mapper, checker]}\n  maps:")
+    monkeypatch.setitem(globals(), "OPEN", twins)
+    data: dict[str, Any] = {}
+    sorter = _sort(tmp_path, data, _observe("maps.checker", wcet=3000))
+    assert data == {}
+    assert [figure.element for figure in sorter.left_out] == ["maps.checker"]
+
+
 def test_what_the_slice_holds_stays_unless_more_was_seen(tmp_path: Path) -> None:
     timing = {"wcet": "9 us", "bcet": "4 us", "priority": 5}
     data: dict[str, Any] = {"nodes": {"scan": {"timing": timing, "title": "Mine"}, "drive": {"title": "x"}}}

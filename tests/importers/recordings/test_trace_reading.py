@@ -124,6 +124,12 @@ def test_an_address_that_is_used_again_means_the_later_thing(tmp_path: Path) -> 
     assert list_unmapped(recordings) == ["/front/scan: subscription /odd (1): this node of the design does not read it"]
 
 
+def test_an_address_of_a_subscription_that_is_used_again_may_be_a_timers(tmp_path: Path) -> None:
+    trace = node("1") + subscription("1", "0x1", "/odd") + timer("1", "0x1", 50) + run("1", "0x1", 0, 3)
+    recordings = read(tmp_path, trace)
+    assert (list_figures(recordings), list_unmapped(recordings)) == (["scan: bcet 3 ms, wcet 3 ms"], [])
+
+
 def test_two_processes_with_a_node_of_one_name_are_not_counted(tmp_path: Path) -> None:
     twin = SCANNER.replace("vpid = 1", "vpid = 7") + run("7", "0x1", 3, 40)
     recordings = read(tmp_path, SCANNER + run("1", "0x1", 0, 3) + twin)
