@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, shared_options
+from archgen.cli import command_support, measured_recordings, shared_options
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.timing.analysis import Analysis, ChainResult
@@ -55,9 +54,21 @@ class TimingRequest:
 )
 @click.option(
     "--measured",
+    "recordings",
     metavar="FILE",
+    multiple=True,
     type=click.Path(path_type=Path),
-    help="Hold observed figures (YAML, CSV) against the design.",
+    help="Hold recordings against the design: a trace (text of babeltrace2), tables of CARET, logs of `ros2 topic hz` and "
+    "`delay`, metadata.yaml of a bag, or figures (YAML, CSV); may be repeated.",
+)
+@click.option(
+    "--adopt",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value=measured_recordings.DEFAULT_SLICE,
+    type=click.Path(path_type=Path),
+    help="With --measured: write the longest and shortest execution times into a slice, wherever no other file has one.  "
+    "[default: measured.yaml in the project]",
 )
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
@@ -69,7 +80,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     most: int,
     written: tuple[str, ...],
     sensitivity: str | None,
-    measured: Path | None,
+    recordings: tuple[Path, ...],
+    adopt: Path | None,
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
@@ -78,9 +90,12 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if (source is None) != (target is None):
         msg = "--from and --to belong together"
         raise click.UsageError(msg)
-    questions = [q for q in (chain, why, source, sensitivity, measured) if q is not None]
+    questions = [q for q in (chain, why, source, sensitivity, recordings or None) if q is not None]
     if len(questions) > 1:
         msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
+        raise click.UsageError(msg)
+    if adopt is not None and (written or not recordings):
+        msg = "--adopt writes what --measured reads, and goes with no --set"
         raise click.UsageError(msg)
     checked_project = command_support.check_or_exit(project)
     from archgen.diagnostics.diagnostic import Severity
@@ -97,8 +112,10 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         _print_paths(request, source, target, most)
     elif sensitivity is not None:
         _print_sensitivity(request, sensitivity)
-    elif measured is not None:
-        _print_measured(request, measured)
+    elif recordings:
+        measured_recordings.answer_recordings(
+            checked_project, request.architecture, recordings, adopt, as_json=request.as_json
+        )
     else:
         _print_summary(request)
     command_support.exit_by_findings(checked_project)
@@ -203,41 +220,6 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
         _print_json(timing_answers.sensitivity_to_json(result, ranking))
     else:
         _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
-
-
-def _print_measured(request: TimingRequest, file: Path) -> None:
-    from archgen.emit.terminal import timing_answers
-    from archgen.project import observation_reading as reading
-    from archgen.syntax.folder_files import read_named_file
-    from archgen.timing.chains import measured_comparison
-    from archgen.timing.run_analysis import analyse_architecture
-
-    with command_support.explain_write_errors():
-        try:
-            text = read_named_file(file).decode("utf-8-sig")
-        except UnicodeDecodeError:
-            _raise_usage_error(f"{file} is not UTF-8 text")
-    # So that excerpts below can show the lines of this file too.
-    request.checked_project.sources.add_text(str(file), text)
-    observed, unread = reading.read_observations(str(file), text)
-    compared, unknown = measured_comparison.compare_measured(analyse_architecture(request.architecture), observed)
-    problems = _settle_problems((*unread, *unknown))
-    if problems:
-        command_support.print_findings(problems, request.checked_project, sys.stderr)
-    if request.as_json:
-        _print_json(timing_answers.measured_to_json(compared))
-    else:
-        _print_lines(timing_answers.format_measured(compared, find_width(sys.stdout)))
-    if problems:
-        raise click.exceptions.Exit(1)
-
-
-def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
-
-    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:

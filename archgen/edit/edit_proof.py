@@ -17,7 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit.new_element import NewElement
 from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
-from archgen.project.project_loading import load_from_files
+from archgen.project.project_loading import LoadedProject, load_from_files
 from archgen.syntax import yaml_parser
 from archgen.syntax.overlaid_files import OverlaidFiles
 from archgen.syntax.yaml_tree import node_to_data
@@ -70,26 +70,28 @@ def _freeze_order(data: object) -> object:
 
 def find_consequences(checked_project: CheckedProject, file: str, text: str, element_id: str) -> EditConsequences:
     """Judge the project with one file's text replaced, in memory; `element_id` is the id of the new element."""
-    judged = _judge_with(checked_project, file, text)
+    judged = pipeline.judge_project(load_with_text(checked_project, file, text))
     # Changes the project that was passed in: errors about the new text are shown with lines of the new text.
     checked_project.sources.add_text(file, text)  # what is quoted of it now
-    # Compared without their places: the insertion moves the lines below it.
-    known_findings = {(diagnostic.rule, diagnostic.message) for diagnostic in checked_project.findings}
-    errors = (
-        diagnostic
-        for diagnostic in judged.findings
-        if diagnostic.severity is Severity.ERROR and (diagnostic.rule, diagnostic.message) not in known_findings
-    )
+    errors = list_new_errors(checked_project, judged)
     return EditConsequences(
         tuple(errors), tuple(_changed_elements(checked_project.architecture, judged.architecture, element_id))
     )
 
 
-def _judge_with(checked_project: CheckedProject, file: str, text: str) -> CheckedProject:
+def list_new_errors(old: CheckedProject, new: CheckedProject) -> Iterator[Diagnostic]:
+    """Yield the errors that only the new version of a project has."""
+    # Compared without their places: an insertion moves the lines below it.
+    known_findings = {(diagnostic.rule, diagnostic.message) for diagnostic in old.findings}
+    for diagnostic in new.findings:
+        if diagnostic.severity is Severity.ERROR and (diagnostic.rule, diagnostic.message) not in known_findings:
+            yield diagnostic
+
+
+def load_with_text(checked_project: CheckedProject, file: str, text: str) -> LoadedProject:
+    """Load a project with one file's text replaced, in memory."""
     files = checked_project.loaded_project.files
-    return pipeline.judge_project(
-        load_from_files(OverlaidFiles(files.root, {file: text.encode()}, files), first_file_of(checked_project))
-    )
+    return load_from_files(OverlaidFiles(files.root, {file: text.encode()}, files), first_file_of(checked_project))
 
 
 def first_file_of(checked_project: CheckedProject) -> str:

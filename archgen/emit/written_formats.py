@@ -15,6 +15,10 @@ from typing import BinaryIO
 
 PACKED_HEADER = "# Packed by archgen from the files of a project: change those, and pack again.\n"
 """The first line of a packed file, which would otherwise look as a project that somebody wrote."""
+MEASURED_HEADER = (
+    "# Measured: written by `archgen timing --adopt`. Execution times are the longest and shortest seen, not proven.\n"
+)
+"""The first line of a slice with what was measured."""
 PROGRAM_NAME = "archgen"
 """What the properties of a Word document call the program that wrote it; other programs that save it write their own name."""
 PROGRAM_PART = "docProps/app.xml"
@@ -28,6 +32,7 @@ _HEAD_MARKS = tuple(
     (name, re.compile(pattern))
     for name, pattern in (
         ("packed project", re.escape(PACKED_HEADER.encode())),
+        ("measured slice", re.escape(MEASURED_HEADER.encode())),
         ("resolved model", rb"archgen_resolved: "),
         ("project", rb"\s*(?:#[^\n]*\n\s*)*archgen: "),
         ("CODEOWNERS file", rb"# Who reviews which file: made by `archgen owners"),

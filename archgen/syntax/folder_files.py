@@ -7,8 +7,10 @@ import os
 import posixpath
 import stat
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal
 
@@ -99,12 +101,29 @@ def read_named_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
     return data
 
 
-def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes | FileRefusal:
+@contextmanager
+def open_named_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file that a user names on the command line, to be read in parts.
+
+    Raise OSError for what is no regular file.
+    """
+    with _open_without_waiting(path) as stream:
+        mode = os.fstat(stream.fileno()).st_mode
+        if not stat.S_ISREG(mode):
+            raise OSError(errno.EINVAL, _describe_file_kind(mode), str(path))
+        yield stream
+
+
+def _open_without_waiting(path: Path) -> BinaryIO:
     # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
     # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    with os.fdopen(descriptor, "rb") as stream:
-        mode = os.fstat(descriptor).st_mode
+    return os.fdopen(descriptor, "rb")
+
+
+def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes | FileRefusal:
+    with _open_without_waiting(path) as stream:
+        mode = os.fstat(stream.fileno()).st_mode
         if not stat.S_ISREG(mode):
             return FileRefusal(_describe_file_kind(mode))
         # One byte more than allowed tells "too large" without trusting st_size, which may grow while it is read.

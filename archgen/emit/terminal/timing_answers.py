@@ -1,4 +1,4 @@
-"""Answers to single questions about timing: why, what if, what decides a chain, designed against measured."""
+"""Answers to single questions about timing: why, what if, what decides a chain."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
 from archgen.timing.chains.figure_explanations import ReasonLine
-from archgen.timing.chains.measured_comparison import MeasuredComparison
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -184,46 +183,4 @@ def sensitivity_to_json(chain: ChainResult, ranking: ChainSensitivity) -> Answer
             {"element": gap.element, "what": gap.what, "terms": gap.terms, "chains": gap.chains} for gap in ranking.gaps
         ],
         "untried": ranking.untried,
-    }
-
-
-def format_measured(comparisons: Iterable[MeasuredComparison], width: int | None = None) -> Iterator[str]:
-    """Yield designed beside measured figures, and the outliers by name."""
-    rows = list(comparisons)
-    if rows:
-        yield from align_rows([("id", "figure", "designed", "measured", ""), *map(_measured_row, rows)], width)
-    outliers = [row for row in rows if row.verdict == "outlier"]
-    yield ""
-    figures = f"{len(rows)} figure{'s' if len(rows) != 1 else ''} measured"
-    if not outliers:
-        yield f"{figures}, no outliers" if rows else "nothing was measured that could be compared"
-    else:
-        yield f"{figures}, {len(outliers)} outlier{'s' if len(outliers) != 1 else ''}:"
-        yield from (make_visible(f"  {row.id}: {row.key} {row.why}") for row in outliers)
-
-
-def _measured_row(row: MeasuredComparison) -> TextRow:
-    write = figure_wording.format_rate if row.key == "rate" else figure_wording.format_duration
-    ratio = f" ({figure_wording.format_number(100 * row.ratio)} %)" if row.ratio is not None else ""
-    mark = "OUTLIER" if row.verdict == "outlier" else row.verdict
-    return row.id, row.key, format_figure(row.designed, write), write(row.measured) + ratio, mark
-
-
-def measured_to_json(comparisons: Iterable[MeasuredComparison]) -> AnswerJson:
-    """Return the comparison as plain data: rates in Hz, durations in ms."""
-    return {
-        "version": timing_json.VERSION,
-        "measured": [
-            {
-                "id": row.id,
-                "figure": row.key,
-                "designed": (timing_json.quantity_to_json if row.key == "rate" else timing_json.duration_to_json)(
-                    row.designed
-                ),
-                "measured": float(row.measured if row.key == "rate" else row.measured / 10**6),
-                "verdict": row.verdict,
-                "why": row.why or None,
-            }
-            for row in comparisons
-        ],
     }

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -12,7 +12,8 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
-from archgen.timing.analysis import Analysis, EventPace
+from archgen.timing.analysis import Analysis, ChainResult, EventPace
+from archgen.timing.chains.sample_statistics import SampleStatistics
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, smallest_value
 
@@ -26,6 +27,10 @@ MEASURED_KEYS = {
     "response": "duration",
 }
 """What can be observed, and its dimension. Periods are gaps between two events: mean, smallest, largest."""
+RECORDED_KEYS = ("storing", "latency", "delay")
+"""What only recordings give: the longest callback that stores an input, the largest latency of a chain, the largest time from
+a message's stamp until it arrived.
+"""
 RATE_TOLERANCE = Fraction(1, 10)
 """A measured mean may differ by this share before it is an outlier."""
 
@@ -33,6 +38,9 @@ _BROKEN_ABOVE = {
     "max_period": "gaps are larger than the bounds rest on",
     "wcet": "takes longer than the design says",
     "response": "the bound on the response time does not hold",
+    "storing": "takes longer than the design says",
+    "latency": "the bound of the chain does not hold",
+    "delay": "",
 }
 _OPPOSITE_SIDES: Mapping[str, Literal["exact", "at least", "at most"]] = {
     "exact": "exact",
@@ -47,11 +55,15 @@ _BROKEN_BELOW = {
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What was observed of one activity or topic."""
+    """What was observed of one activity or topic, or of an input (`storing`) or a chain (`latency`)."""
 
     id: str
     figures: Mapping[str, Quantity]
     at: Span
+    samples: Mapping[str, SampleStatistics] = field(default_factory=dict)
+    """Where all samples were recorded, their statistics: of `execution`, `storing`, `period`, `latency`."""
+    inaccuracies: Mapping[str, Fraction] = field(default_factory=dict)
+    """How far a figure may be off by the way in which it was recorded: no outlier is made of that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +84,17 @@ class MeasuredComparison:
 
 
 def compare_measured(
-    analysis: Analysis, observations: tuple[Observation, ...]
+    analysis: Analysis, observations: tuple[Observation, ...], chain_results: Mapping[str, ChainResult] | None = None
 ) -> tuple[tuple[MeasuredComparison, ...], tuple[Diagnostic, ...]]:
     """Compare observations with the design; ids that the design does not have are findings."""
     comparisons: list[MeasuredComparison] = []
     findings: list[Diagnostic] = []
     senders_by_topic = _find_senders(analysis)
     for observation in observations:
+        if not observation.figures.keys().isdisjoint(RECORDED_KEYS):
+            # Whoever recorded these has found their ids in the design.
+            comparisons += _compare_recorded(analysis, observation, chain_results or {})
+            continue
         is_topic = observation.id in senders_by_topic
         if not is_topic and observation.id not in analysis.system.activities:
             findings.append(_report_unknown(observation, [*analysis.system.activities, *senders_by_topic]))
@@ -89,8 +105,26 @@ def compare_measured(
             else analysis.paces.get(observation.id)
         )
         for key, quantity in observation.figures.items():
-            comparisons.append(_compare_figure(analysis, observation.id, key, quantity.value, pace))
+            comparisons.append(_compare_figure(analysis, observation, key, quantity.value, pace))
     return tuple(comparisons), tuple(findings)
+
+
+def _compare_recorded(
+    analysis: Analysis, observation: Observation, chain_results: Mapping[str, ChainResult]
+) -> Iterator[MeasuredComparison]:
+    """Yield the comparisons of what only recordings give."""
+    system = analysis.system
+    for key, quantity in observation.figures.items():
+        designed = UNKNOWN_VALUE
+        if key == "latency":
+            designed = chain_results[observation.id].bound
+        elif key == "storing":
+            callback = next(
+                (a.storing[observation.id] for a in system.activities.values() if observation.id in a.storing), None
+            )
+            # Zero stands for a time that nobody wrote.
+            designed = TimingValue(callback.wcet * system.tick) if callback and callback.wcet else UNKNOWN_VALUE
+        yield _compare_bound(observation, key, designed, quantity.value)
 
 
 def _find_senders(analysis: Analysis) -> dict[str, list[tuple[str, str]]]:
@@ -114,11 +148,12 @@ def _merge_paces(paces: Sequence[EventPace | None]) -> EventPace | None:
 
 
 def _compare_figure(
-    analysis: Analysis, name: str, key: str, measured: Fraction, pace: EventPace | None
+    analysis: Analysis, observation: Observation, key: str, measured: Fraction, pace: EventPace | None
 ) -> MeasuredComparison:
     """Compare one figure with what the design has for it."""
+    name = observation.id
     if key in {"rate", "period"}:
-        return _compare_rate(name, key, measured, pace)
+        return _compare_rate(observation, key, measured, pace)
     activity, response = analysis.system.activities.get(name), analysis.responses.get(name)
     if key == "max_period":
         designed = pace.gap if pace else UNKNOWN_VALUE
@@ -129,11 +164,12 @@ def _compare_figure(
     else:
         ticks = (activity.wcet if key == "wcet" else activity.bcet) if activity else None
         designed = TimingValue(ticks * analysis.system.tick) if ticks is not None else UNKNOWN_VALUE
-    return _compare_bound(name, key, designed, measured)
+    return _compare_bound(observation, key, designed, measured)
 
 
-def _compare_rate(name: str, key: str, measured: Fraction, pace: EventPace | None) -> MeasuredComparison:
+def _compare_rate(observation: Observation, key: str, measured: Fraction, pace: EventPace | None) -> MeasuredComparison:
     """Compare a mean rate or period: outlier if it is off by more than the tolerance, beyond the side of a bound."""
+    name = observation.id
     rate = designed = pace.rate if pace else UNKNOWN_VALUE
     if key == "period":
         designed = (
@@ -144,7 +180,8 @@ def _compare_rate(name: str, key: str, measured: Fraction, pace: EventPace | Non
     is_slower = (measured < designed.value) is (key == "rate")
     # What is sent at most so often (a conditional output) may come as rarely as it likes, and the reverse.
     is_allowed = rate.side == ("at most" if is_slower else "at least")
-    is_off = not is_allowed and abs(measured - designed.value) > RATE_TOLERANCE * designed.value
+    allowed_difference = RATE_TOLERANCE * designed.value + observation.inaccuracies.get(key, 0)
+    is_off = not is_allowed and abs(measured - designed.value) > allowed_difference
     why = (
         f"{'slower' if is_slower else 'faster'} than designed by more than {int(100 * RATE_TOLERANCE)} %"
         if is_off
@@ -153,12 +190,14 @@ def _compare_rate(name: str, key: str, measured: Fraction, pace: EventPace | Non
     return MeasuredComparison(name, key, designed, measured, "outlier" if is_off else "as designed", why)
 
 
-def _compare_bound(name: str, key: str, designed: TimingValue, measured: Fraction) -> MeasuredComparison:
+def _compare_bound(observation: Observation, key: str, designed: TimingValue, measured: Fraction) -> MeasuredComparison:
     """Compare an extreme: outlier only if it breaks the bound. A measurement never proves one."""
+    name = observation.id
     is_upper_bound = key in _BROKEN_ABOVE
     if designed.value is None or not is_known_bound(designed, "at most" if is_upper_bound else "at least"):
         return MeasuredComparison(name, key, designed, measured, "not designed")
-    is_broken = measured > designed.value if is_upper_bound else measured < designed.value
+    excess = measured - designed.value if is_upper_bound else designed.value - measured
+    is_broken = excess > observation.inaccuracies.get(key, 0)
     why = {**_BROKEN_ABOVE, **_BROKEN_BELOW}[key] if is_broken else ""
     return MeasuredComparison(name, key, designed, measured, "outlier" if is_broken else "as designed", why)
 

@@ -7,10 +7,13 @@ from fractions import Fraction
 
 import pytest
 
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.quantity import Quantity
 from archgen.project.observation_reading import read_observations
 from archgen.timing.analysis import EventPace
-from archgen.timing.chains.measured_comparison import MeasuredComparison, compare_measured
+from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation, compare_measured
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.system.timing_system import StoringCallback
 from tests.timing.made import MS, analysis, arc, event, ms, periodic
 
 YAML = """measured:
@@ -176,3 +179,27 @@ def _rows(name: str, text: str) -> tuple[MeasuredComparison, ...]:
     compared, unknown = compare_measured(replace(made, paces={**made.paces, "cam": pace}), observed)
     assert not unknown
     return compared
+
+
+def test_what_only_recordings_give_is_held_against_its_counterpart() -> None:
+    activity = periodic("det", 100, storing={"det.cam": StoringCallback(2 * MS)}, inputs=("det.cam", "det.map"))
+    made = analysis([activity], [], {"det": 1}, {"det": 100})
+    observed = tuple(
+        Observation(name, {key: Quantity(Fraction(value * MS), "")}, NO_SPAN)
+        for name, key, value in (("det.cam", "storing", 3), ("det.map", "storing", 3), ("/cam", "delay", 3))
+    )
+    compared, unknown = compare_measured(made, observed)
+    assert unknown == ()
+    assert [(row.id, row.verdict, row.designed.value) for row in compared] == [
+        ("det.cam", "outlier", 2 * MS),
+        ("det.map", "not designed", None),
+        ("/cam", "not designed", None),
+    ]
+
+
+@pytest.mark.parametrize(("inaccuracy", "verdict"), [(0, "outlier"), (1, "outlier"), (2, "as designed")])
+def test_what_the_recording_cannot_tell_is_no_outlier(inaccuracy: int, verdict: str) -> None:
+    made = analysis([periodic("cam", 100, wcet=10 * MS)], [], {"cam": 20}, {"cam": 100})
+    wcet = {"wcet": Quantity(Fraction(12 * MS), "")}
+    observed = Observation("cam", wcet, NO_SPAN, {}, {"wcet": Fraction(inaccuracy * MS)})
+    assert [row.verdict for row in compare_measured(made, (observed,))[0]] == [verdict]
