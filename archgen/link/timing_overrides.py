@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
 from archgen.frozen import dataclass
 from archgen.link.sanity_checks import drop_senseless
@@ -99,7 +98,7 @@ def apply_override(architecture: Architecture, override: TimingOverride) -> Arch
 def _parse_value(key: str, text: str) -> object:
     readers: Mapping[str, Callable[[str], object | None]] = {
         "behaviour": lambda word: word if word in _BEHAVIOUR_WORDS else None,
-        "trigger": lambda word: Trigger(word, None, NO_SPAN) if word in {"any", "all"} else None,  # type: ignore[arg-type]
+        "trigger": lambda word: Trigger(word) if word in {"any", "all"} else None,  # type: ignore[arg-type]
     }
     if key in _QUANTITY_KEYS:
         parsed_value: object | None = parse_quantity(text, _QUANTITY_KEYS[key])

@@ -50,6 +50,8 @@ class Input:
     physical: bool = False
     type: str | None = None
     optional: bool = False
+    freshness: Quantity | None = None
+    """How old what is read here may be at most, as the reader demands."""
     description: str | None = None
     from_written: bool = False
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.project_linking import link_project
 from archgen.link.timing_overrides import OverrideError, apply_overrides, read_override
 from archgen.model.architecture import Architecture
@@ -180,7 +179,7 @@ def test_a_name_that_a_node_has_twice_is_none_of_its_activities() -> None:
         ("every=999999999", "every", 999_999_999),
         ("core=0", "core", 0),
         ("behaviour=on_demand", "behaviour", "on_demand"),
-        ("trigger=all", "trigger", Trigger("all", None, NO_SPAN)),
+        ("trigger=all", "trigger", Trigger("all")),
         ("jitter=1.5 ms", "jitter", parse_quantity("1.5 ms", "duration")),
     ],
 )
