@@ -15,6 +15,12 @@ ActivityBehaviour = Literal["periodic", "event", "on_demand", "once"]
 SchedulingOrder = Literal["fixed_priority", "non_preemptive", "fifo", "round_robin", "ros2_executor", "edf"]
 """In which order the cores of a host, or the threads of a container, take what is ready."""
 
+HOST_ORDERS: tuple[SchedulingOrder, ...] = ("fixed_priority", "non_preemptive", "fifo", "round_robin", "edf")
+"""The orders of a host's cores."""
+EXECUTOR_ORDERS: tuple[SchedulingOrder, ...] = ("ros2_executor", "fifo", "non_preemptive", "round_robin", "edf")
+"""The orders of callbacks: those of one thread never preempt one another."""
+RESOURCE_ORDERS: tuple[SchedulingOrder, ...] = ("fifo", "fixed_priority")
+"""The orders of a resource's uses."""
 DroppedMessages = Literal["kept", "forgotten"]
 """Whether a message that `every` or `throttle` drops is stored, and read by the next activation."""
 PERCENTILES = ("p50", "p90", "p95", "p99")

@@ -187,6 +187,7 @@ groups:
         outputs: {o: {type: T, external: the world, description: D}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
+        outputs: {p: T}
         timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
 types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
 nodes:
@@ -213,6 +214,7 @@ nodes:
     tags: [t]
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
+  m: b
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
 containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
