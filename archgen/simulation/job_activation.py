@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from heapq import heappush
 from typing import Any
 
@@ -40,8 +41,8 @@ def hold_firing(run: SimulationRun, now: int, activity: int, wire: int, sample: 
     heappush(run.heap, (release_time << 2 | ACTIVITY_RELEASE, activity, HELD_FIRING))
 
 
-def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Activate an activity: queue a job for its thread.
+def fire_activity(run: SimulationRun, now: int, activity: int, callback: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Activate an activity: queue a job for its executor.
 
     With a declared response the job begins at once and ends on time; only its load is queued.
     """
@@ -53,16 +54,22 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
     if activities.declared_response[activity] is not None:
         _start_declared_job(run, now, activity, wire, sample)
         wire = LOAD_ONLY
-    activities.pending[activity].append((now, wire, sample))
-    thread = activities.thread[activity]
-    if run.threads.is_idle[thread]:
-        run.woken_threads.append(thread)
+    queue_callback(run, callback, (now, wire, sample, run.sequence))
+
+
+def queue_callback(run: SimulationRun, callback: int, job: Job) -> None:
+    """Queue what a callback has to do, and wake its executor if it has a thread free."""
+    run.sequence += 1
+    run.callbacks.pending[callback].append(job)
+    executor = run.callbacks.executor[callback]
+    if run.executors.free_count[executor]:
+        run.woken_executors.append(executor)
 
 
 def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
     """Start a job with a declared response: it ends within the declared time whatever the load."""
     activities = run.activities
-    job = (now, wire, sample)
+    job = (now, wire, sample, run.sequence)
     if wire >= 0 and not run.wires.is_request[wire]:
         run.wires.waiting_count[run.wires.queue[wire]] -= 1
     read_inputs(run, now, activity, job)
@@ -80,21 +87,52 @@ def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, 
 def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
-    _, wire, sample = job
+    _, wire, sample, _ = job
     if wire >= 0:
-        wires.newest_job[wire] = sample
+        take_newest(run, wire, sample)
     elif wire == ALL_WIRES:
         for input_wire, job_number in zip(run.plan.activities[activity].captured_wires, sample, strict=True):
-            wires.newest_job[input_wire] = job_number
+            if job_number >= 0:
+                take_newest(run, input_wire, job_number)
+        if activities.matchers[activity] is not None:
+            _record_fusion(run, now, activity, sample)
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
     if activities.waiting_requests[activity]:
-        activities.accepted_requests[activity] += activities.waiting_requests[activity]
+        activities.accepted_requests[activity].append(
+            (activities.started[activity], activities.waiting_requests[activity])
+        )
         activities.waiting_requests[activity] = []
+    for input_wire in wires.aged_wires[activity]:
+        job_number = wires.newest_job[input_wire]
+        if job_number >= 0:
+            age = now - activities.job_ends[wires.source[input_wire]][job_number]
+            if age > wires.largest_age[input_wire]:
+                wires.largest_age[input_wire] = age
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])
         for input_wire in wires.logged_wires[activity]:
             wires.source_log[input_wire].append(wires.newest_job[input_wire])
     activities.started[activity] += 1
+
+
+def take_newest(run: SimulationRun, wire: int, sample: int) -> None:
+    """Make a sample the newest of its wire, unless a newer one was stored already while its job waited."""
+    if sample > run.wires.newest_job[wire] or not run.wires.keeps_order[wire]:
+        run.wires.newest_job[wire] = sample
+
+
+def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:
+    """Return the stamp of a sample: when the job that sent it was activated; 0 for what is published once."""
+    activations = run.activities.job_activations[run.wires.source[wire]]
+    return activations[sample] if activations else 0
+
+
+def _record_fusion(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:
+    """Record how old and how far apart the samples are that a job with matched inputs has taken."""
+    activities, wires = run.activities, run.plan.activities[activity].captured_wires
+    stamps = [stamp_of(run, wire, sample) for wire, sample in zip(wires, samples, strict=True) if sample >= 0]
+    activities.fused_age[activity] = max(activities.fused_age[activity], now - min(stamps))
+    activities.fused_spread[activity] = max(activities.fused_spread[activity], max(stamps) - min(stamps))

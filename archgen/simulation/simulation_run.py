@@ -5,37 +5,51 @@ from __future__ import annotations
 from collections.abc import Collection
 from random import Random
 
-from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, ThreadStates, WireStates
+from archgen.simulation.executor_state import (
+    CallbackStates,
+    ExecutorStates,
+    ProcessorStates,
+    ResourceStates,
+    ThreadStates,
+)
+from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
 
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""
 CLOCK_TICK, LATE_TICK, HELD_FIRING = range(3)
 """Kinds of releases: a clock tick, a tick that jitter delayed, and an activation by data that jitter held back."""
+UNFAIR_REMAINDER = 2
+"""Of each CRITICAL_INTERVAL seeds, the one in which some activity of each executor and host comes after all others."""
 NO_WIRE, ALL_WIRES, LOAD_ONLY = -1, -2, -3
 """What fired a job where no single wire did: a clock, all inputs together, or nothing (it only loads its host)."""
 
 
 class SimulationRun:
-    """One run with one seed. Read `activities`, `wires`, `threads` and `event_count` when it is over."""
+    """One run with one seed. Read `activities`, `wires`, `processors` and `event_count` when it is over."""
 
     __slots__ = (
         "activities",
         "answer_wires",
+        "callbacks",
         "calls",
         "changed_processors",
+        "changed_resources",
         "draw_share",
         "event_count",
+        "executors",
         "heap",
         "is_critical",
         "outputs",
         "plan",
         "priority",
+        "processors",
         "publish_share",
+        "resources",
         "sequence",
         "threads",
         "wires",
-        "woken_threads",
+        "woken_executors",
         "worst_share",
     )
 
@@ -48,11 +62,17 @@ class SimulationRun:
         self.is_critical = seed % CRITICAL_INTERVAL == 0
         self.activities = ActivityStates(plan, dice, watched)
         self.wires = WireStates(plan, logged)
-        self.threads = ThreadStates(plan, dice)
+        is_unfair = seed % CRITICAL_INTERVAL == UNFAIR_REMAINDER
+        self.callbacks = CallbackStates(plan)
+        self.executors = ExecutorStates(plan, dice, is_unfair=is_unfair)
+        self.threads = ThreadStates()
+        self.processors = ProcessorStates(plan, dice, is_unfair=is_unfair)
+        self.resources = ResourceStates(plan, dice, is_unfair=is_unfair)
         if self.is_critical:
             self.activities.phase = [0] * len(plan.activities)
         # Drawn for each run and activity: some runs see mostly the longest times, others mostly what lies below.
-        self.worst_share = [1.0 if self.is_critical else dice.choice((0.2, 0.6, 0.9)) for _ in plan.activities]
+        shares = (1.0,) if self.is_critical else (0.9,) if is_unfair else (0.2, 0.6, 0.9)
+        self.worst_share = [dice.choice(shares) for _ in plan.activities]
         self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.activities]
         self.priority = [planned.priority for planned in plan.activities]
         self.calls = [planned.calls for planned in plan.activities]
@@ -67,10 +87,12 @@ class SimulationRun:
         ]
         self.heap: list[tuple[int, int, int]] = []
         """Events: key (time and order), subject, detail."""
-        self.woken_threads: list[int] = []
-        """Threads that got something to do at this moment."""
+        self.woken_executors: list[int] = []
+        """Executors that got something to do at this moment, or a thread free."""
         self.changed_processors: set[int] = set()
         """Processors with a free core or a newly ready thread at this moment."""
+        self.changed_resources: set[int] = set()
+        """Resources that somebody left at this moment, or waits for."""
         self.sequence = 0
         self.answer_wires = [plan.answers.get(wire_index, -1) for wire_index in range(len(plan.wires))]
         self.event_count = 0
