@@ -95,6 +95,7 @@ def _begin_callback(run: SimulationRun, now: int, thread: int) -> int:
     callback = threads.callback[thread]
     activity = callbacks.activity[callback]
     callbacks.claim_count[callback] -= 1
+    run.executors.waiting_count[callbacks.executor[callback]] -= 1
     job = callbacks.pending[callback].popleft()
     wire = job[1]
     threads.job_activation[thread] = job[0]

@@ -62,6 +62,7 @@ def queue_callback(run: SimulationRun, callback: int, job: Job) -> None:
     run.sequence += 1
     run.callbacks.pending[callback].append(job)
     executor = run.callbacks.executor[callback]
+    run.executors.waiting_count[executor] += 1
     if run.executors.free_count[executor]:
         run.woken_executors.append(executor)
 
@@ -104,12 +105,11 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
             (activities.started[activity], activities.waiting_requests[activity])
         )
         activities.waiting_requests[activity] = []
-    for input_wire in wires.aged_wires[activity]:
-        job_number = wires.newest_job[input_wire]
-        if job_number >= 0:
-            age = now - activities.job_ends[wires.source[input_wire]][job_number]
-            if age > wires.largest_age[input_wire]:
-                wires.largest_age[input_wire] = age
+    newest_job, largest_age = wires.newest_job, wires.largest_age
+    for input_wire, source_ends in run.aged_wires[activity]:
+        job_number = newest_job[input_wire]
+        if job_number >= 0 and now - source_ends[job_number] > largest_age[input_wire]:
+            largest_age[input_wire] = now - source_ends[job_number]
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])

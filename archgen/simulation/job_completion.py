@@ -45,7 +45,8 @@ def _complete_callback(run: SimulationRun, now: int, thread: int) -> None:
     callbacks.is_group_busy[callbacks.group[callback]] = False
     executors.free_count[executor] += 1
     executors.idle_threads[executor].append(thread)
-    run.woken_executors.append(executor)
+    if executors.waiting_count[executor]:
+        run.woken_executors.append(executor)
 
 
 def _publish_results(run: SimulationRun, now: int, activity: int, job: tuple[int, int, int]) -> None:

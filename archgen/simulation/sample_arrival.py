@@ -68,6 +68,7 @@ def _queue_storing(run: SimulationRun, now: int, wire: int, sample: int) -> None
     pending = run.callbacks.pending[callback]
     if len(pending) == run.callbacks.depth[callback] > 0:
         pending.popleft()
+        run.executors.waiting_count[run.callbacks.executor[callback]] -= 1
         run.wires.drop_count[run.wires.queue[wire]] += 1
     queue_callback(run, callback, (now, wire, sample, run.sequence))
 
@@ -89,6 +90,7 @@ def _drop_oldest(run: SimulationRun, callback: int, queue: int) -> None:
     for position, (_, wire, _, _) in enumerate(pending):
         if wire >= 0 and wires.queue[wire] == queue:
             del pending[position]
+            run.executors.waiting_count[run.callbacks.executor[callback]] -= 1
             wires.waiting_count[queue] -= 1
             wires.drop_count[queue] += 1
             return

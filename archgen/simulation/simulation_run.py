@@ -11,6 +11,7 @@ from archgen.simulation.executor_state import (
     ProcessorStates,
     ResourceStates,
     ThreadStates,
+    find_last_turn,
 )
 from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
@@ -19,8 +20,6 @@ JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""
 CLOCK_TICK, LATE_TICK, HELD_FIRING = range(3)
 """Kinds of releases: a clock tick, a tick that jitter delayed, and an activation by data that jitter held back."""
-UNFAIR_REMAINDER = 2
-"""Of each CRITICAL_INTERVAL seeds, the one in which some activity of each executor and host comes after all others."""
 NO_WIRE, ALL_WIRES, LOAD_ONLY = -1, -2, -3
 """What fired a job where no single wire did: a clock, all inputs together, or nothing (it only loads its host)."""
 
@@ -30,6 +29,7 @@ class SimulationRun:
 
     __slots__ = (
         "activities",
+        "aged_wires",
         "answer_wires",
         "callbacks",
         "calls",
@@ -62,16 +62,16 @@ class SimulationRun:
         self.is_critical = seed % CRITICAL_INTERVAL == 0
         self.activities = ActivityStates(plan, dice, watched)
         self.wires = WireStates(plan, logged)
-        is_unfair = seed % CRITICAL_INTERVAL == UNFAIR_REMAINDER
+        last_turn = find_last_turn(seed)
         self.callbacks = CallbackStates(plan)
-        self.executors = ExecutorStates(plan, dice, is_unfair=is_unfair)
+        self.executors = ExecutorStates(plan, dice, last_turn)
         self.threads = ThreadStates()
-        self.processors = ProcessorStates(plan, dice, is_unfair=is_unfair)
-        self.resources = ResourceStates(plan, dice, is_unfair=is_unfair)
+        self.processors = ProcessorStates(plan, dice, last_turn)
+        self.resources = ResourceStates(plan, dice, last_turn)
         if self.is_critical:
             self.activities.phase = [0] * len(plan.activities)
         # Drawn for each run and activity: some runs see mostly the longest times, others mostly what lies below.
-        shares = (1.0,) if self.is_critical else (0.9,) if is_unfair else (0.2, 0.6, 0.9)
+        shares = (1.0,) if self.is_critical else (0.9,) if last_turn is not None else (0.2, 0.6, 0.9)
         self.worst_share = [dice.choice(shares) for _ in plan.activities]
         self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.activities]
         self.priority = [planned.priority for planned in plan.activities]
@@ -87,6 +87,11 @@ class SimulationRun:
         ]
         self.heap: list[tuple[int, int, int]] = []
         """Events: key (time and order), subject, detail."""
+        self.aged_wires = [
+            tuple((wire, self.activities.job_ends[self.wires.source[wire]]) for wire in aged_wires)
+            for aged_wires in self.wires.aged_wires
+        ]
+        """The wires of which the age of what is read is recorded, each with the ends of its source's jobs."""
         self.woken_executors: list[int] = []
         """Executors that got something to do at this moment, or a thread free."""
         self.changed_processors: set[int] = set()

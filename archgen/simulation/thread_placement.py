@@ -6,6 +6,9 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.simulation_plan import PlannedExecutor, Processor
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
+_ORDERS_BY_THREADS: dict[int | None, SchedulingOrder] = {None: "fifo", 1: "ros2_executor"}
+"""The order of an executor of which only the number of threads is known, or nothing."""
+
 
 class ThreadPlacement:
     """Executors and processors, numbered as activities ask for them."""
@@ -108,7 +111,7 @@ class ThreadPlacement:
             # Where nobody wrote how many threads a container has, there is one for each member.
             return executor.threads or len(self.members[key]), executor.order
         threads = self.system.threads.get(activity.container or "")
-        return threads or 1, "ros2_executor" if threads == 1 else "fifo"
+        return threads or 1, _ORDERS_BY_THREADS.get(threads)
 
 
 def _executor_key(system: TimingSystem, activity: Activity) -> str:

@@ -22,50 +22,47 @@ _LARGEST_KEY = 1 << 61
 
 def feed_threads(run: SimulationRun, executor: int) -> None:
     """Let the free threads of an executor take callbacks, as long as some are ready."""
-    executors, callbacks = run.executors, run.callbacks
-    while executors.free_count[executor]:
-        callback = _next_callback(run, executor)
+    executors, callbacks, threads = run.executors, run.callbacks, run.threads
+    while executors.free_count[executor] and executors.waiting_count[executor]:
+        callback = executors.only_callback[executor]
         if callback < 0:
-            return
+            callback = _next_callback(run, executor)
+            if callback < 0:
+                return
         executors.free_count[executor] -= 1
         callbacks.claim_count[callback] += 1
         callbacks.is_group_busy[callbacks.group[callback]] = True
         idle_threads = executors.idle_threads[executor]
-        thread = idle_threads.pop() if idle_threads else run.threads.add_thread()
-        _take_callback(run, thread, callback)
-
-
-def _take_callback(run: SimulationRun, thread: int, callback: int) -> None:
-    """Let a thread take a callback, and wait for a core to run it on."""
-    threads, activity = run.threads, run.callbacks.activity[callback]
-    threads.callback[thread] = callback
-    threads.time_left[thread] = -1
-    threads.processor[thread] = run.processors.of_activity[activity]
-    threads.allowed_cores[thread] = run.processors.allowed_cores[activity]
-    # The job that a thread has taken on is the oldest that no other thread has.
-    job = run.callbacks.pending[callback][run.callbacks.claim_count[callback] - 1]
-    threads.job_activation[thread] = job[0]
-    queue_thread(run, thread)
+        thread = idle_threads.pop() if idle_threads else threads.add_thread()
+        activity = callbacks.activity[callback]
+        threads.callback[thread] = callback
+        threads.time_left[thread] = -1
+        threads.processor[thread] = run.processors.of_activity[activity]
+        threads.allowed_cores[thread] = run.processors.allowed_cores[activity]
+        # The job that a thread has taken on is the oldest that no other thread has.
+        threads.job_activation[thread] = callbacks.pending[callback][callbacks.claim_count[callback] - 1][0]
+        queue_thread(run, thread)
 
 
 def queue_thread(run: SimulationRun, thread: int) -> None:
     """Let a thread wait for a core."""
-    threads, processor = run.threads, run.threads.processor[thread]
+    threads, processors = run.threads, run.processors
+    processor = threads.processor[thread]
     activity = run.callbacks.activity[threads.callback[thread]]
     run.sequence += 1
     priority = run.priority[activity]
     # The heap pops the smallest key first, and a larger priority is more urgent.
     urgency = (
-        _draw_urgency(run, activity, thread, processor)
-        if priority is None or not run.processors.uses_priority[processor]
-        else -1 - priority
+        -1 - priority
+        if priority is not None and processors.uses_priority[processor]
+        else _draw_urgency(run, activity, thread, processor)
     )
     order = run.sequence
-    if run.processors.victim[processor] == activity and run.processors.scheduler[processor] == FAVOURED_OTHERS:
+    if processors.victim[processor] == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
         # Of equal priorities too it comes last.
         order += _LARGEST_KEY
     threads.urgency[thread], threads.ready_order[thread] = urgency, order
-    heappush(run.processors.ready[processor], (urgency, order, thread))
+    heappush(processors.ready[processor], (urgency, order, thread))
     run.changed_processors.add(processor)
 
 
@@ -94,8 +91,6 @@ def _next_callback(run: SimulationRun, executor: int) -> int:
     pending, members = callbacks.pending, executors.callbacks[executor]
     if not executors.excludes[executor]:
         # One thread: nothing else of this executor runs now.
-        if len(members) == 1:
-            return members[0] if pending[members[0]] else -1
         ready = [callback for callback in members if pending[callback]]
     else:
         ready = [
