@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.system.core_placement import CoreSet, find_core_sets
+from archgen.timing.system.core_placement import CoreSet, find_core_sets, find_free_cores
 from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
 
 
@@ -104,8 +104,7 @@ def _group_connected(
 ) -> Iterator[tuple[CoreSet, list[str]]]:
     """Yield the cores of a host that are linked by what may run on several of them, with what runs there."""
     all_cores = tuple(range(system.cores.get(host) or 1 + max(max(each, default=0) for each in core_sets.values())))
-    pinned_cores = {core for core_set in core_sets.values() for core in core_set}
-    free_cores = tuple(core for core in all_cores if core not in pinned_cores) or all_cores
+    free_cores = find_free_cores(len(all_cores), core_sets.values())
     allowed_sets = {unit: core_set or free_cores for unit, core_set in core_sets.items()}
     neighbours: dict[int, list[int]] = {core: [] for core in all_cores}
     for core_set in allowed_sets.values():
