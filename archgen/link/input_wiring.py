@@ -68,6 +68,7 @@ class InputWiring:
             from_written=body.get("from") is not None,
             at=entry.key_span,
             type_at=mapping_values.get_span(body, "type"),
+            freshness_at=mapping_values.get_span(body, "freshness"),
         )
 
     def _connect_source(self, component_id: str, input_id: str, reference: ScalarNode) -> Connection | None:

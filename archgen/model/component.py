@@ -57,6 +57,7 @@ class Input:
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    freshness_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
