@@ -87,6 +87,8 @@ def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse)
     """Return one reader's wait, with what is missing; a declared response says that what it reads is stored in time."""
     if wait.value is not None:
         return TimingValue(wait.value * state.system.tick) if wait.value else ZERO_VALUE
+    if state.responses[name].value is None:
+        return ZERO_VALUE  # the response says what is missing: to say it twice makes it no worse
     if state.system.activities[name].response is not None:
         return TimingValue(Fraction(0), assumptions=(f"what {name} reads is stored in time",))
     missing = wait.cause.missing
