@@ -30,6 +30,12 @@ _TIER_SENTENCES = {
     "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
     "executor": "all work of its executor on {0}, in whatever order",
+    "non_preemptive": "everything of its priority or a higher one on {0}, and the longest that may just have begun",
+    "fifo": "all that may have come to {0} before it",
+    "ros2_executor": "the round of its executor on {0} that is under way, and the one in which its turn comes",
+    "edf": "all that may have an earlier deadline on {0}",
+    "fixed_priority": "everything of its priority or a higher one on {0}",
+    "round_robin": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }

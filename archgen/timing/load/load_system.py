@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_placement import CoreSet, find_core_sets, find_free_cores
 from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
@@ -56,6 +57,13 @@ def list_storing_ids(activity: Activity) -> Iterator[str]:
 
 def _find_reader(storing: Activity) -> str:
     return storing.id.partition(" ")[0]
+
+
+def list_written_priorities(system: TimingSystem, load_system: TimingSystem) -> dict[str, int | None]:
+    """Return the priorities that are written, of storing callbacks as well: those of their readers."""
+    return {
+        activity.id: system.activities[_find_reader(activity)].priority for activity in load_system.activities.values()
+    }
 
 
 def _build_storing_activities(system: TimingSystem) -> Iterator[tuple[tuple[str, str], Activity]]:
@@ -118,6 +126,6 @@ def _group_connected(
             yield tuple(cores), names
 
 
-def order_of_core(system: TimingSystem, host: str, core: int) -> str | None:
+def order_of_core(system: TimingSystem, host: str, core: int) -> SchedulingOrder | None:
     """Return the order that is written for a core, or for its host."""
     return system.core_orders.get((host, core), system.host_orders.get(host))

@@ -15,7 +15,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, su
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ThreadUnit
-from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, is_reentrant, name_lane
+from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -25,6 +25,12 @@ class WorstResponse(NamedTuple):
     value: int | None
     tier: ResponseTier
     cause: UnknownCause = UnknownCause()
+
+    def limit_to(self, bound: int | None, tier: ResponseTier) -> WorstResponse:
+        """Return the response of another tier where that is the smaller bound; what is declared stays."""
+        if bound is None or self.value is None or self.value <= bound or self.tier in {"declared", "unknown"}:
+            return self
+        return WorstResponse(bound, tier)
 
 
 EventModels = Mapping[str, EventStreams | UnknownCause]
@@ -61,8 +67,8 @@ class ThreadWork:
     lowest_priority: int | None
     highest_priority: int | None
     share: Fraction
-    is_reentrant: bool = False
-    """Whether several activations of its only activity may run at once."""
+    in_order: bool = True
+    """Whether the activations of its only activity begin in the order in which they come, one after the other."""
 
 
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
@@ -82,7 +88,7 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
         _lowest_priority(system, unit),
         max(priorities, default=None),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
-        is_reentrant(system, system.activities[unit[0]]),
+        works_in_order(system, system.activities[unit[0]]),
     )
 
 

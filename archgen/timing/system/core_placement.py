@@ -50,6 +50,8 @@ class ProcessingResource:
     assumptions: tuple[str, ...] = ()
     joined: bool = False
     missing: tuple[str, ...] = ()
+    core_set: CoreSet = ()
+    """The numbers of the cores, where they are known."""
     undisturbed: bool = False
     """One thread, of no more threads than there are cores: it always has one to itself."""
 
@@ -133,7 +135,7 @@ def _resources_of_host(system: TimingSystem, host: str, members: Iterable[Activi
     cores, lanes = system.cores.get(host), _group_lanes(system, members)
     # One thread uses one core, however many there are.
     if cores == 1 or (cores is None and _count_working(system, lanes) <= 1):
-        return (ProcessingResource(host, host, 1, lanes),)
+        return (ProcessingResource(host, host, 1, lanes, core_set=(0,)),)
     core_sets = find_core_sets(system, members)
     pinned_units: dict[CoreSet, list[ThreadUnit]] = defaultdict(list)
     unpinned_units: list[ThreadUnit] = []
@@ -190,6 +192,7 @@ def _pinned_resources(
             foreign_units,
             foreign_units,
             tuple(_torn_thread_notes(system, units)),
+            core_set=core_set,
         )
 
 
