@@ -21,8 +21,10 @@ def random_threads_text(seed: int) -> str:
 class _ThreadsMaker:
     def __init__(self, dice: random.Random) -> None:
         self.dice = dice
-        self.cores = dice.choice((1, 1, 2, 2, 3, 4))
-        self.ranked = self.chance(0.4)
+        self.queue = dice.choice(("", "", "", "thread", "core"))
+        """What works off all there is in one order: the thread of a container, or the only core."""
+        self.cores = 1 if self.queue else dice.choice((1, 1, 2, 2, 3, 4))
+        self.ranked = self.chance(0.7 if self.queue else 0.4)
         self.pinned = self.cores > 1 and self.chance(0.4)
         self.periods: dict[str, float] = {}
         self.fed_by: dict[str, list[str]] = {}
@@ -48,7 +50,7 @@ class _ThreadsMaker:
             for name in names
         }
         host: Tree = {"cores": self.cores}
-        if self.chance(0.5):
+        if self.chance(1 if self.queue == "core" else 0.5):
             order = self.dice.choice(CORE_ORDERS)
             host["scheduling"] = {self.dice.randrange(self.cores): order} if self.chance(0.2) else order
         return {
@@ -78,10 +80,12 @@ class _ThreadsMaker:
             self.periods[name] = max(gaps) if waits_for_all else 1 / sum(1 / gap for gap in gaps)
             self.timings[name] = {"behaviour": "event", "trigger": {"all": fired_by} if waits_for_all else fired_by}
             sampled = [source for source in self.fed_by[name] if source not in fired_by]
-        stored = {source: self.dice.choice((1, 2, 6)) for source in sampled if self.chance(0.4)}
+        stored = {source: {"wcet": f"{self.dice.choice((1, 2, 6))} ms"} for source in sampled if self.chance(0.4)}
+        if self.queue == "core" or self.chance(0.1):
+            stored = {source: {"stored": "at_once"} for source in sampled}
         if stored:
-            self.timings[name]["inputs"] = {source: {"wcet": f"{cost} ms"} for source, cost in stored.items()}
-        if self.chance(0.3):
+            self.timings[name]["inputs"] = stored
+        if self.chance(0.6 if self.queue else 0.3):
             self.timings[name]["deadline"] = f"{self.dice.choice(PERIODS)} ms"
 
     def _share_load(self, names: list[str]) -> None:
@@ -94,6 +98,8 @@ class _ThreadsMaker:
             self.timings[name] |= {"wcet": f"{worst} us", "bcet": f"{best} us"}
 
     def _place(self, names: list[str]) -> tuple[Tree, Tree]:
+        if self.queue:
+            return self._place_in_queue(names)
         boxes: Tree = {}
         for at in range(self.dice.choice((0, 1, 1, 2))):
             boxes[f"box{at}"] = {"host": "h", "threads": self.dice.choice((1, 1, 2, 2, 3)), **self._thread_order()}
@@ -120,6 +126,14 @@ class _ThreadsMaker:
             nodes[f"n{len(nodes)}"] = node
         used = {node.get("container") for node in nodes.values()}
         return dict(nodes), {name: box for name, box in boxes.items() if name in used}
+
+    def _place_in_queue(self, names: list[str]) -> tuple[Tree, Tree]:
+        place = {"container": "box"} if self.queue == "thread" else {"host": "h"}
+        for name in names:
+            self._urge(name)
+        nodes: Tree = {f"n{name}": {"implements": [f"g.{name}"], **place} for name in names}
+        box = {"host": "h", "threads": 1, "scheduling": self.dice.choice(THREAD_ORDERS)}
+        return nodes, {"box": box} if self.queue == "thread" else {}
 
     def _thread_order(self) -> Tree:
         return {"scheduling": self.dice.choice(THREAD_ORDERS)} if self.chance(0.5) else {}

@@ -49,14 +49,13 @@ class QueuedTask(NamedTuple):
         return self.streams[0].min_spacing if len(self.streams) == 1 else 0
 
 
-def bound_fifo(task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int | None:
-    """Return the response where what came first is first, None where own jobs may wait for one another."""
+def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int:
+    """Return the response of each task where what came first is first."""
     spend, longest = budget.start_search(), 0
     for arrival in _arrivals_before(busy_period, ((each, 0) for each in tasks)):
         spend(len(tasks))
         longest = max(longest, sum(each.cost * each.count_until(arrival) for each in tasks) - arrival)
-    # A thread with more than one job comes back to the end of the queue with the next.
-    return longest if longest <= task.min_spacing else None
+    return longest
 
 
 def bound_round(task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int | None:

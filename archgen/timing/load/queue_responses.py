@@ -28,10 +28,10 @@ _RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
 
 @dataclass(frozen=True, slots=True)
 class CoreQueue:
-    """What works off a queue: the order, and whether jobs of the queue may preempt one another."""
+    """What works off a queue: the order, and whether it is a core, for which threads wait, or a thread."""
 
     order: SchedulingOrder
-    is_preemptive: bool
+    is_core: bool
     tasks: tuple[QueuedTask, ...] = field(default=())
     """Without events: those are not known yet."""
 
@@ -61,15 +61,17 @@ class CoreQueue:
     def _bound_response(
         self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
     ) -> int | None:
-        if self.order == "fifo":
-            return bound_fifo(task, tasks, busy_period, budget)
         if self.order == "ros2_executor":
             return bound_round(task, tasks, busy_period, budget)
-        if self.order == "non_preemptive":
+        if self.order == "fifo":
+            response: int | None = bound_fifo(tasks, busy_period, budget)
+            if not self.is_core:
+                return response
+        elif self.order == "non_preemptive":
             response = bound_non_preemptive(task, tasks, busy_period, budget)
         else:
-            response = bound_edf(task, tasks, busy_period, budget, preemptive=self.is_preemptive)
-        # Both take own jobs to be done in the order in which they come.
+            response = bound_edf(task, tasks, busy_period, budget, preemptive=self.is_core)
+        # Own jobs are taken to be done in the order in which they come, which a thread that waits for a core decides.
         is_ordered = task.entities == 1 or (response is not None and response <= task.min_spacing)
         return response if is_ordered else None
 
@@ -87,12 +89,12 @@ def find_core_queue(
         return None
     if any(activity.wcet is None or (activity.behaviour == "once" and activity.wcet) for activity in members):
         return None
-    order, is_preemptive = _find_order(system, resource, members)
+    order, is_core = _find_order(system, resource, members)
     if order in {None, "fixed_priority", "round_robin"}:
         return None
     return CoreQueue(
         order,
-        is_preemptive,
+        is_core,
         tuple(_build_task(system, activity, priorities) for activity in members),
     )
 
@@ -100,7 +102,7 @@ def find_core_queue(
 def _find_order(
     system: TimingSystem, resource: ProcessingResource, members: Sequence[Activity]
 ) -> tuple[SchedulingOrder | None, bool]:
-    """Return the order of a core's queue, and whether its jobs may preempt one another."""
+    """Return the order of a queue, and whether it is that of a core."""
     if any(activity.uses for activity in members):
         return None, False  # who waits for a resource leaves the core to others
     if len(resource.units) == 1:
