@@ -16,6 +16,7 @@ from archgen.timing.figures.value_arithmetic import add_values, is_boundless, re
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
 _BILLION = 10**9
@@ -217,7 +218,7 @@ def _judge_host(
     is_full = any(load.value == cores for _, cores, load in loads)
     if any(not load.complete or load.value is None for _, _, load in loads):
         return "overload" if is_full else "unknown"
-    if all(_is_done_in_time(paces[name], responses[name]) for name in members):
+    if all(_is_done_in_time(system, name, paces[name], responses[name]) for name in members):
         return "schedulable"
     if is_full:
         return "overload"
@@ -243,6 +244,16 @@ def _fits_rate_monotonic(
     ]
     if any(paces[activity.id].jitter != ZERO_VALUE for activity in working_activities):
         return False
+    # Nor is a thread of several, who do not preempt one another, another order, or a deadline before the next activation.
+    lanes = {name_lane(system, activity) for activity in working_activities}
+    is_plain = len(lanes) == len(working_activities) and all(
+        activity.deadline is None or (activity.period is not None and activity.deadline >= activity.period)
+        for activity in working_activities
+    )
+    orders = {system.host_orders.get(activity.host or "") for activity in working_activities}
+    orders |= {order for (host, _), order in system.core_orders.items() if host in {a.host for a in working_activities}}
+    if not is_plain or not orders <= {None, "fixed_priority"}:
+        return False
     by_rate = sorted(working_activities, key=lambda activity: -(paces[activity.id].rate.value or 0))
     priorities = [activity.priority for activity in by_rate]
     is_by_rate = all(
@@ -254,12 +265,15 @@ def _fits_rate_monotonic(
     )
 
 
-def _is_done_in_time(pace: EventPace, response: ResponseTime) -> bool:
-    """Whether an activity is done before it is activated again."""
+def _is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
+    """Whether an activity is done by its deadline; before it is activated again, where none is written."""
     if pace.rate.value == 0:
         return True
     if response.worst.value is None or not response.worst.complete or not pace.rate.value:
         return False
+    deadline = system.activities[name].deadline
+    if deadline is not None:
+        return response.worst.value <= deadline * system.tick
     (worst_numerator, worst_denominator), (rate_numerator, rate_denominator) = (
         response.worst.value.as_integer_ratio(),
         pace.rate.value.as_integer_ratio(),

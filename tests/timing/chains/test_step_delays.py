@@ -87,9 +87,9 @@ def test_every_kind_of_step() -> None:
         "call asker > server: 62 [asker calls /g/server/serve in this very activation], best 4, from a sample 12 [asker calls /g/server/serve in this very activation], age 12: open",
         "  asker 0 + 50 + 5: samples the world every 50 ms at the latest @37:56",
         "  server 3 + 0 [asker calls /g/server/serve in this very activation] + 4: called by /g/server/serve @19:32",
-        "answer server > asker: 62 [the reaction counts from the event that fires server; data age is larger by its largest gap (unknown for server)], best 4, from a sample 62, age >= 12 ?server: open",
+        "answer server > asker: 66 [the reaction counts from the event that fires server; data age is larger by its largest gap (unknown for server)], best 4, from a sample 66, age >= 16 ?server: open",
         "  server 0 + 0 + 4: its event is the stimulus @36:41",
-        "  asker 3 + 50 + 5: takes the answer of /g/server/serve every 50 ms at the latest @37:56",
+        "  asker 3 + 54 + 5: takes the answer of /g/server/serve every 50 ms at the latest, which may wait 4 ms to be stored @37:56",
         "ways imu > slow > hub: 64, best >= 2 ?slow,hub, from a sample 54, age 59: not proven",
         "  imu 0 + 10 + 5: samples the world every 10 ms at the latest @23:52",
         "  slow 3 + 42 + 1: triggered by /g/imu/out; keeps a smallest gap @27:55",
@@ -303,7 +303,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "  b takes 3 ms at most @0:0",
     ]
     assert explain(analysis, model, "far") == [
-        "far: 128 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
+        "far: 129 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
         "  a takes 1 ms at most @0:0",
         "  b waits 21 ms: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
