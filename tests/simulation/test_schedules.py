@@ -28,7 +28,11 @@ def test_two_cores_serve_the_two_most_urgent() -> None:
 
 
 def test_a_pinned_core_is_kept() -> None:
-    activities = [timed("pinned", 20, 4, host="h", cores=(0,)), timed("x", 20, 3, host="h"), timed("y", 20, 3, host="h")]
+    activities = [
+        timed("pinned", 20, 4, host="h", cores=(0,)),
+        timed("x", 20, 3, host="h"),
+        timed("y", 20, 3, host="h"),
+    ]
     found = jobs(system(activities, cores={"h": 2}), 19)
     assert found["pinned"] == [(0, 0, 4)]
     assert sorted(found["x"] + found["y"]) == [(0, 0, 3), (0, 3, 6)]
