@@ -25,12 +25,11 @@ _SECOND = 10**9
 def simulate_system(
     system: TimingSystem,
     seconds: int = 60,
-    seeds: int = 20,
+    seeds: int | range = 20,
     chains: Mapping[str, Sequence[str]] | None = None,
     pauses: PublishPauses | None = None,
-    first_seed: int = 0,
 ) -> SimulationResult:
-    """Simulate a system for `seconds` with each of `seeds` seeds, which are numbered from `first_seed` on.
+    """Simulate a system for `seconds` with each of `seeds`: a range, or how many from 0 on.
 
     `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
     conditional output with a promised largest gap is published at each chance.
@@ -43,7 +42,7 @@ def simulate_system(
     }
     horizon = int(seconds * _SECOND / plan.unit)
     totals = RunTotals(plan, tracks)
-    numbers = range(first_seed, first_seed + seeds)
+    numbers = range(seeds) if isinstance(seeds, int) else seeds
     for seed in numbers:
         totals.add_run(_run_recorded(plan, seed, horizon, tuple(tracks.values())), horizon)
     return totals.to_result(seconds, numbers, horizon, chains or {})
@@ -61,10 +60,11 @@ class LateRun:
     """The largest data age in this run."""
 
 
-def find_late_run(
+def find_late_run(  # noqa: PLR0913 - how long to look is for the caller to say
     system: TimingSystem,
     through: Sequence[str],
     deadline: Fraction,
+    *,
     seconds: int = 10,
     seeds: int = 24,
     pauses: PublishPauses | None = None,
