@@ -176,6 +176,8 @@ class _CoreSolver:
 
     def _find_storing_wait(self, name: str) -> WorstResponse:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
+        if self.core.queue is not None and self.core.queue.stores_in_time:
+            return WorstResponse(0, "fifo")
         busy_period, cause, demand = self.bounds[self.core.thread_of[name].lowest_priority]
         if busy_period is None:
             return WorstResponse(None, "host", cause)

@@ -145,7 +145,10 @@ class _Propagation:
         readers = {name for name, activity in state.system.activities.items() if samples_inputs(state.system, activity)}
         for step, resource in self.resources.items():
             names = [name for name in resource.members if name in readers]
-            if names and step not in self.inner_triggers:
+            queue = self.queues.get(step)
+            if queue is not None and queue.stores_in_time:
+                state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
+            elif names and step not in self.inner_triggers:
                 models = self._models_of(step)
                 state.storing_waits |= find_core_waits(state.system, resource, models, names, self.budget_of[step])
         for name in readers.difference(self.resources_of):

@@ -35,6 +35,11 @@ class CoreQueue:
     tasks: tuple[QueuedTask, ...] = field(default=())
     """Without events: those are not known yet."""
 
+    @property
+    def stores_in_time(self) -> bool:
+        """Whether a message that comes before an activation is stored before that begins."""
+        return self.order == "fifo" and not self.is_core
+
     def bound_responses(
         self, model_of: Callable[[str], EventStreams | UnknownCause], busy_period: int, budget: SearchBudget
     ) -> dict[str, int]:

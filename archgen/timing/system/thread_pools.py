@@ -101,7 +101,7 @@ def is_crowded(system: TimingSystem, pool: ThreadPool, members: Iterable[Activit
     )
 
 
-def find_torn_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]:
+def find_joint_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]:
     """Return the nodes outside of containers that implement several components and have one thread, with these."""
     members_by_node: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():

@@ -243,7 +243,7 @@ def test_several_triggers_of_each_kind() -> None:
         "a 1..2 [assuming a dedicated core] dedicated",
         "b 1..4 [assuming a dedicated core] dedicated",
         "start none ?start..1 [assuming a dedicated core] dedicated",
-        "any2 1..2 [assuming a dedicated core] dedicated",
+        "any2 1..3 [assuming a dedicated core] dedicated",
         "all2 none ?all2..1 [assuming a dedicated core] dedicated",
         "kept none ?kept..1 [assuming a dedicated core] dedicated",
         "thin none ?thin..1 [assuming a dedicated core] dedicated",
@@ -255,7 +255,7 @@ def test_several_triggers_of_each_kind() -> None:
         "y none ?y..3 [assuming a dedicated core] dedicated",
         "never none ?never..3 [assuming a dedicated core] dedicated",
         "hushed none ?hushed..3 [assuming a dedicated core] dedicated",
-        "other none ?other..5 [assuming a dedicated core] dedicated",
+        "other none ?other..7 [assuming a dedicated core] dedicated",
         "quiet none ?quiet..1 [assuming a dedicated core] dedicated",
         "stated none ?stated..1 [assuming a dedicated core] dedicated",
     ]
