@@ -137,15 +137,21 @@ def find_host_loads(
     system: TimingSystem,
     resources: Iterable[ProcessingResource],
     paces: Mapping[str, EventPace],
+    outputs: Mapping[tuple[str, str], EventPace],
     responses: Mapping[str, ResponseTime],
 ) -> dict[str, HostLoad]:
     """Return the load of every host, resource by resource."""
+    shares = {
+        name: _add_storing_share(system, name, activity_share(system, name, pace), outputs)
+        for name, pace in paces.items()
+        if name in system.activities
+    }
     by_host: dict[str, list[ProcessingResource]] = {host: [] for host in system.cores}
     for resource in resources:
         if resource.host is not None:
             by_host.setdefault(resource.host, []).append(resource)
     return {
-        host: _build_host_load(system, host, host_resources, paces, responses)
+        host: _build_host_load(system, host, host_resources, shares, paces, responses)
         for host, host_resources in by_host.items()
     }
 
@@ -170,17 +176,33 @@ def activity_share(system: TimingSystem, name: str, pace: EventPace) -> TimingVa
     )
 
 
+def _add_storing_share(
+    system: TimingSystem, name: str, share: TimingValue, outputs: Mapping[tuple[str, str], EventPace]
+) -> TimingValue:
+    """Return the share of a core that an activity takes, with the callbacks that store its inputs."""
+    storing = system.activities[name].storing
+    if not any(callback.wcet for callback in storing.values()):
+        return share
+    storing_shares = [
+        replace_figure(pace.rate, pace.rate.value * storing[arc.input].wcet * system.tick / NS_PER_SECOND)
+        if (pace := outputs[arc.source, arc.output]).rate.value is not None
+        else pace.rate
+        for arc in system.arcs_into.get(name, ())
+        if arc.role == "data" and arc.input in storing and storing[arc.input].wcet
+    ]
+    return add_values((share, *storing_shares))
+
+
 def _build_host_load(
     system: TimingSystem,
     host: str,
     host_resources: list[ProcessingResource],
+    share_of: Mapping[str, TimingValue],
     paces: Mapping[str, EventPace],
     responses: Mapping[str, ResponseTime],
 ) -> HostLoad:
     """Return the load of one host."""
-    shares = {
-        name: activity_share(system, name, paces[name]) for resource in host_resources for name in resource.members
-    }
+    shares = {name: share_of[name] for resource in host_resources for name in resource.members}
     loads = tuple(
         (resource.id, resource.cores, add_values(shares[name] for name in resource.members))
         for resource in host_resources
