@@ -35,8 +35,6 @@ _TIER_SENTENCES = {
     "fifo": "all that may have come to {0} before it",
     "ros2_executor": "the round of its executor on {0} that is under way, and the one in which its turn comes",
     "edf": "all that may have an earlier deadline on {0}",
-    "fixed_priority": "everything of its priority or a higher one on {0}",
-    "round_robin": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
