@@ -135,7 +135,8 @@ nodes:
         (("cores: [0, 1]", "cores: [1]", "core: 3"), [10, 30, 5]),
         # Two at once: `a` waits until the shorter one of the others has ended.
         (("cores: [0, 1]", "cores: [0, 1]", "cores: [0, 1]"), [15, 25, 15]),
-        (("cores: [0, 1]", "cores: [0, 1]", "cores: [1, 2]"), [15, 25, 15]),
+        # `c` has core 2 to itself, whatever the others do.
+        (("cores: [0, 1]", "cores: [0, 1]", "cores: [1, 2]"), [15, 25, 5]),
         # A set keeps nobody away: what is not pinned may run there too, and on the other two cores.
         (("cores: [0, 1]", "cores: [0, 1]", ""), [15, 25, 5]),
     ],
