@@ -14,10 +14,24 @@ from archgen.timing.figures.figure_wording import describe_value, format_duratio
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
-ResponseTier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "whole host", "unknown"]
+ResponseTier = Literal[
+    "declared",
+    "dedicated",
+    "host",
+    "non_preemptive",
+    "fifo",
+    "ros2_executor",
+    "edf",
+    "priorities",
+    "executor",
+    "cores",
+    "whole host",
+    "unknown",
+]
 """How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
 of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
-single-threaded; `cores`, several; `whole host`, several taken as one.
+single-threaded; `cores`, several; `whole host`, several taken as one; the words of an order (`non_preemptive`, `fifo`,
+`edf`, `ros2_executor`): one thread or core that keeps to it.
 """
 
 
@@ -193,6 +207,8 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
+    storing_waits: Mapping[str, TimingValue] = field(default_factory=dict)
+    """How long a message may wait to be stored while its reader is activated, by reader, in ns."""
     notes: tuple[Reason, ...] = ()
 
 

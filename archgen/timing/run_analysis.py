@@ -6,7 +6,12 @@ from operator import attrgetter
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
-from archgen.timing.load.host_loads import build_response_times, build_run_responses, find_host_loads
+from archgen.timing.load.host_loads import (
+    build_response_times,
+    build_run_responses,
+    build_storing_waits,
+    find_host_loads,
+)
 from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
@@ -86,7 +91,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         },
         responses=responses,
         runs=build_run_responses(state, responses),
-        hosts=find_host_loads(system, resource_list, rates.paces, responses),
+        hosts=find_host_loads(system, resource_list, rates.paces, rates.outputs, responses),
         links=find_link_loads(state, rates),
         topics={} if judging else find_topic_loads(system, rates.outputs),
         edges=find_edge_fits(edge_context, judging=judging),
@@ -99,5 +104,6 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         ),
         derived=rates.derived,
         services=find_service_loads(state, rates.paces, responses),
+        storing_waits=build_storing_waits(state),
         notes=notes,
     )

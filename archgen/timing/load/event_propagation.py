@@ -7,7 +7,8 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
@@ -18,16 +19,20 @@ from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import build_load_system, list_written_priorities
+from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
-from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.run_ways import EntryWay, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
+from archgen.timing.load.single_cores import SingleCores, delay_by_response
+from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
-from archgen.timing.system.timing_system import Arc, TimingSystem
-from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
+from archgen.timing.system.timing_system import Arc, TimingSystem, samples_inputs
+from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
@@ -42,16 +47,32 @@ def propagate_events(
 
     A caller that propagates several times passes the same budgets to all runs.
     """
-    return _Propagation(
-        PropagationState(system, triggers), find_resources(system), group_budgets or GroupBudgets()
+    load_system = build_load_system(system)
+    load_triggers = triggers if load_system is system else find_triggers(load_system)
+    state = _Propagation(
+        PropagationState(load_system, load_triggers),
+        find_resources(load_system),
+        group_budgets or GroupBudgets(),
+        list_written_priorities(system, load_system),
     ).run_to_fixed_point()
+    # What is asked of the state later is about the activities that somebody wrote.
+    state.system, state.triggers = system, triggers
+    for name in load_system.activities.keys() - system.activities.keys():
+        for table in (state.event_models, state.responses, state.ways_to, state.run_arcs, state.storing_waits):
+            table.pop(name, None)
+        state.diverged.discard(name)
+    return state
 
 
 class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
     def __init__(
-        self, state: PropagationState, resource_list: Iterable[ProcessingResource], group_budgets: GroupBudgets
+        self,
+        state: PropagationState,
+        resource_list: Iterable[ProcessingResource],
+        group_budgets: GroupBudgets,
+        priorities: Mapping[str, int | None],
     ) -> None:
         self.state = state
         self.resources: dict[str, ProcessingResource] = {}
@@ -68,6 +89,16 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.queues = {
+            key: queue
+            for key, resource in self.resources.items()
+            if (queue := find_core_queue(state.system, resource, priorities)) is not None
+        }
+        self.roaming_ids = {
+            key: frozenset(name for unit in resource.roaming_units for name in unit)
+            for key, resource in self.resources.items()
+            if resource.roaming_units
+        }
         self.inner_cores: dict[str, InnerCore] = {}
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
@@ -76,6 +107,13 @@ class _Propagation:
         self.resources_of_host: dict[str, list[str]] = {}
         self.host_limits: dict[str, dict[str, HostLimit]] = {}
         self._prepare_whole_hosts()
+        self.single_cores = self._find_single_cores()
+        # From below, as everything that is found by repetition.
+        self.work_ends = {
+            name: self.state.system.activities[name].wcet or 0
+            for step in self.single_cores
+            for name in self.resources[step].members
+        }
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
         activities = state.system.activities.values()
@@ -93,7 +131,8 @@ class _Propagation:
             if inner_triggers is None:
                 continue
             if resource.cores == 1:
-                core = self.inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                core = prepare_inner_core(system, resource, inner_triggers)
+                core = self.inner_cores[step] = replace(core, queue=self.queues.get(step))
                 self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
             else:
                 cores = prepare_shared_cores(system, resource, inner_triggers)
@@ -109,6 +148,15 @@ class _Propagation:
             self.whole_hosts[step] = core
             self.resources_of_host[step] = [key for key, resource in self.resources.items() if resource.host == host]
 
+    def _find_single_cores(self) -> dict[str, SingleCores]:
+        """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
+        cores_of = {unit: resource.core_set for resource in self.resources.values() for unit in resource.units}
+        return {
+            step: SingleCores(self.state.system, self.resources[step], cores_of)
+            for step in self.shared_cores
+            if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
+        }
+
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
         all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources]
@@ -119,7 +167,40 @@ class _Propagation:
                 self._update_step(steps[0])
             else:
                 self._iterate_steps(steps)
+        self._find_storing_waits()
         return self.state
+
+    def _find_storing_waits(self) -> None:
+        """Find how long storing callbacks may wait, where the responses on a core were found without them."""
+        state = self.state
+        readers = {name for name, activity in state.system.activities.items() if samples_inputs(state.system, activity)}
+        for step, resource in self.resources.items():
+            names = [name for name in resource.members if name in readers]
+            queue = self.queues.get(step)
+            if queue is not None and queue.stores_in_time:
+                state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
+            elif names and step not in self.inner_triggers:
+                models = self._models_of(step)
+                waits = find_core_waits(state.system, resource, models, names, self.budget_of[step])
+                state.storing_waits |= limit_responses(
+                    CoreResponses({}, {}, waits), self._limits_of(step)
+                ).storing_waits
+        for name in readers.difference(self.resources_of):
+            own_core = ProcessingResource(name, None, 1, ((name,),))
+            state.storing_waits |= find_core_waits(
+                state.system, own_core, state.event_models, (name,), self.budget_of[name]
+            )
+
+    def _models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
+        """Return the event models as a resource sees them."""
+        roaming_ids = self.roaming_ids.get(step, frozenset())
+        return {**self.state.event_models, **{name: self._model_of_roaming(name) for name in roaming_ids}}
+
+    def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
+        """Return the event model of work that another core may have begun."""
+        return delay_by_response(
+            self.state.event_models[name], self.state.responses.get(name), self.work_ends.get(name)
+        )
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
@@ -141,14 +222,12 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             for name in (name for unit in resource.foreign_units for name in unit):
-                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
-                    successors[foreign_step].append(step)
+                if resource.cores > 1 or name in self.roaming_ids.get(step, ()):
+                    for foreign_step in self.resources_of.get(name, ()):
+                        successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
-        for step, core in self.whole_hosts.items():
-            successors[step] += self.resources_of_host[step]
-            for name in core.inner_triggers.entry_ids:
-                successors[name].append(step)
+        self._add_whole_host_steps(successors)
         all_inner_triggers = self.inner_triggers | {
             step: core.inner_triggers for step, core in self.whole_hosts.items()
         }
@@ -157,6 +236,13 @@ class _Propagation:
                 successors[source].append(step)
                 for source_step in self._response_steps(source):
                     successors[source_step].append(step)
+
+    def _add_whole_host_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what hosts taken as one core rest on, and what rests on them."""
+        for step, core in self.whole_hosts.items():
+            successors[step] += self.resources_of_host[step]
+            for name in core.inner_triggers.entry_ids:
+                successors[name].append(step)
 
     def _response_steps(self, name: str) -> Iterator[str]:
         """Yield the steps that find how long an activity takes: its resource, and its host as a whole."""
@@ -245,13 +331,7 @@ class _Propagation:
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
-            new_responses = find_responses(
-                state.system,
-                self.resources[step],
-                state.event_models,
-                AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
-            )
-            new_responses = limit_responses(CoreResponses(new_responses, {}), self._limits_of(step)).response_of
+            new_responses = self._find_responses(step)
             new_responses = {
                 name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
             }
@@ -269,18 +349,34 @@ class _Propagation:
             )
         return True
 
+    def _find_responses(self, step: str) -> dict[str, WorstResponse]:
+        """Find the responses of a resource on which nothing fires anything else."""
+        state, resource, budget = self.state, self.resources[step], self.budget_of[step]
+        models = self._models_of(step) if step in self.roaming_ids else state.event_models
+        queue, stale_ids = self.queues.get(step), self._stale_activities(step)
+        # In a queue each response rests on all that waits there.
+        effort = AnalysisEffort(budget, stale_ids if queue is None else None)
+        responses = find_responses(state.system, resource, models, effort)
+        if queue is not None:
+            busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+            bounds = queue.bound_responses(models.__getitem__, busy_period, budget)
+            responses = {name: response.limit_to(bounds.get(name), queue.order) for name, response in responses.items()}
+        return limit_responses(CoreResponses(responses, {}, {}), self._limits_of(step)).response_of
+
     def _limits_of(self, step: str) -> dict[str, HostLimit]:
         """Return what bounds the activities of a resource on its host as a whole."""
         return self.host_limits.get(f"whole {self.resources[step].host}", {})
 
     def _model_finder(
-        self, entering_models: dict[int, EventStreams | UnknownCause]
+        self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
     ) -> Callable[[Origin, FiringArc | None], EventStreams | UnknownCause]:
         """Return a look-up of event models of what enters a core, which notes those of arcs (by identity)."""
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
-                return self.state.event_models[str(origin.key)]
+                name = str(origin.key)
+                is_roaming = step in self.inner_cores and name in self.roaming_ids.get(step, ())
+                return self._model_of_roaming(name) if is_roaming else self.state.event_models[name]
             key = id(entry_arc.arc)
             if key not in entering_models:
                 entering_models[key] = arriving_model(self.state, entry_arc.arc)
@@ -290,7 +386,7 @@ class _Propagation:
 
     def _update_whole_host(self, step: str) -> bool:
         """Find how long a host taken as one core is busy, and return whether anything changed."""
-        find_model = self._model_finder({})
+        find_model = self._model_finder(step, {})
         core_responses = solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step])
         limits = list_host_limits(core_responses)
         changed = self.host_limits.get(step) != limits
@@ -302,14 +398,17 @@ class _Propagation:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""
         state, limits, budget = self.state, self._limits_of(step), self.budget_of[step]
         entering_models: dict[int, EventStreams | UnknownCause] = {}
-        find_model = self._model_finder(entering_models)
-        new_responses, new_ways = (
+        find_model = self._model_finder(step, entering_models)
+        new_responses, new_ways, new_waits = (
             limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
             if step in self.inner_cores
             else solve_shared_cores(self.shared_cores[step], find_model, (state.responses, limits), budget)
         )
+        old_ends = dict(self.work_ends)
+        if step in self.single_cores:
+            self._limit_to_single_cores(step, new_responses, new_ways)
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
-        changed = any(
+        changed = old_ends != self.work_ends or any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
         state.entering_models.update(entering_models)
@@ -319,7 +418,28 @@ class _Propagation:
         )
         state.responses.update(new_responses)
         state.ways_to.update(new_ways)
+        state.storing_waits.update(new_waits)
         return changed
+
+    def _limit_to_single_cores(
+        self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]
+    ) -> None:
+        """Limit the responses on several cores to what each of these cores alone would let them be."""
+        state = self.state
+        bounds = self.single_cores[step].limit(
+            state.event_models, {**state.responses, **responses}, self.budget_of[step]
+        )
+        for name in self.resources[step].members:
+            self.work_ends.pop(name, None)
+        self.work_ends.update(bounds)
+        for name, bound in bounds.items():
+            response = responses[name]
+            if response.value is not None and bound < response.value and response.tier != "declared":
+                responses[name] = response._replace(value=bound)
+                ways_to[name] = tuple(
+                    way._replace(delay=min(way.delay, bound)) if len(way.steps) == 1 and way.delay is not None else way
+                    for way in ways_to[name]
+                )
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""

@@ -21,10 +21,14 @@ from archgen.timing.system.trigger_graph import TriggerGraph
 
 
 class HostLimit(NamedTuple):
-    """What bounds an activity on a host taken as one core, in ticks: from its activation, and from the host's event on."""
+    """What bounds an activity on a host taken as one core, in ticks: from its activation, and from the host's event on.
+
+    `storing_wait` bounds how long a message may wait to be stored that it only reads.
+    """
 
     response: int
     delay: int
+    storing_wait: int | None = None
 
 
 def find_whole_hosts(
@@ -60,13 +64,23 @@ def list_host_limits(core_responses: CoreResponses) -> dict[str, HostLimit]:
         delays = [way.delay for way in core_responses.ways_to[name]]
         known_delays = [delay for delay in delays if delay is not None]
         if response.value is not None and response.tier != "declared" and delays and len(known_delays) == len(delays):
-            limits[name] = HostLimit(response.value, max(known_delays))
+            storing_wait = core_responses.storing_waits.get(name)
+            limits[name] = HostLimit(response.value, max(known_delays), storing_wait.value if storing_wait else None)
     return limits
 
 
 def limit_responses(core_responses: CoreResponses, limits: Mapping[str, HostLimit]) -> CoreResponses:
-    """Return responses and ways, none longer than its host's limit."""
+    """Return responses, ways and waits, none longer than its host's limit."""
     response_of = dict(core_responses.response_of)
+    storing_waits = dict(core_responses.storing_waits)
+    for name, wait in core_responses.storing_waits.items():
+        limit = limits.get(name)
+        if (
+            limit is not None
+            and limit.storing_wait is not None
+            and (wait.value is None or wait.value > limit.storing_wait)
+        ):
+            storing_waits[name] = WorstResponse(limit.storing_wait, "whole host")
     ways_to = dict(core_responses.ways_to)
     for name, response in core_responses.response_of.items():
         limit = limits.get(name)
@@ -78,4 +92,4 @@ def limit_responses(core_responses: CoreResponses, limits: Mapping[str, HostLimi
             way if way.delay is not None and way.delay <= limit.delay else way._replace(delay=limit.delay)
             for way in core_responses.ways_to.get(name, ())
         )
-    return CoreResponses(response_of, ways_to)
+    return CoreResponses(response_of, ways_to, storing_waits)
