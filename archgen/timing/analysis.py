@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field, replace
 from fractions import Fraction
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
@@ -13,6 +13,9 @@ from archgen.model.declared_timing import ActivityBehaviour
 from archgen.timing.figures.figure_wording import describe_value, format_duration
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.system.timing_system import Arc, TimingSystem
+
+if TYPE_CHECKING:
+    from archgen.timing.load.event_models import PropagationState
 
 ResponseTier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
 """How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
@@ -194,6 +197,8 @@ class Analysis:
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
     notes: tuple[Reason, ...] = ()
+    # Kept for whoever asks why: the terms of a figure are read off the very state that it was found in.
+    state: PropagationState | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
