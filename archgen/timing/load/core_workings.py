@@ -107,6 +107,12 @@ class InnerCoreWorkings:
 
     def list_responses(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity may have been found."""
+        yield from self._list_step_responses(name)
+        for way in self.state.ways_to.get(name, ()):
+            yield from (shorten_working(working, way.best_before) for working in self.list_delays(name, way))
+
+    def _list_step_responses(self, name: str) -> Iterator[FigureWorking]:
+        """Yield what bounds the response of an activity, whatever may be known of the steps before it."""
         solver, core = self.solver, self.solver.core
         thread = core.thread_of[name]
         bound = solver.bounds[thread.lowest_priority]
@@ -126,12 +132,17 @@ class InnerCoreWorkings:
                 lead = min(way.best_before for way in ways)
                 yield from self._by_activation(name, streams, bound, lead, ())
         yield self._whole_period(bound, ())
-        for way in ways:
-            for working in self.list_delays(name, way):
-                yield shorten_working(working, way.best_before)
+        if len(ways) == 1:
+            yield from (shorten_working(each, ways[0].best_before) for each in self._list_run_delays(name, ways[0]))
 
     def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
+        yield from self._list_run_delays(name, way)
+        if len(way.steps) > 1:
+            yield from self._add_last_step(name, way)
+
+    def _list_run_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield what bounds all steps of a way at once."""
         core = self.solver.core
         level: Priority = min((core.thread_of[step].lowest_priority for step in way.steps), key=urgency_of)
         bound = self.solver.bounds[level]
@@ -141,8 +152,6 @@ class InnerCoreWorkings:
                 if streams:
                     yield from self._by_activation(name, streams, bound, 0, way.steps)
             yield self._whole_period(bound, way.steps)
-        if len(way.steps) > 1:
-            yield from self._add_last_step(name, way)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield the time to the step before, and the response of the last one."""
@@ -154,8 +163,10 @@ class InnerCoreWorkings:
         )
         if way_before is None or way_before.delay is None or response is None:
             return
+        if way_before.delay + response != way.delay:
+            return
         first = choose_working(self.list_delays(before, way_before), way_before.delay)
-        last = choose_working(self.list_responses(name), response)
+        last = choose_working(self._list_step_responses(name), response)
         if first and last:
             yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
 

@@ -7,7 +7,7 @@ from dataclasses import field
 
 from archgen.frozen import dataclass
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.busy_windows import DivergedError
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import CoreSolver
@@ -18,6 +18,7 @@ from archgen.timing.load.inner_core import prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.search_budgets import open_budget
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
 from archgen.timing.load.shared_core_workings import SharedCoreWorkings
 from archgen.timing.load.shared_cores import prepare_shared_cores
@@ -86,15 +87,15 @@ class ResponseWorkings:
                 return state.event_models[str(origin.key)]
             return arriving_model(state, entering_arcs[int(origin.key)].arc)
 
-        formulas = CountFormulas(system.tick)
+        formulas, budget = CountFormulas(system.tick), open_budget(len(resource.members))
         if resource.cores == 1:
             core = prepare_inner_core(system, resource, inner_triggers)
-            core_solver = CoreSolver(core, lambda origin: find_model(origin, core.entering_arcs), SearchBudget())
+            core_solver = CoreSolver(core, lambda origin: find_model(origin, core.entering_arcs), budget)
             core_solver.solve()
             return InnerCoreWorkings(core_solver, state, formulas)
         cores = prepare_shared_cores(system, resource, inner_triggers)
         demand = CascadeDemand(cores.cascades, lambda origin: find_model(origin, cores.entering_arcs))
-        shared_solver = SharedCoreSolver(CorePaths(cores), demand, state.responses, SearchBudget())
+        shared_solver = SharedCoreSolver(CorePaths(cores), demand, state.responses, budget)
         shared_solver.solve()
         return SharedCoreWorkings(shared_solver, state, formulas)
 

@@ -36,21 +36,27 @@ class SharedCoreWorkings:
 
     def list_responses(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity may have been found."""
-        yield from self._follow_path((name,))
+        value = self.state.responses[name].value or 0
+        yield from self._follow_path((name,), value)
         for way in self.state.ways_to.get(name, ()):
-            for working in self.list_delays(name, way):
-                yield shorten_working(working, way.best_before)
+            if way.delay is not None and way.delay - way.best_before == value:
+                yield from (shorten_working(working, way.best_before) for working in self.list_delays(name, way))
 
     def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
-        yield from self._follow_path(way.steps)
+        yield from self._follow_path(way.steps, way.delay or 0)
         if len(way.steps) > 1:
             yield from self._add_last_step(name, way)
-        # What is behind a way bounds it as well.
-        for later_name, later_ways in self.state.ways_to.items():
+        # A step has ended before the ones that it leads to: what bounds them bounds it.
+        for later_ways in self.state.ways_to.values():
             for later_way in later_ways:
-                if later_way.delay == way.delay and later_way.entry == way.entry and later_way.steps[:-1] == way.steps:
-                    yield from self.list_delays(later_name, later_way)
+                if (
+                    later_way.delay == way.delay
+                    and later_way.entry == way.entry
+                    and len(later_way.steps) > len(way.steps)
+                    and later_way.steps[: len(way.steps)] == way.steps
+                ):
+                    yield from self._follow_path(later_way.steps, way.delay or 0)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         before, response = way.steps[-2], self.solver.step_responses.get(name)
@@ -60,19 +66,21 @@ class SharedCoreWorkings:
         )
         if way_before is None or way_before.delay is None or response is None:
             return
+        if way_before.delay + response != way.delay:
+            return
         first = choose_working(self.list_delays(before, way_before), way_before.delay)
-        last = choose_working(self._follow_path((name,)), response)
+        last = choose_working(self._follow_path((name,), response), response)
         if first and last:
             yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
 
-    def _follow_path(self, steps: tuple[str, ...]) -> Iterator[FigureWorking]:
-        """Yield the windows of a path: of each activation of its last step, where these are looked at."""
+    def _follow_path(self, steps: tuple[str, ...], value: int) -> Iterator[FigureWorking]:
+        """Yield the window of a path that gives a figure: of each activation of its last step, where these are looked at."""
         path, spend = self.solver.paths.look_up(steps), SearchBudget().start_search()
         try:
             if path.last_step is None:
-                yield self._explain_window(
-                    path, steps, 0, 0, self.solver.find_window(path, 0, max(path.cost, 1), spend, None)
-                )
+                window = self.solver.find_window(path, 0, max(path.cost, 1), spend, None)
+                if window == value:
+                    yield self._explain_window(path, steps, 0, 0, window)
                 return
             arrival_times = earliest_arrivals(self.solver.find_activation_streams(path.last_step))
             arrival, count, window = next(arrival_times, 0), 0, max(path.cost, 1)
@@ -82,7 +90,9 @@ class SharedCoreWorkings:
                 if next_arrival == arrival:
                     continue
                 window = self.solver.find_window(path, count, window, spend, None)
-                yield self._explain_window(path, steps, count, arrival, window)
+                if window - arrival == value:
+                    yield self._explain_window(path, steps, count, arrival, window)
+                    return
                 if next_arrival is None or window <= next_arrival:
                     return
                 arrival = next_arrival
