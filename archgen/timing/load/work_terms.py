@@ -150,14 +150,21 @@ class FigureWorking:
     pending: int = 0
 
     @property
+    def work(self) -> int:
+        """Return what the terms add up to."""
+        return sum(term.total for term in self.terms) + self.blocked_time
+
+    @property
     def is_consistent(self) -> bool:
         """Whether the terms add up to the window, and the window to the figure."""
         if self.addends:
             return self.value == sum(working.value for working in self.addends) and all(
                 working.is_consistent for working in self.addends
             )
-        work = sum(term.total for term in self.terms) + self.blocked_time
-        return work == self.window and self.value == max(self.window - self.arrival - self.lead, 0)
+        # On several cores a longer window may ask for less: then the first one that is long enough is not all used.
+        work = self.work
+        is_whole = work == self.window or (self.core_count > 1 and work < self.window)
+        return is_whole and self.value == max(self.window - self.arrival - self.lead, 0)
 
 
 def shorten_working(working: FigureWorking, lead: int) -> FigureWorking:

@@ -1,0 +1,157 @@
+"""The workings of responses and links as sentences: each term with its factors, so that all can be followed by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
+from archgen.timing.figures import figure_wording
+from archgen.timing.load.work_terms import FigureWorking, ThreadShare, WorkTerm
+from archgen.timing.rates.link_workings import LinkWorking
+
+
+class ReasonLine(NamedTuple):
+    """One step of the reasoning; deeper lines support the one above them."""
+
+    depth: int
+    text: str
+    at: Span = NO_SPAN
+
+
+@dataclass(frozen=True, slots=True)
+class WorkingLines:
+    """Writes workings; durations in them are in ticks of `tick` ns."""
+
+    tick: Fraction
+
+    def _write(self, ticks: int | Fraction) -> str:
+        return figure_wording.format_duration(ticks * self.tick)
+
+    def explain_response(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield how a response, or the time of a run, comes about."""
+        if working.addends:
+            parts = " + ".join(self._write(each.value) for each in working.addends)
+            before, last = " > ".join(working.steps[:-1]), working.steps[-1]
+            yield ReasonLine(depth, f"{parts} = {self._write(working.value)}: first {before}, then {last}")
+            for addend in working.addends:
+                yield from self.explain_response(addend, depth + 1)
+            return
+        if working.core_count > 1:
+            yield from self._explain_shared(working, depth)
+        else:
+            yield ReasonLine(
+                depth,
+                f"the least t > 0 in which all of this is done is {self._write(working.window)}:",
+            )
+            yield from self.list_terms(working.terms, depth + 1)
+            yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
+        yield from self._explain_rest(working, depth)
+
+    def _explain_shared(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield A, the work of the threads that are waited for, and B, in which all cores are busy with others."""
+        own_work = sum(term.total for term in working.terms)
+        yield ReasonLine(
+            depth, f"the least t > 0 with A + B <= t is {self._write(working.window)}: A is the work of its own threads, "
+            f"B the time in which all {working.core_count} cores may be busy with others"
+        )  # fmt: skip
+        yield from self.list_terms(working.terms, depth + 1)
+        yield ReasonLine(
+            depth + 1, f"A = {' + '.join(self._write(term.total) for term in working.terms)} = {self._write(own_work)}"
+        )
+        yield from self.list_terms(working.beside_terms, depth + 1)
+        shares = _group_shares(working.shares)
+        parts = [f"{number} x {self._write(part)}" if number > 1 else self._write(part) for (_, part), number in shares]
+        parts += [f"{self._write(working.pending)} pending" if working.pending else ""]
+        total = " + ".join(part for part in parts if part) or "0 ms"
+        yield ReasonLine(
+            depth + 1, f"B = ({total}) / {working.core_count} = {self._write(working.blocked_time)}"
+            f", what each of {len(working.shares)} other threads has to do{self._describe_cuts(working.shares)}"
+        )  # fmt: skip
+        if working.pending:
+            yield ReasonLine(
+                depth + 2,
+                f"{self._write(working.pending)} pending: what may be left over from before (carry-in), as at most "
+                f"{working.core_count - 1} threads had work when the last core became busy",
+            )
+        relation = "=" if working.work == working.window else "<="
+        yield ReasonLine(
+            depth + 1,
+            f"A + B: {self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}",
+        )
+
+    def _describe_cuts(self, shares: Iterable[ThreadShare]) -> str:
+        cuts = [share for share in shares if share.counted < share.work]
+        if not cuts:
+            return ""
+        names = ", ".join(f"{' '.join(share.unit)} ({self._write(share.work)})" for share in cuts)
+        return f", but none for longer than B: {names}"
+
+    def _explain_rest(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield what is taken off the window, where it does not begin with the activation."""
+        if not working.arrival and not working.lead:
+            return
+        parts = [self._write(working.window)]
+        reasons: list[str] = []
+        if working.arrival:
+            parts.append(self._write(working.arrival))
+            reasons.append(f"activation {working.activation} comes {parts[-1]} after the first at the earliest")
+        if working.lead:
+            parts.append(self._write(working.lead))
+            reasons.append(
+                f"t begins with the event, and {working.steps[-1]} {parts[-1]} after it at the earliest"
+                if working.steps
+                else f"t begins with the event, {parts[-1]} before the activation at least"
+            )
+        yield ReasonLine(depth, f"{' - '.join(parts)} = {self._write(working.value)}: {', and '.join(reasons)}")
+
+    def list_terms(self, terms: Iterable[WorkTerm], depth: int) -> Iterator[ReasonLine]:
+        """Yield terms: `3 x (2 ms scanner + 5 ms boxes) = 21 ms, since ceil((44 ms + 1 ms) / 40 ms) = 3`."""
+        for term in terms:
+            costs = " + ".join(f"{self._write(cost)} {name}" for name, cost in term.parts)
+            number, formula = term.events
+            bracketed = f"({costs})" if len(term.parts) > 1 else costs
+            reason = f", {term.reason}" if term.reason else ""
+            because = "" if formula == str(number) else f", since {formula} = {number}"
+            yield ReasonLine(depth, f"{number} x {bracketed} = {self._write(term.total)}{because}{reason}")
+
+    def _sum_up(self, parts: list[str], total: int, depth: int) -> Iterator[ReasonLine]:
+        if len(parts) > 1:
+            yield ReasonLine(depth, f"{' + '.join(parts)} = {self._write(total)}")
+
+    def explain_link(self, working: LinkWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield how the queueing and the largest burst of a link come about."""
+        write_size = figure_wording.format_size
+        speed = f"{write_size(working.bandwidth)}/s"
+        yield ReasonLine(
+            depth,
+            f"the least t > 0 in which all is sent that comes in t, at {speed}, is {self._write(working.window)}:",
+        )
+        yield from self.list_terms(working.terms, depth + 1)
+        yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
+        burst = Fraction(working.burst)
+        yield ReasonLine(
+            depth,
+            f"{write_size(burst)} / {speed} = {figure_wording.format_duration(burst / working.bandwidth * 10**9)}"
+            f" for the largest burst alone, which waits {self._write(working.time)} after the first messages:",
+        )
+        for term in working.burst_terms:
+            sizes = " + ".join(f"{write_size(Fraction(size))} {name}" for name, size in term.parts)
+            bracketed = f"({sizes})" if len(term.parts) > 1 else sizes
+            yield ReasonLine(depth + 1, f"{term.events.number} x {bracketed} = {write_size(Fraction(term.total))}")
+        if working.time:
+            sent = working.bandwidth * working.time * self.tick / 10**9
+            yield ReasonLine(depth + 1, f"{self._write(working.time)} x {speed} = {write_size(sent)} are sent by then")
+        totals = " + ".join(write_size(Fraction(term.total)) for term in working.burst_terms)
+        sent_text = f" - {write_size(working.bandwidth * working.time * self.tick / 10**9)}" if working.time else ""
+        yield ReasonLine(depth + 1, f"{totals}{sent_text} = {write_size(burst)}")
+
+
+def _group_shares(shares: Iterable[ThreadShare]) -> list[tuple[tuple[int, int], int]]:
+    """Return how many threads have the same to do."""
+    numbers: dict[tuple[int, int], int] = {}
+    for share in shares:
+        numbers[share.work, share.counted] = numbers.get((share.work, share.counted), 0) + 1
+    return list(numbers.items())
