@@ -44,7 +44,8 @@ class WorkingLines:
         else:
             yield ReasonLine(
                 depth,
-                f"the least t > 0 in which all of this is done is {self._write(working.window)}:",
+                f"the least t > 0 in which all of this is done is {self._write(working.window)}; "
+                "of each ceil((t + how much later it may come) / how often):",
             )
             yield from self.list_terms(working.terms, depth + 1)
             yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
@@ -58,29 +59,39 @@ class WorkingLines:
             f"B the time in which all {working.core_count} cores may be busy with others"
         )  # fmt: skip
         yield from self.list_terms(working.terms, depth + 1)
-        yield ReasonLine(
-            depth + 1, f"A = {' + '.join(self._write(term.total) for term in working.terms)} = {self._write(own_work)}"
-        )
-        yield from self.list_terms(working.beside_terms, depth + 1)
-        shares = _group_shares(working.shares)
-        parts = [f"{number} x {self._write(part)}" if number > 1 else self._write(part) for (_, part), number in shares]
-        parts += [f"{self._write(working.pending)} pending" if working.pending else ""]
-        total = " + ".join(part for part in parts if part) or "0 ms"
-        yield ReasonLine(
-            depth + 1, f"B = ({total}) / {working.core_count} = {self._write(working.blocked_time)}"
-            f", what each of {len(working.shares)} other threads has to do{self._describe_cuts(working.shares)}"
-        )  # fmt: skip
-        if working.pending:
-            yield ReasonLine(
-                depth + 2,
-                f"{self._write(working.pending)} pending: what may be left over from before (carry-in), as at most "
-                f"{working.core_count - 1} threads had work when the last core became busy",
-            )
+        parts = [self._write(term.total) for term in working.terms]
+        yield ReasonLine(depth + 1, f"A = {' + '.join(parts)}{f' = {self._write(own_work)}' if len(parts) > 1 else ''}")
+        if working.blocked_time:
+            yield from self._explain_blocking(working, depth + 1)
+        else:
+            count = len(working.shares)
+            others = f"the {count} other threads that have work" if count else "no other thread has work, which"
+            yield ReasonLine(depth + 1, f"B = 0 ms: {others} cannot keep {working.core_count} cores busy all at once")
         relation = "=" if working.work == working.window else "<="
         yield ReasonLine(
             depth + 1,
-            f"A + B: {self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}",
+            f"{self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}, A + B",
         )
+
+    def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield what all cores may be busy with: what comes, thread by thread, and what is pending from before."""
+        yield from self.list_terms(working.beside_terms, depth)
+        parts = [
+            f"{number} x {self._write(part)}" if number > 1 else self._write(part)
+            for (_, part), number in _group_shares(working.shares)
+        ]
+        parts += [f"{self._write(working.pending)} pending"] if working.pending else []
+        yield ReasonLine(
+            depth,
+            f"B = ({' + '.join(parts)}) / {working.core_count} = {self._write(working.blocked_time)}, what each of "
+            f"{len(working.shares)} other threads has to do{self._describe_cuts(working.shares)}",
+        )
+        if working.pending:
+            yield ReasonLine(
+                depth + 1,
+                f"{self._write(working.pending)} pending: what may be left over from before (carry-in), as at most "
+                f"{working.core_count - 1} threads had work when the last core became busy",
+            )
 
     def _describe_cuts(self, shares: Iterable[ThreadShare]) -> str:
         cuts = [share for share in shares if share.counted < share.work]
@@ -110,12 +121,11 @@ class WorkingLines:
     def list_terms(self, terms: Iterable[WorkTerm], depth: int) -> Iterator[ReasonLine]:
         """Yield terms: `3 x (2 ms scanner + 5 ms boxes) = 21 ms, since ceil((44 ms + 1 ms) / 40 ms) = 3`."""
         for term in terms:
-            costs = " + ".join(f"{self._write(cost)} {name}" for name, cost in term.parts)
+            costs = _join_parts([f"{self._write(cost)} {name}" for name, cost in term.parts])
             number, formula = term.events
-            bracketed = f"({costs})" if len(term.parts) > 1 else costs
             reason = f", {term.reason}" if term.reason else ""
             because = "" if formula == str(number) else f", since {formula} = {number}"
-            yield ReasonLine(depth, f"{number} x {bracketed} = {self._write(term.total)}{because}{reason}")
+            yield ReasonLine(depth, f"{number} x {costs} = {self._write(term.total)}{because}{reason}")
 
     def _sum_up(self, parts: list[str], total: int, depth: int) -> Iterator[ReasonLine]:
         if len(parts) > 1:
@@ -138,15 +148,23 @@ class WorkingLines:
             f" for the largest burst alone, which waits {self._write(working.time)} after the first messages:",
         )
         for term in working.burst_terms:
-            sizes = " + ".join(f"{write_size(Fraction(size))} {name}" for name, size in term.parts)
-            bracketed = f"({sizes})" if len(term.parts) > 1 else sizes
-            yield ReasonLine(depth + 1, f"{term.events.number} x {bracketed} = {write_size(Fraction(term.total))}")
+            sizes = _join_parts([f"{write_size(Fraction(size))} {name}" for name, size in term.parts])
+            yield ReasonLine(depth + 1, f"{term.events.number} x {sizes} = {write_size(Fraction(term.total))}")
         if working.time:
             sent = working.bandwidth * working.time * self.tick / 10**9
             yield ReasonLine(depth + 1, f"{self._write(working.time)} x {speed} = {write_size(sent)} are sent by then")
         totals = " + ".join(write_size(Fraction(term.total)) for term in working.burst_terms)
         sent_text = f" - {write_size(working.bandwidth * working.time * self.tick / 10**9)}" if working.time else ""
         yield ReasonLine(depth + 1, f"{totals}{sent_text} = {write_size(burst)}")
+
+
+def _join_parts(parts: Iterable[str]) -> str:
+    """Write a sum in brackets, equal parts as a product; one part alone as it is."""
+    numbers: dict[str, int] = {}
+    for part in parts:
+        numbers[part] = numbers.get(part, 0) + 1
+    products = [part if number == 1 else f"{number} x {part}" for part, number in numbers.items()]
+    return products[0] if len(products) == 1 else f"({' + '.join(products)})"
 
 
 def _group_shares(shares: Iterable[ThreadShare]) -> list[tuple[tuple[int, int], int]]:

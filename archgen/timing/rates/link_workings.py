@@ -65,7 +65,7 @@ def _list_sent(state: PropagationState, arcs: Sequence[Arc]) -> Iterator[tuple[A
 
 
 def _name_message(arc: Arc, size: int) -> str:
-    return f"{arc.topic}[{figure_wording.format_size(Fraction(size))} to {arc.target}]"
+    return f"{arc.topic}[{figure_wording.format_size(Fraction(size))}]"
 
 
 def _count_until(streams: EventStreams, time: int) -> EventCount:
