@@ -33,6 +33,7 @@ _TIER_SENTENCES = {
     "cores": "all work of its own thread, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
+_OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
 _OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
@@ -51,12 +52,12 @@ def _build_response_time(
     """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
     best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
-    sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
     sentence = _TIER_SENTENCES[worst_response.tier]
+    if resource is not None and resource.undisturbed and worst_response.tier == "cores":
+        sentence = _OWN_CORE_SENTENCE
     if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
         sentence = _OPEN_CORES_SENTENCE
-    elif resource is not None and resource.undisturbed and worst_response.tier == "cores":
-        sentence = "its own work alone: {0} has no more threads than cores"
+    sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,
