@@ -16,6 +16,11 @@ _CHAIN_VERDICTS = {
     "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
     "open": "figures are missing",
 }
+_CHAIN_FIGURES = {
+    "reaction time": "from a change in the world until the last element has acted on it: what a deadline is about",
+    "data age": "how old what the last element sends may be, until its next output replaces it",
+    "bound": "what a figure is never above, whatever happens at the same time (`best case`: never below)",
+}
 _HOST_VERDICTS = {
     "schedulable": "each response is within the period, or the load is so low that it would be with priorities by rate",
     "overload": "more is to be done than the cores can do",
@@ -53,6 +58,8 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
     """Yield the words that the summary of an analysis uses, each with what it means."""
     verdicts = {result.verdict for result in chains.values() if result.deadline}
     yield from ((VERDICT_WORDS[word], text) for word, text in _CHAIN_VERDICTS.items() if word in verdicts)
+    if chains:
+        yield from _CHAIN_FIGURES.items()
     # Signs are no part of any id: where one stands in the text, it is a sign.
     yield from ((sign, text) for sign, text in _SIGNS.items() if sign in summary)
     host_verdicts = {load.verdict for load in analysis.hosts.values()}
@@ -61,6 +68,12 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
     yield from ((word, text) for word, text in _HOST_VERDICTS.items() if word in host_verdicts)
     behaviours = {pace.behaviour for pace in analysis.paces.values()}
     yield from ((word, text) for word, text in _BEHAVIOURS.items() if word in behaviours)
+    if analysis.hosts:
+        yield "load", "rate times execution time, added up: 100 % is one core all the time"
+    if any("jitter" in line for line in summary.splitlines()):
+        yield "jitter", "how much later than its clock says an element may start"
+    if analysis.services:
+        yield "caller", "an element that calls the service; the time holds for one call of each"
     if analysis.paces:
         yield "gap", "the largest time between two activations"
         yield "response", "the longest time from an activation to its end, with all that gets in its way"

@@ -194,7 +194,7 @@ def _judge_host(
     is_full = any(load.value == cores for _, cores, load in loads)
     if any(not load.complete or load.value is None for _, _, load in loads):
         return "overload" if is_full else "unknown"
-    if all(_is_done_in_time(paces[name], responses[name]) for name in members):
+    if all(is_done_in_time(paces[name], responses[name]) for name in members):
         return "schedulable"
     if is_full:
         return "overload"
@@ -231,7 +231,7 @@ def _fits_rate_monotonic(
     )
 
 
-def _is_done_in_time(pace: EventPace, response: ResponseTime) -> bool:
+def is_done_in_time(pace: EventPace, response: ResponseTime) -> bool:
     """Whether an activity is done before it is activated again."""
     if pace.rate.value == 0:
         return True
