@@ -12,6 +12,7 @@ from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour
 from archgen.timing.figures.figure_wording import describe_value, format_duration
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import is_known_bound
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 if TYPE_CHECKING:
@@ -226,3 +227,11 @@ class ChainResult:
     reduced_age: TimingValue
     deadline: TimingValue | None
     verdict: ChainVerdict
+
+    @property
+    def spread(self) -> Fraction | None:
+        """Return by how much its end may jitter, from the best case to the bound, in ns; None where one is not known."""
+        if self.bound.value is None or self.best.value is None:
+            return None
+        is_known = is_known_bound(self.bound) and is_known_bound(self.best, "at least")
+        return self.bound.value - self.best.value if is_known else None

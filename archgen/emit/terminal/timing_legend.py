@@ -6,16 +6,10 @@ from collections.abc import Iterator, Mapping
 
 from archgen.diagnostics.text_columns import TextRow
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
 
-_CHAIN_VERDICTS = {
-    "met": "the bound is not above the deadline",
-    "missed": "it can happen: the best case is above the deadline, or there is no bound at all",
-    "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
-    "open": "figures are missing",
-}
 _CHAIN_FIGURES = {
     "reaction time": "from a change in the world until the last element has acted on it: what a deadline is about",
     "data age": "how old what the last element sends may be, until its next output replaces it",
@@ -57,7 +51,7 @@ _FIGURES = {
 def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: str) -> Iterator[TextRow]:
     """Yield the words that the summary of an analysis uses, each with what it means."""
     verdicts = {result.verdict for result in chains.values() if result.deadline}
-    yield from ((VERDICT_WORDS[word], text) for word, text in _CHAIN_VERDICTS.items() if word in verdicts)
+    yield from ((VERDICT_WORDS[word], text) for word, text in VERDICT_MEANINGS.items() if word in verdicts)
     if chains:
         yield from _CHAIN_FIGURES.items()
     # Signs are no part of any id: where one stands in the text, it is a sign.

@@ -16,7 +16,7 @@ from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
+from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
 from archgen.timing.load.host_loads import is_done_in_time
 
 
@@ -73,6 +73,9 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.hosts.items():
         cores = "? cores" if load.cores is None else f"{load.cores} core{'s' if load.cores != 1 else ''}"
         load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
+        share = load.share_of_cores
+        if load.cores is not None and load.cores > 1 and share is not None and share.value is not None:
+            load_text += f" ({figure_wording.format_share(share.value)} of all)"
         missing_text = format_missing(load.utilisation)
         if load.cores is None:
             missing_text = f"how many cores it has is not written{f'; {missing_text}' if missing_text else ''}"
@@ -215,8 +218,8 @@ def format_chain(
         ),
         ("best case", format_figure(result.best), "the shortest time that a trace may show"),
     ]
-    spread = _format_spread(result)
-    if spread:
+    if result.spread is not None:
+        spread = figure_wording.format_duration(result.spread)
         rows.append(("best to worst", spread, "how much the end of the chain may jitter (actuation jitter)"))
     if published:
         rows.append(
@@ -236,14 +239,6 @@ def format_chain(
         yield from (f"  {sentence}" for sentence in advice if sentence)
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
-
-
-def _format_spread(result: ChainResult) -> str:
-    """Return the difference of the largest reaction time and the best case, where both are known."""
-    worst, best = result.bound, result.best
-    if worst.value is None or best.value is None or not is_known_bound(worst) or not is_known_bound(best, "at least"):
-        return ""
-    return figure_wording.format_duration(worst.value - best.value)
 
 
 def _term_rows(terms: Iterable[ChainTerm]) -> Iterator[TextRow]:

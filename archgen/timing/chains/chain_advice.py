@@ -70,7 +70,7 @@ def _describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fracti
     if is_boundless(result.bound):
         return f"It may take any time, and so longer than {deadline_text} allows."
     if result.verdict == "open":
-        known = f"What is known of it takes up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
+        known = f"What is known of it adds up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
     if bound is not None and bound > deadline:
         return (

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
 from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
@@ -48,7 +50,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
     chains = [
         (
             Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}"),
-            chain_charts.describe_chain_verdict(result, timing_lookup),
+            " ".join(_describe_late_chain(result, timing_lookup)),
         )
         # Certain misses come before what may be late.
         for verdict in ("missed", "not proven", "open")
@@ -64,6 +66,26 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
         yield Bullets(
             tuple(inline_text.to_inlines(link, f". {verdict_text}") for link, verdict_text in (*chains, *hosts))
         )
+
+
+def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
+    """Yield by how much a chain is late, what takes most and why, and one thing to do."""
+    yield chain_charts.describe_chain_verdict(result, timing_lookup)
+    advice = advise_on_chain(timing_lookup.analysis, result)
+    if advice is not None:
+        yield from filter(None, (advice.largest_parts, advice.first_step))
+
+
+def explain_verdict_words(timing_lookup: TimingLookup) -> Iterator[Block]:
+    """Explain the verdicts that chains have."""
+    verdicts = {result.verdict for result in timing_lookup.chains if result.deadline}
+    phrases = [f"{word}: {meaning}" for word, meaning in VERDICT_MEANINGS.items() if word in verdicts]
+    if phrases:
+        sentence = (
+            "A bound is what the time from a change in the world to the reaction is never above. "
+            "What the verdicts on chains mean: "
+        )
+        yield Paragraph(inline_text.to_inlines(f"{sentence}{'; '.join(phrases)}."))
 
 
 def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:

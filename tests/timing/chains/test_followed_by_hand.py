@@ -111,7 +111,7 @@ def test_loads_of_hosts_are_the_sums_of_rate_times_execution_time(case_study: Re
     analysis, _ = case_study
     for name in ("onboard_pc", "vision_pc", "arm_pc", "interaction_pc"):
         added = [line for line in print_reasons(case_study, name) if " adds " in line]
-        total = sum(next(read_equations(line)).computed for line in added)
+        total = sum((next(read_equations(line)).computed for line in added), Fraction(0))
         assert is_close(total, analysis.hosts[name].utilisation.value or Fraction(0)), name
         assert len(added) > 5
 
@@ -119,15 +119,15 @@ def test_loads_of_hosts_are_the_sums_of_rate_times_execution_time(case_study: Re
 def test_the_traffic_the_queueing_and_the_burst_of_a_link_follow_from_its_messages(case_study: Results) -> None:
     analysis, _ = case_study
     lines, load = print_reasons(case_study, "robot_lan"), analysis.links["robot_lan"]
-    traffic = sum(next(read_equations(line)).computed for line in lines if " adds " in line)
+    traffic = sum((next(read_equations(line)).computed for line in lines if " adds " in line), Fraction(0))
     assert is_close(traffic * 10**9, load.traffic.value or Fraction(0))
     burst_at = next(at for at, line in enumerate(lines) if "largest burst" in line)
     sent, waiting = (
         [next(read_equations(line)).computed for line in part if re.match(r"\d+ x ", line)]
         for part in (lines[:burst_at], lines[burst_at:])
     )
-    assert is_close(sum(sent), load.queueing.value or Fraction(0))
-    assert is_close(sum(waiting), load.burst.value or Fraction(0))
+    assert is_close(sum(sent, Fraction(0)), load.queueing.value or Fraction(0))
+    assert is_close(sum(waiting, Fraction(0)), load.burst.value or Fraction(0))
     assert min(len(sent), len(waiting)) > 5
 
 
