@@ -81,8 +81,8 @@ def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[t
     """Yield what takes most of a chain that does not surely meet its deadline, and what to do first."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is not None:
-        yield "Why", inline_text.to_inlines(advice.largest_parts)
-        yield "What to do", inline_text.to_inlines(advice.first_step)
+        yield "Why", inline_text.message_to_inlines(advice.largest_parts)
+        yield "What to do", inline_text.message_to_inlines(advice.first_step)
 
 
 def _list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:

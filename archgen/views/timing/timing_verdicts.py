@@ -19,12 +19,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 
 def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
     """Summarize in a few sentences how many rates are known and how many chains meet their deadlines."""
-    activity_rates = timing_lookup.analysis.paces.values()
-    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
-    known_count = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in activity_rates)
-    sentences = [
-        f"Of {inline_text.count_noun(len(activity_rates), 'activity')}, {known_count} have a known rate or run on demand or once."
-    ]
+    sentences: list[str] = []
     if timing_lookup.chains:
         verdicts = [
             "without a deadline" if _lacks_only_deadline(result) else result.verdict for result in timing_lookup.chains
@@ -36,6 +31,12 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
         sentences.append(
             f"Of {inline_text.count_noun(len(timing_lookup.chains), 'chain')} of effect: {verdict_counts}."
         )
+    activity_rates = timing_lookup.analysis.paces.values()
+    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
+    known_count = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in activity_rates)
+    sentences.append(
+        f"Of {inline_text.count_noun(len(activity_rates), 'activity')}, {known_count} have a known rate or run on demand or once."
+    )
     sentences.append("All bounds are safe for the figures written; what they rest on beside them stands with each.")
     return Paragraph(inline_text.to_inlines(" ".join(sentences)))
 
@@ -64,16 +65,20 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
     ]
     if chains or hosts:
         yield Bullets(
-            tuple(inline_text.to_inlines(link, f". {verdict_text}") for link, verdict_text in (*chains, *hosts))
+            tuple(
+                (link, *inline_text.message_to_inlines(f". {verdict_text}")) for link, verdict_text in (*chains, *hosts)
+            )
         )
 
 
 def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
     """Yield by how much a chain is late, what takes most and why, and one thing to do."""
-    yield chain_charts.describe_chain_verdict(result, timing_lookup)
     advice = advise_on_chain(timing_lookup.analysis, result)
-    if advice is not None:
-        yield from filter(None, (advice.largest_parts, advice.first_step))
+    if advice is None:
+        yield chain_charts.describe_chain_verdict(result, timing_lookup)
+    else:
+        yield f"{result.verdict.capitalize()}."
+        yield from filter(None, advice)
 
 
 def explain_verdict_words(timing_lookup: TimingLookup) -> Iterator[Block]:
@@ -83,9 +88,10 @@ def explain_verdict_words(timing_lookup: TimingLookup) -> Iterator[Block]:
     if phrases:
         sentence = (
             "A bound is what the time from a change in the world to the reaction is never above. "
-            "What the verdicts on chains mean: "
+            "What the verdicts on chains mean. "
         )
-        yield Paragraph(inline_text.to_inlines(f"{sentence}{'; '.join(phrases)}."))
+        words = "; ".join(phrases)
+        yield Paragraph(inline_text.to_inlines(f"{sentence}{words[:1].upper()}{words[1:]}."))
 
 
 def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:
