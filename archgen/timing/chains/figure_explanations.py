@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, EventPace, HostLoad, Reason
-from archgen.timing.chains.gap_formulas import list_gap_formulas, multiply_rate
+from archgen.timing.chains.gap_formulas import list_gap_formulas, list_wait_formulas, multiply_rate
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
@@ -55,8 +55,9 @@ def explain_chain(result: ChainResult, analysis: Analysis) -> Iterator[ReasonLin
         if term.link.value != 0:
             yield ReasonLine(1, f"link to {term.activity}: {_format_figure(term.link)}")
         yield ReasonLine(1, f"{term.activity} waits {_format_figure(term.sampling)}: {term.why}", term.at)
-        for formula, words in list_gap_formulas(analysis, term.activity) if term.sampling.value else ():
-            yield ReasonLine(2, f"gap {formula}: {words}")
+        wait = term.sampling.value
+        for formula, words in list_wait_formulas(analysis, term.activity, wait) if wait else ():
+            yield ReasonLine(2, f"{formula}: {words}")
         takes_text = f"takes {_format_figure(term.response)} at most"
         if term.response.value is None:
             takes_text = f"takes a time that is not bounded: {_format_figure(term.response)}"
@@ -122,7 +123,7 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
             product = f"{'at most ' if part.side == 'at most' else ''}{product}"
         yield ReasonLine(1, f"{activity} adds {product}", _span_of_activity(analysis, activity))
     share_of_cores = load.share_of_cores
-    if load.cores is not None and load.utilisation.value is not None and share_of_cores is not None:
+    if load.cores is not None and load.cores > 1 and load.utilisation.value is not None and share_of_cores is not None:
         total = figure_wording.format_share(load.utilisation.value)
         yield ReasonLine(1, f"{total} / {load.cores} cores = {_format_figure(share_of_cores, 'share')} of all cores")
     for core, count, core_load in load.core_loads if len(load.core_loads) > 1 else ():
@@ -130,7 +131,9 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
 
 
 def _count_cores(load: HostLoad) -> str:
-    return "a core, and nobody wrote how many there are" if load.cores is None else f"{load.cores} cores"
+    if load.cores is None:
+        return "a core, and nobody wrote how many there are"
+    return f"{load.cores} core{'s' if load.cores != 1 else ''}"
 
 
 def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -150,7 +153,7 @@ def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
         f"{name}: queueing of {_format_figure(load.queueing)} at most; bursts of up to {_format_figure(load.burst, 'size')}",
     )
     working = work_out_link(analysis.state, name, load.queueing, load.burst) if analysis.state else None
-    if working is not None:
+    if working is not None and working.terms:
         yield from WorkingLines(analysis.system.tick).explain_link(working, 1)
 
 

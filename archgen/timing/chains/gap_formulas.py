@@ -40,6 +40,45 @@ def list_gap_formulas(analysis: Analysis, name: str) -> Iterator[tuple[str, str]
         yield from _write_firing(analysis, activity, [arc.input for arc in arcs], known_gaps)
 
 
+def list_wait_formulas(analysis: Analysis, name: str, wait: Fraction) -> Iterator[tuple[str, str]]:
+    """Yield how long a chain's step waits at an activity: its largest gap, or what its triggers let it wait."""
+    activity, formulas = analysis.system.activities[name], list(list_gap_formulas(analysis, name))
+    if analysis.paces[name].gap.value == wait:
+        yield from ((f"gap {formula}", words) for formula, words in formulas)
+    elif activity.behaviour == "event":
+        # The last formula is that of its own gap; those before are what arrives.
+        has_own = bool(formulas) and formulas[-1][0].endswith(
+            f"= {_write(analysis.paces[name].gap.value or Fraction(0))}"
+        )
+        yield from ((f"gap {formula}", words) for formula, words in (formulas[:-1] if has_own else formulas))
+        yield from _write_thinning(analysis, activity, wait)
+
+
+def _write_thinning(analysis: Analysis, activity: Activity, wait: Fraction) -> Iterator[tuple[str, str]]:
+    """Yield how long `every`, `throttle` and `jitter` let a trigger wait, where that is the whole wait."""
+    arrivals, tick = TriggerArrivals(analysis), analysis.system.tick
+    gap, closest = arrivals.firing_gap(activity).value, arrivals.min_trigger_gap(activity).value or Fraction(0)
+    if gap is None:
+        return
+    count = activity.every if activity.throttle else activity.every - 1
+    parts, value, words = [], gap * count, []
+    if count:
+        parts.append(_write(gap) if count == 1 else f"{count} x {_write(gap)}")
+        words.append(f"up to {count} more trigger{'s' if count > 1 else ''}, {_write(gap)} apart at most")
+    for ticks, word in ((activity.throttle, "throttle"), (activity.jitter, "jitter")):
+        if ticks:
+            value += ticks * tick
+            parts.append(_write(ticks * tick))
+            words.append(f"{word} {parts[-1]}")
+    formula = " + ".join(parts)
+    if activity.throttle and closest:
+        value -= closest
+        formula += f" - {_write(closest)}"
+        words.append(f"what waits came {_write(closest)} after the last firing at least")
+    if value == wait and words:
+        yield f"waits {formula} = {_write(wait)}", "; ".join(words)
+
+
 def _arriving_gap(analysis: Analysis, arc: Arc) -> Fraction | None:
     pace = analysis.outputs.get((arc.source, arc.output))
     if pace is None or pace.gap.value is None or not is_known_bound(pace.gap) or arc.worst is None:

@@ -42,10 +42,10 @@ class WorkingLines:
         if working.core_count > 1:
             yield from self._explain_shared(working, depth)
         else:
+            has_counts = any(term.events.formula != str(term.events.number) for term in working.terms)
+            counts_text = "; of each ceil((t + how much later it may come) / how often)" if has_counts else ""
             yield ReasonLine(
-                depth,
-                f"the least t > 0 in which all of this is done is {self._write(working.window)}; "
-                "of each ceil((t + how much later it may come) / how often):",
+                depth, f"the least t > 0 in which all of this is done is {self._write(working.window)}{counts_text}:"
             )
             yield from self.list_terms(working.terms, depth + 1)
             yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
@@ -142,10 +142,11 @@ class WorkingLines:
         yield from self.list_terms(working.terms, depth + 1)
         yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
         burst = Fraction(working.burst)
+        when = f"{self._write(working.time)} after the first messages" if working.time else "all that comes at once"
         yield ReasonLine(
             depth,
             f"{write_size(burst)} / {speed} = {figure_wording.format_duration(burst / working.bandwidth * 10**9)}"
-            f" for the largest burst alone, which waits {self._write(working.time)} after the first messages:",
+            f" for the largest burst alone, {when}:",
         )
         for term in working.burst_terms:
             sizes = _join_parts([f"{write_size(Fraction(size))} {name}" for name, size in term.parts])
@@ -153,6 +154,8 @@ class WorkingLines:
         if working.time:
             sent = working.bandwidth * working.time * self.tick / 10**9
             yield ReasonLine(depth + 1, f"{self._write(working.time)} x {speed} = {write_size(sent)} are sent by then")
+        if len(working.burst_terms) == 1 and not working.time:
+            return
         totals = " + ".join(write_size(Fraction(term.total)) for term in working.burst_terms)
         sent_text = f" - {write_size(working.bandwidth * working.time * self.tick / 10**9)}" if working.time else ""
         yield ReasonLine(depth + 1, f"{totals}{sent_text} = {write_size(burst)}")
