@@ -79,5 +79,6 @@ def _list_shown_values(analysis: Analysis, chains: Mapping[str, ChainResult]) ->
     """Yield the figures that the summary prints."""
     yield from (result.bound for result in chains.values())
     yield from (load.worst for load in analysis.services.values())
+    yield from (value for link in analysis.links.values() for value in (link.traffic, link.share))
     for name, pace in analysis.paces.items():
         yield from (pace.rate, pace.gap, analysis.responses[name].worst)

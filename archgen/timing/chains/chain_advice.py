@@ -15,7 +15,7 @@ from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE, is_boundless
 from archgen.timing.system.core_placement import is_missing_cores
 
 _NAMED_LOADS = 3
@@ -121,7 +121,7 @@ def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
         needed = join_words([f"{name} ({figure_wording.format_share(share)} of a core)" for share, name in shares])
         return f"Take work off {hosts[0]}, where {needed} need{'s' if len(shares) == 1 else ''} most."
     if result.bound.missing and not result.bound.complete:
-        return _suggest_measuring(analysis, result.bound.missing)
+        return _suggest_measuring(analysis, result)
     places = find_unfound_places(analysis, result.terms)
     if places:
         first_place = places[0]
@@ -140,19 +140,35 @@ _UNFOUND_STEPS: dict[ResponseTier, str] = {
 """What to do where no bound was found, by what was analysed there."""
 
 
-def _suggest_measuring(analysis: Analysis, missing: tuple[str, ...]) -> str:
-    name = missing[0]
-    more = f"; {len(missing) - 1} more figures are missing" if len(missing) > 1 else ""
+def _suggest_measuring(analysis: Analysis, result: ChainResult) -> str:
+    """Suggest to write the first figure that is really missing: responses of neighbours only rest on others."""
+    missing = result.bound.missing
+    for name in missing:
+        step = _suggest_figure(analysis, name)
+        if step:
+            more = f"; {len(missing) - 1} more figures are missing or rest on it" if len(missing) > 1 else ""
+            return f"{step}{more}."
+    values = [value for term in result.terms for value in (term.sampling, term.response)]
+    unlinked_ids = [name for value in values if UNLINKED_NOTE in value.assumptions for name in value.missing]
+    hosts = dict.fromkeys(
+        activity.host for name in unlinked_ids if (activity := analysis.system.activities.get(name)) and activity.host
+    )
+    return f"Write the link that joins {join_words(list(hosts))} (`links:`)." if hosts else ""
+
+
+def _suggest_figure(analysis: Analysis, name: str) -> str:
+    """Suggest to write what is missing of an element; empty where all of it is written."""
     if is_missing_cores(name):
-        return f"Write how many {name} there are (`cores:`){more}."
+        return f"Write how many {name} there are (`cores:`)"
     if " - " in name:
-        return f"Write the link between {' and '.join(name.split(' - '))} (`links:`){more}."
+        return f"Write the link that joins {' and '.join(name.split(' - '))} (`links:`)"
     activity = analysis.system.activities.get(name)
     if activity is None:
-        return f"Measure the latency of {name} and write it (`latency:`){more}."
+        return f"Measure the latency of {name} and write it (`latency:`)" if name in analysis.links else ""
     if activity.wcet is None and activity.response is None:
-        return f"Measure the execution time of {name} and write it (`wcet:`){more}."
-    return f"Measure how often {name} works and write it (`rate:`){more}."
+        return f"Measure the execution time of {name} and write it (`wcet:`)"
+    is_unpaced = activity.period is None and activity.behaviour not in {"event", "on_demand", "once"}
+    return f"Measure how often {name} works and write it (`rate:`)" if is_unpaced else ""
 
 
 def _suggest_for_part(analysis: Analysis, part: _ChainPart) -> str:
