@@ -204,12 +204,14 @@ def _suggest_for_response(analysis: Analysis, name: str) -> str:
         return f"Shorten {name} (`wcet:`, {_write(own_work)}), measured if it is a guess: its own work is most of it."
     if response.tier == "executor":
         return f"Give {name} a thread of its own: a container of its own, or more `threads:`."
+    has_one_core = analysis.system.cores.get(activity.host or "") == 1
+    other_way = (
+        f"move work off {activity.host} (`host:`)" if has_one_core else "pin it to a core with less on it (`core:`)"
+    )
     if activity.priority is not None:
-        return f"Give {name} a higher priority (`priority:`, now {activity.priority}), or a core with less on it (`core:`)."
-    if len(activity.cores) == 1:
-        return (
-            f"Give {name} a priority above the others on its core (`priority:`), or a core with less on it (`core:`)."
-        )
+        return f"Give {name} a higher priority (`priority:`, now {activity.priority}), or {other_way}."
+    if has_one_core or activity.cores:
+        return f"Give {name} a priority above the others there (`priority:`), or {other_way}."
     return f"Pin {name} to a core with little else on it (`core:`), or give it a priority (`priority:`)."
 
 

@@ -84,14 +84,10 @@ def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> It
 def explain_verdict_words(timing_lookup: TimingLookup) -> Iterator[Block]:
     """Explain the verdicts that chains have."""
     verdicts = {result.verdict for result in timing_lookup.chains if result.deadline}
-    phrases = [f"{word}: {meaning}" for word, meaning in VERDICT_MEANINGS.items() if word in verdicts]
+    phrases = [f"{word.capitalize()}: {meaning}." for word, meaning in VERDICT_MEANINGS.items() if word in verdicts]
     if phrases:
-        sentence = (
-            "A bound is what the time from a change in the world to the reaction is never above. "
-            "What the verdicts on chains mean. "
-        )
-        words = "; ".join(phrases)
-        yield Paragraph(inline_text.to_inlines(f"{sentence}{words[:1].upper()}{words[1:]}."))
+        bound_sentence = "A bound is what the time from a change in the world to the reaction is never above."
+        yield Paragraph(inline_text.to_inlines(" ".join((bound_sentence, *phrases))))
 
 
 def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:
