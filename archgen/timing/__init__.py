@@ -11,11 +11,13 @@ Read the folders in this order; each one imports only from those before it and f
   `inner_triggers`, `level_cascades`, `run_ways` and `cascade_demand` (what an event leads to on its core), `inner_core` and
   `core_responses` (one core), `shared_cores`, `core_paths`, `path_work` and `shared_core_responses` (several); then
   `event_models` (what is activated, arrives and leaves), `event_propagation` (all resources, to a fixed point),
-  `link_queueing` (links as well); last `host_loads`.
+  `link_queueing` (links as well); `host_loads`; last, for whoever asks why, how each figure comes about: `work_terms`,
+  `core_workings`, `shared_core_workings`, `response_workings`.
 - `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
-  `triggered_rates`, `output_rates`; then `link_traffic`, `edge_fit`, `service_waiting`.
+  `triggered_rates`, `output_rates`; then `link_traffic`, `link_workings`, `edge_fit`, `service_waiting`.
 - `chains`: end to end. `trigger_arrivals` and `step_delays` (what a step adds), `cost_network` and `path_search` (which
-  path is worst), `chain_bounds` (the result); then what is asked about it: reasons, sensitivity, measurements.
+  path is worst), `chain_bounds` (the result); then what is asked about it: reasons (`figure_explanations`, `gap_formulas`, `working_lines`), `chain_advice`, sensitivity,
+  measurements.
 
 `analysis` holds the results of one run, `run_analysis` makes them. docs/timing.md has the formulas and their sources.
 """

@@ -85,6 +85,7 @@ class SharedCoreWorkings:
             arrival_times = earliest_arrivals(self.solver.find_activation_streams(path.last_step))
             arrival, count, window = next(arrival_times, 0), 0, max(path.cost, 1)
             while True:
+                spend(1)
                 count += 1
                 next_arrival = next(arrival_times, None)
                 if next_arrival == arrival:

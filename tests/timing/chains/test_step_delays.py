@@ -373,7 +373,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "wan: queueing of 10 ms at most; bursts of up to 1 kB @0:0",
         "  the least t > 0 in which all is sent that comes in t, at 100 kB/s, is 10 ms: @0:0",
         "    1 x 10 ms /g/c/out[1 kB] = 10 ms, since ceil((10 ms + 5 ms) / 40 ms) = 1 @0:0",
-        "  1 kB / 100 kB/s = 10 ms for the largest burst alone, which waits 0 ms after the first messages: @0:0",
+        "  1 kB / 100 kB/s = 10 ms for the largest burst alone, all that comes at once: @0:0",
         "    1 x 1 kB /g/c/out = 1 kB @0:0",
     ]
     assert explain(analysis, model, "lan") == [
@@ -383,7 +383,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "lan: queueing of 1 ms at most; bursts of up to 1 kB @0:0",
         "  the least t > 0 in which all is sent that comes in t, at 1 MB/s, is 1 ms: @0:0",
         "    1 x 1 ms /g/b/out[1 kB] = 1 ms, since ceil((1 ms + 1 ms) / 20 ms) = 1 @0:0",
-        "  1 kB / 1 MB/s = 1 ms for the largest burst alone, which waits 0 ms after the first messages: @0:0",
+        "  1 kB / 1 MB/s = 1 ms for the largest burst alone, all that comes at once: @0:0",
         "    1 x 1 kB /g/b/out = 1 kB @0:0",
     ]
     assert explain(analysis, model, "s") == [
