@@ -7,7 +7,12 @@ from fractions import Fraction
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, EventPace, HostLoad, Reason
-from archgen.timing.chains.gap_formulas import list_gap_formulas, list_wait_formulas, multiply_rate
+from archgen.timing.chains.gap_formulas import (
+    list_gap_formulas,
+    list_lateness_formulas,
+    list_wait_formulas,
+    multiply_rate,
+)
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
@@ -203,6 +208,8 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
         yield from _working_lines(analysis, name, depth + 1)
+        for formula, words in list_lateness_formulas(analysis, name):
+            yield ReasonLine(depth + 1, f"late {formula}: {words}")
 
 
 def _working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:

@@ -8,8 +8,9 @@ from fractions import Fraction
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.load.event_models import PropagationState, arriving_model, entering_model
 from archgen.timing.system.timing_system import Activity, Arc
 
 
@@ -38,6 +39,39 @@ def list_gap_formulas(analysis: Analysis, name: str) -> Iterator[tuple[str, str]
     known_gaps = [gap for gap in gaps if gap is not None]
     if len(known_gaps) == len(gaps) and known_gaps and activity.period is None:
         yield from _write_firing(analysis, activity, [arc.input for arc in arcs], known_gaps)
+
+
+def list_lateness_formulas(analysis: Analysis, name: str) -> Iterator[tuple[str, str]]:
+    """Yield how much later than regularly what fires an activity may come: the jitter that its windows count with."""
+    state, arrivals = analysis.state, TriggerArrivals(analysis)
+    for arc in analysis.system.arcs_into.get(name, ()) if state else ():
+        model = arriving_model(state, arc) if state and arrivals.fires_reader(arc) else ()
+        if state and not isinstance(model, UnknownCause) and len(model) == 1 and model[0].jitter:
+            formula = _write_lateness(analysis, state, arc, model[0].jitter)
+            if formula:
+                yield formula, f"so much later than regularly events from {arc.source} may come"
+
+
+def _write_lateness(analysis: Analysis, state: PropagationState, arc: Arc, jitter: int) -> str:
+    """Return what makes a message late: the jitter of its event, the time until it is sent, the link."""
+    source, tick = analysis.system.activities[arc.source], analysis.system.tick
+    response, origin = state.responses[arc.source].value, state.event_models[arc.source]
+    shortest = 0 if arc.role == "request" else source.bcet or 0
+    ways = state.ways_to.get(arc.source, ()) if source.response is None else ()
+    if len(ways) == 1 and len(ways[0].steps) > 1:
+        response, origin = ways[0].delay, entering_model(state, ways[0])
+        shortest += ways[0].best_before
+    if response is None or isinstance(origin, UnknownCause) or len(origin) != 1 or arc.worst is None:
+        return ""
+    spans = ((origin[0].jitter, 0), (response, min(shortest, response)), (arc.worst, arc.best or 0))
+    if sum(longest - least for longest, least in spans) != jitter:
+        return ""
+    parts = [
+        _write(longest * tick) if not least else f"({_write(longest * tick)} - {_write(least * tick)})"
+        for longest, least in spans
+        if longest != least
+    ]
+    return f"{' + '.join(parts)} = {_write(jitter * tick)}"
 
 
 def list_wait_formulas(analysis: Analysis, name: str, wait: Fraction) -> Iterator[tuple[str, str]]:
