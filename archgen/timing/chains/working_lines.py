@@ -76,10 +76,7 @@ class WorkingLines:
     def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
         """Yield what all cores may be busy with: what comes, thread by thread, and what is pending from before."""
         yield from self.list_terms(working.beside_terms, depth)
-        parts = [
-            f"{number} x {self._write(part)}" if number > 1 else self._write(part)
-            for (_, part), number in _group_shares(working.shares)
-        ]
+        parts = [f"{self._write(share.counted)} {'/'.join(share.unit)}" for share in working.shares]
         parts += [f"{self._write(working.pending)} pending"] if working.pending else []
         yield ReasonLine(
             depth,
@@ -168,11 +165,3 @@ def _join_parts(parts: Iterable[str]) -> str:
         numbers[part] = numbers.get(part, 0) + 1
     products = [part if number == 1 else f"{number} x {part}" for part, number in numbers.items()]
     return products[0] if len(products) == 1 else f"({' + '.join(products)})"
-
-
-def _group_shares(shares: Iterable[ThreadShare]) -> list[tuple[tuple[int, int], int]]:
-    """Return how many threads have the same to do."""
-    numbers: dict[tuple[int, int], int] = {}
-    for share in shares:
-        numbers[share.work, share.counted] = numbers.get((share.work, share.counted), 0) + 1
-    return list(numbers.items())

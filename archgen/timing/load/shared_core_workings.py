@@ -111,7 +111,7 @@ class SharedCoreWorkings:
         work = self.solver.work
         arrivals = {origin: max_arrivals(model, window) for origin, model in work.streams.items()}
         blocked_time = work.find_time_blocked(path, window, arrivals)
-        shares, pending = self._share_cores(path, window, arrivals, blocked_time)
+        shares, pending, is_pending_inside = self._share_cores(path, window, arrivals, blocked_time)
         return FigureWorking(
             max(window - arrival, 0),
             window,
@@ -121,7 +121,7 @@ class SharedCoreWorkings:
             steps=steps if len(steps) > 1 else (),
             core_count=self.solver.cores.core_count,
             blocked_time=blocked_time,
-            beside_terms=group_terms(self._list_beside_terms(path, window)),
+            beside_terms=group_terms(self._list_beside_terms(path, window, with_pending=is_pending_inside)),
             shares=shares,
             pending=pending,
         )
@@ -144,9 +144,12 @@ class SharedCoreWorkings:
                 reason = f"others in the container: ({formula}) / {threads}, as {threads} threads work side by side"
                 yield WorkTerm(((names, -(-total // threads)),), EventCount(1, "1"), reason)
 
-    def _list_beside_terms(self, path: CorePath, window: int) -> Iterator[WorkTerm]:
+    def _list_beside_terms(self, path: CorePath, window: int, *, with_pending: bool) -> Iterator[WorkTerm]:
+        work, jobs = self.solver.work, self.solver.cores.jobs
         for lane in path.other_lanes:
-            yield from (self._count_job(number, window, 0) for number in lane)
+            for number in lane:
+                delay = work.delays.get(jobs[number].key, 0) if with_pending else 0
+                yield self._count_job(number, window, delay)
 
     def _count_job(self, number: int, window: int, delay: int) -> WorkTerm:
         """Count what comes of a job in a window, and may be pending for so long before it."""
@@ -165,8 +168,10 @@ class SharedCoreWorkings:
 
     def _share_cores(
         self, path: CorePath, window: int, arrivals: dict[Origin, int], blocked_time: int
-    ) -> tuple[tuple[ThreadShare, ...], int]:
-        """Return what the threads beside a path do, and the pending work that is counted with it."""
+    ) -> tuple[tuple[ThreadShare, ...], int, bool]:
+        """Return what the threads beside a path do, the pending work that is counted with it, and whether all pending
+        work is counted in the threads instead.
+        """
         work, cores = self.solver.work, self.solver.cores
         units = [cores.jobs[lane[0]].unit for lane in path.other_lanes]
         lane_works = [
@@ -198,8 +203,9 @@ class SharedCoreWorkings:
             counted = [Fraction(each) if limit is None else min(Fraction(each), limit) for each in works]
             if -(-(sum(counted) + pending) // cores.core_count) == blocked_time:
                 shares = zip(units, works, counted, strict=True)
-                return tuple(ThreadShare(unit, whole, -(-part // 1)) for unit, whole, part in shares if whole), pending
-        return (), 0
+                thread_shares = tuple(ThreadShare(unit, whole, -(-part // 1)) for unit, whole, part in shares if whole)
+                return thread_shares, pending, works is all_works
+        return (), 0, False
 
 
 def _cut_time(works: list[int], pending: int, core_count: int) -> tuple[Fraction, int]:
