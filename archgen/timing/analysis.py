@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field, replace
 from fractions import Fraction
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour
 from archgen.timing.figures.figure_wording import describe_value, format_duration
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import is_known_bound
 from archgen.timing.system.timing_system import Arc, TimingSystem
+
+if TYPE_CHECKING:
+    from archgen.timing.load.event_models import PropagationState
 
 ResponseTier = Literal[
     "declared",
@@ -210,6 +214,8 @@ class Analysis:
     storing_waits: Mapping[str, TimingValue] = field(default_factory=dict)
     """How long a message may wait to be stored while its reader is activated, by reader, in ns."""
     notes: tuple[Reason, ...] = ()
+    # Kept for whoever asks why: the terms of a figure are read off the very state that it was found in.
+    state: PropagationState | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,3 +243,11 @@ class ChainResult:
     reduced_age: TimingValue
     deadline: TimingValue | None
     verdict: ChainVerdict
+
+    @property
+    def spread(self) -> Fraction | None:
+        """Return by how much its end may jitter, from the best case to the bound, in ns; None where one is not known."""
+        if self.bound.value is None or self.best.value is None:
+            return None
+        is_known = is_known_bound(self.bound) and is_known_bound(self.best, "at least")
+        return self.bound.value - self.best.value if is_known else None

@@ -106,4 +106,5 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         services=find_service_loads(state, rates.paces, responses),
         storing_waits=build_storing_waits(state),
         notes=notes,
+        state=state,
     )

@@ -14,7 +14,7 @@ from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
-from archgen.timing.chains.figure_explanations import ReasonLine
+from archgen.timing.chains.working_lines import ReasonLine
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 

@@ -6,15 +6,14 @@ from collections.abc import Iterator, Mapping
 
 from archgen.diagnostics.text_columns import TextRow
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
 
-_CHAIN_VERDICTS = {
-    "met": "the bound is not above the deadline",
-    "missed": "it can happen: the best case is above the deadline, or there is no bound at all",
-    "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
-    "open": "figures are missing",
+_CHAIN_FIGURES = {
+    "reaction time": "from a change in the world until the last element has acted on it: what a deadline is about",
+    "data age": "how old what the last element sends may be, until its next output replaces it",
+    "bound": "what a figure is never above, whatever happens at the same time (`best case`: never below)",
 }
 _HOST_VERDICTS = {
     "schedulable": "each response is within the period, or the load is so low that it would be with priorities by rate",
@@ -57,7 +56,9 @@ _FIGURES = {
 def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: str) -> Iterator[TextRow]:
     """Yield the words that the summary of an analysis uses, each with what it means."""
     verdicts = {result.verdict for result in chains.values() if result.deadline}
-    yield from ((VERDICT_WORDS[word], text) for word, text in _CHAIN_VERDICTS.items() if word in verdicts)
+    yield from ((VERDICT_WORDS[word], text) for word, text in VERDICT_MEANINGS.items() if word in verdicts)
+    if chains:
+        yield from _CHAIN_FIGURES.items()
     # Signs are no part of any id: where one stands in the text, it is a sign.
     yield from ((sign, text) for sign, text in _SIGNS.items() if sign in summary)
     host_verdicts = {load.verdict for load in analysis.hosts.values()}
@@ -66,6 +67,12 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
     yield from ((word, text) for word, text in _HOST_VERDICTS.items() if word in host_verdicts)
     behaviours = {pace.behaviour for pace in analysis.paces.values()}
     yield from ((word, text) for word, text in _BEHAVIOURS.items() if word in behaviours)
+    if analysis.hosts:
+        yield "load", "rate times execution time, added up: 100 % is one core all the time"
+    if any("jitter" in line for line in summary.splitlines()):
+        yield "jitter", "how much later than its clock says an element may start"
+    if analysis.services:
+        yield "caller", "an element that calls the service; the time holds for one call of each"
     if analysis.paces:
         yield "gap", "the largest time between two activations"
         yield "response", "the longest time from an activation to its end, with all that gets in its way"
@@ -77,5 +84,6 @@ def _list_shown_values(analysis: Analysis, chains: Mapping[str, ChainResult]) ->
     """Yield the figures that the summary prints."""
     yield from (result.bound for result in chains.values())
     yield from (load.worst for load in analysis.services.values())
+    yield from (value for link in analysis.links.values() for value in (link.traffic, link.share))
     for name, pace in analysis.paces.items():
         yield from (pace.rate, pace.gap, analysis.responses[name].worst)

@@ -9,6 +9,7 @@ from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.terminal import timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
+from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
@@ -16,6 +17,7 @@ from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
+from archgen.timing.load.host_verdicts import is_done_in_time
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -25,6 +27,7 @@ def format_timing(
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
         ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
+        ("What is late or not proven to be in time, why, and what to do", _advice_rows(analysis, chains.values())),
         ("Hosts", _host_rows(analysis)),
         ("Links", _link_rows(analysis)),
         ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
@@ -58,10 +61,22 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[T
         )
 
 
+def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+    """Yield three sentences on each chain that does not surely meet its deadline, misses first."""
+    for verdict in ("missed", "not proven", "open"):
+        for result in chains:
+            advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
+            if advice is not None:
+                yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
+
+
 def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.hosts.items():
         cores = "? cores" if load.cores is None else f"{load.cores} core{'s' if load.cores != 1 else ''}"
         load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
+        share = load.share_of_cores
+        if load.cores is not None and load.cores > 1 and share is not None and share.value is not None:
+            load_text += f" ({figure_wording.format_share(share.value)} of all)"
         missing_text = format_missing(load.utilisation)
         if load.cores is None:
             missing_text = f"how many cores it has is not written{f'; {missing_text}' if missing_text else ''}"
@@ -70,7 +85,10 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
             cores,
             load_text,
             load.verdict,
-            missing_text or _count_unfound(analysis, load) or _format_bounds(load),
+            missing_text
+            or _count_unfound(analysis, load)
+            or _describe_undecided(analysis, load)
+            or _format_bounds(load),
         )
 
 
@@ -79,6 +97,23 @@ def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
     names = [name for name, _ in load.activity_shares]
     unfound_ids = [name for name in names if is_unfound(analysis.responses[name].worst)]
     return f"no bound found for {len(unfound_ids)} of {len(names)} elements" if unfound_ids else ""
+
+
+def _describe_undecided(analysis: Analysis, load: HostLoad) -> str:
+    """Say of an undecided host which of its elements may be activated again before they are done, and what helps."""
+    if load.verdict != "undecided":
+        return ""
+    names = tuple(
+        name
+        for name, _ in load.activity_shares
+        if not is_done_in_time(analysis.system, name, analysis.paces[name], analysis.responses[name])
+    )
+    return (
+        f"may not be done before they are due again: {figure_wording.join_first_names(names)}; shorten them, pin them "
+        "(`core:`), or give them a priority"
+        if names
+        else ""
+    )
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -162,31 +197,53 @@ def format_chain(
         yield from align_rows(_term_rows(result.terms), width)
         yield ""
     rows: list[TextRow] = [
-        ("largest reaction time = largest data age", format_figure(result.bound), describe_gaps(result, analysis))
+        (
+            "largest reaction time = largest data age",
+            format_figure(result.bound),
+            describe_gaps(result, analysis) or "hold it against the deadline",
+        )
     ]
     if age != result.bound:
         rows = [
-            ("largest reaction time, from the event on", format_figure(result.bound), describe_gaps(result, analysis))
+            (
+                "largest reaction time, from the event on",
+                format_figure(result.bound),
+                describe_gaps(result, analysis) or "hold it against the deadline",
+            ),
+            ("largest data age, until the next event's comes", format_figure(age), format_missing(age)),
         ]
-        rows.append(("largest data age, until the next event's comes", format_figure(age), format_missing(age)))
     rows += [
-        ("reduced reaction time (from the first sample on)", format_figure(result.reduced_reaction)),
-        ("reduced data age (when the last element sends)", format_figure(result.reduced_age)),
-        ("best case", format_figure(result.best)),
+        (
+            "reduced reaction time (from the first sample on)",
+            format_figure(result.reduced_reaction),
+            "hold it against a stopwatch, or a trace that begins with the sample",
+        ),
+        (
+            "reduced data age (when the last element sends)",
+            format_figure(result.reduced_age),
+            "hold it against the age of the stamps in what the last element sends",
+        ),
+        ("best case", format_figure(result.best), "the shortest time that a trace may show"),
     ]
+    if result.spread is not None:
+        spread = figure_wording.format_duration(result.spread)
+        rows.append(("best to worst", spread, "how much the end of the chain may jitter (actuation jitter)"))
     if published:
         rows.append(
             (
                 "with priorities and implicit communication (Duerr): reaction",
                 figure_wording.format_duration(published[0]),
+                "",
             )
         )
-        rows.append(("    reduced data age", figure_wording.format_duration(published[1])))
+        rows.append(("    reduced data age", figure_wording.format_duration(published[1]), ""))
     if result.deadline:
         rows.append(("deadline", format_figure(result.deadline), VERDICT_WORDS[result.verdict]))
     yield from align_rows(rows, width)
-    if result.terms:
-        yield "  Hold the first of these against a deadline, the reduced reaction time against a trace that begins with the sample."
+    advice = advise_on_chain(analysis, result)
+    if advice is not None:
+        yield ""
+        yield from (f"  {sentence}" for sentence in advice if sentence)
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

@@ -15,6 +15,12 @@ VERDICT_WORDS: Mapping[ChainVerdict, str] = {
     "open": "open",
 }
 """What a terminal calls the verdicts: what can go wrong for certain stands out."""
+VERDICT_MEANINGS: Mapping[ChainVerdict, str] = {
+    "met": "the bound is not above the deadline",
+    "missed": "it can happen: the best case is above the deadline, or there is no bound at all",
+    "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
+    "open": "figures are missing",
+}
 
 
 def judge_deadline(bound: TimingValue, best: TimingValue, deadline: TimingValue | None) -> ChainVerdict:

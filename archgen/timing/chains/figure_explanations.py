@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.timing.analysis import Analysis, ChainResult, EventPace, HostLoad, Reason
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, EventPace, HostLoad, Reason
+from archgen.timing.chains.gap_formulas import (
+    list_gap_formulas,
+    list_lateness_formulas,
+    list_wait_formulas,
+    multiply_rate,
+)
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
+from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
-from archgen.timing.system.timing_system import Activity
+from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
+from archgen.timing.load.response_workings import ResponseWorkings
+from archgen.timing.rates.link_workings import work_out_link
+from archgen.timing.system.timing_system import Activity, Arc
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
     "duration": figure_wording.format_duration,
@@ -22,14 +30,6 @@ _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
     "size": figure_wording.format_size,
     "traffic": lambda count: f"{figure_wording.format_size(count)}/s",
 }
-
-
-class ReasonLine(NamedTuple):
-    """One step of the reasoning; deeper lines support the one above them."""
-
-    depth: int
-    text: str
-    at: Span = NO_SPAN
 
 
 def explain_activity(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -48,22 +48,47 @@ def explain_activity(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
         stack += ((source, depth + 1) for source in _triggering_activities(analysis, current))
 
 
-def explain_chain(result: ChainResult) -> Iterator[ReasonLine]:
-    """Explain a chain's bound: its terms in order."""
+def explain_chain(result: ChainResult, analysis: Analysis) -> Iterator[ReasonLine]:
+    """Explain a chain's bound: its terms in order, and their sum."""
     yield ReasonLine(
         0,
         f"{result.id}: {_format_figure(result.bound)}, the sum of all that follows: what each step waits and takes, and links",
     )
+    parts: list[Fraction] = []
+    run_names: list[str] = []
     for term in result.terms:
         if term.link.value != 0:
             yield ReasonLine(1, f"link to {term.activity}: {_format_figure(term.link)}")
         yield ReasonLine(1, f"{term.activity} waits {_format_figure(term.sampling)}: {term.why}", term.at)
+        wait = term.sampling.value
+        for formula, words in list_wait_formulas(analysis, term.activity, wait) if wait else ():
+            yield ReasonLine(2, f"{formula}: {words}")
         takes_text = f"takes {_format_figure(term.response)} at most"
         if term.response.value is None:
             takes_text = f"takes a time that is not bounded: {_format_figure(term.response)}"
-        yield ReasonLine(1, f"{term.activity} {takes_text}")
+        yield ReasonLine(1, f"{term.activity} {takes_text}{_describe_run(analysis, term, run_names)}")
+        run_names.append(term.activity)
+        parts += [value.value for value in (term.link, term.sampling, term.response) if value.value]
+    if result.bound.value is not None and sum(parts) == result.bound.value and len(parts) > 1:
+        total = " + ".join(figure_wording.format_duration(part) for part in parts)
+        yield ReasonLine(1, f"{total} = {figure_wording.format_duration(result.bound.value)}")
+    if any(term.response.value for term in result.terms):
+        yield ReasonLine(1, "why an element takes so long: --why ELEMENT")
     for assumption in list_assumptions(result.bound):
         yield ReasonLine(1, f"assumes: {assumption}")
+
+
+def _describe_run(analysis: Analysis, term: ChainTerm, names_before: Sequence[str]) -> str:
+    """Say of which run the time of a step is the rest; empty where it is the step's own response."""
+    run, own = analysis.runs.get(term.activity), analysis.responses[term.activity].worst
+    if run is None or run.worst.value is None or term.response.value is None or term.response.value == own.value:
+        return ""
+    before = analysis.runs.get(names_before[-1]) if names_before else None
+    start = before.worst if before else analysis.responses[names_before[-1]].worst if names_before else None
+    if start is None or start.value is None or run.worst.value - start.value != term.response.value:
+        return ""
+    whole, counted, rest = map(figure_wording.format_duration, (run.worst.value, start.value, term.response.value))
+    return f": with what fires it on its core {whole}, of which {counted} are counted already: {whole} - {counted} = {rest}"
 
 
 def explain_topic(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -80,6 +105,10 @@ def explain_topic(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
                 1,
                 f"{writer[0]} publishes at {_format_figure(pace.rate, 'rate')}, largest gap {_format_figure(pace.gap)}",
             )
+            if pace.rate.value and load.size.value is not None:
+                product = figure_wording.format_size(pace.rate.value * load.size.value)
+                size = figure_wording.format_size(load.size.value)
+                yield ReasonLine(2, f"{multiply_rate(pace.rate, size, product)}/s")
             yield from _reason_lines(pace.reasons, 2)
             yield from _reason_lines(analysis.paces[writer[0]].reasons, 2)
 
@@ -91,11 +120,25 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
         0, f"{name}: load {_format_figure(load.utilisation, 'share')} of {_count_cores(load)}: {load.verdict}"
     )
     for activity, part in load.activity_shares:
-        yield ReasonLine(1, f"{activity} adds {_format_figure(part, 'share')}", _span_of_activity(analysis, activity))
+        wcet = analysis.system.activities[activity].wcet
+        product = _format_figure(part, "share")
+        if part.value and wcet:
+            time = figure_wording.format_duration(wcet * analysis.system.tick)
+            product = multiply_rate(analysis.paces[activity].rate, time, figure_wording.format_share(part.value))
+            product = f"{'at most ' if part.side == 'at most' else ''}{product}"
+        yield ReasonLine(1, f"{activity} adds {product}", _span_of_activity(analysis, activity))
+    share_of_cores = load.share_of_cores
+    if load.cores is not None and load.cores > 1 and load.utilisation.value is not None and share_of_cores is not None:
+        total = figure_wording.format_share(load.utilisation.value)
+        yield ReasonLine(1, f"{total} / {load.cores} cores = {_format_figure(share_of_cores, 'share')} of all cores")
+    for core, count, core_load in load.core_loads if len(load.core_loads) > 1 else ():
+        yield ReasonLine(1, f"{core}: {_format_figure(core_load, 'share')} of {count} core{'s' if count != 1 else ''}")
 
 
 def _count_cores(load: HostLoad) -> str:
-    return "a core, and nobody wrote how many there are" if load.cores is None else f"{load.cores} cores"
+    if load.cores is None:
+        return "a core, and nobody wrote how many there are"
+    return f"{load.cores} core{'s' if load.cores != 1 else ''}"
 
 
 def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -104,11 +147,47 @@ def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
     yield ReasonLine(
         0, f"{name}: {_format_figure(load.traffic, 'traffic')}, {_format_figure(load.share, 'share')} of the bandwidth"
     )
-    yield ReasonLine(
-        1, f"queueing of {_format_figure(load.queueing)} at most for a burst of {_format_figure(load.burst, 'size')}"
-    )
+    bandwidth = analysis.system.bandwidths[name]
+    if load.traffic.value is not None and bandwidth and load.share.value is not None:
+        traffic, speed = (f"{figure_wording.format_size(each)}/s" for each in (load.traffic.value, bandwidth))
+        yield ReasonLine(1, f"{traffic} / {speed} = {_format_figure(load.share, 'share')}")
     for part, value in load.topic_traffic:
-        yield ReasonLine(1, f"{part} adds {_format_figure(value, 'traffic')}")
+        yield ReasonLine(1, f"{part} adds {_write_traffic(analysis, name, part, value)}")
+    yield ReasonLine(
+        0,
+        f"{name}: queueing of {_format_figure(load.queueing)} at most; bursts of up to {_format_figure(load.burst, 'size')}",
+    )
+    working = work_out_link(analysis.state, name, load.queueing, load.burst) if analysis.state else None
+    if working is not None and working.terms:
+        yield from WorkingLines(analysis.system.tick).explain_link(working, 1)
+
+
+def _write_traffic(analysis: Analysis, link: str, topic: str, traffic: TimingValue) -> str:
+    """Write what a topic adds to a link as a sum of rates times sizes, or as it is where these are not known."""
+    total = _format_figure(traffic, "traffic")
+    arcs = [arc for arc in analysis.system.arcs if arc.link == link and arc.topic == topic]
+    parts: list[str] = []
+    known_sum = Fraction(0)
+    for arc in arcs:
+        rate = _sending_rate(analysis, arc)
+        if rate.value is None or arc.size is None:
+            return total
+        known_sum += rate.value * arc.size
+        parts.append(f"{figure_wording.format_rate(rate.value)} x {figure_wording.format_size(Fraction(arc.size))}")
+    if not traffic.value or known_sum != traffic.value:
+        return total
+    numbers = {part: parts.count(part) for part in parts}
+    formula = " + ".join(part if number == 1 else f"{number} x {part}" for part, number in numbers.items())
+    return f"{'at most ' if traffic.side == 'at most' else ''}{formula} = {figure_wording.format_size(traffic.value)}/s"
+
+
+def _sending_rate(analysis: Analysis, arc: Arc) -> TimingValue:
+    """Return how often something is sent along an arc: an answer as often as its client asks."""
+    if arc.role == "data":
+        return analysis.outputs[arc.source, arc.output].rate
+    client, key = (arc.source, arc.output) if arc.role == "request" else (arc.target, arc.input)
+    calls = analysis.system.activities[client].calls.get(key, Fraction(1))
+    return multiply_value(analysis.paces[client].rate, calls)
 
 
 def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: bool = False) -> Iterator[ReasonLine]:
@@ -118,6 +197,8 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
     text = f"{name}: {behaviour_text}, rate {_format_figure(pace.rate, 'rate')}, largest gap {_format_figure(pace.gap)}"
     yield ReasonLine(depth, text, _span_of_activity(analysis, name))
     yield from _reason_lines(pace.reasons, depth + 1)
+    for formula, words in list_gap_formulas(analysis, name):
+        yield ReasonLine(depth + 1, f"gap {formula}: {words}")
     if not rate_only:
         response_text = (
             f"response between {_format_figure(response.best)} and {_format_figure(response.worst)} ({response.tier})"
@@ -126,6 +207,33 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
         )
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
+        yield from _working_lines(analysis, name, depth + 1)
+        for formula, words in list_lateness_formulas(analysis, name):
+            yield ReasonLine(depth + 1, f"late {formula}: {words}")
+
+
+def _working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:
+    """Explain what a response is made of, and the time of the longest run that ends with the activity."""
+    if analysis.state is None:
+        return
+    workings, lines = ResponseWorkings(analysis.state), WorkingLines(analysis.system.tick)
+    working = workings.find_response(name)
+    if working is not None:
+        yield from lines.explain_response(working, depth)
+    run = workings.find_run(name)
+    if run is not None:
+        way, run_working = run
+        time = figure_wording.format_duration((way.delay or 0) * analysis.system.tick)
+        yield ReasonLine(
+            depth - 1,
+            f"{name}: at most {time} from the event on that enters the core, for the run {' > '.join(way.steps)}",
+        )
+        if run_working.window != (working.window if working else None) or run_working.terms != (
+            working.terms if working else ()
+        ):
+            yield from lines.explain_response(run_working, depth)
+        else:
+            yield ReasonLine(depth, "the same work as above, and nothing is taken off")
 
 
 def _describe_unfound_response(analysis: Analysis, name: str) -> str:
@@ -175,7 +283,7 @@ def _format_figure(value: TimingValue, kind: str = "duration") -> str:
 def explain_word(analysis: Analysis, chains: Mapping[str, ChainResult], word: str) -> tuple[ReasonLine, ...]:
     """Explain what a complete id names: a chain, host, link, topic or activity; nothing for any other word."""
     if word in chains:
-        return tuple(explain_chain(chains[word]))
+        return tuple(explain_chain(chains[word], analysis))
     for kind, explain_element in (
         (analysis.hosts, explain_host),
         (analysis.links, explain_link),

@@ -76,7 +76,7 @@ class TriggerArrivals:
         """
         if activity.behaviour != "event" or (activity.every == 1 and not activity.throttle):
             return self.duration_value(activity.jitter) if activity.behaviour == "event" else ZERO_VALUE
-        gap = self._firing_gap(activity)
+        gap = self.firing_gap(activity)
         if not activity.throttle:
             return sum_bounds((multiply_value(gap, activity.every - 1), self.duration_value(activity.jitter)))
         wait_terms = (
@@ -84,13 +84,13 @@ class TriggerArrivals:
             self.duration_value(activity.throttle),
             self.duration_value(activity.jitter),
         )
-        return _subtract_value(sum_bounds(wait_terms), self._min_trigger_gap(activity))
+        return _subtract_value(sum_bounds(wait_terms), self.min_trigger_gap(activity))
 
     def duration_value(self, ticks: int) -> TimingValue:
         """Return a duration of the system (ticks) in ns."""
         return TimingValue(ticks * self.analysis.system.tick) if ticks else ZERO_VALUE
 
-    def _firing_gap(self, activity: Activity) -> TimingValue:
+    def firing_gap(self, activity: Activity) -> TimingValue:
         """Return the largest gap between two occasions to fire."""
         gaps = self._trigger_gaps(activity).values()
         merged = _largest_known(gaps) if activity.mode == "all" else _smallest_known(gaps)
@@ -142,7 +142,7 @@ class TriggerArrivals:
         unhosted = tuple(name for name in (arc.source, arc.target) if activities[name].host is None)
         return unhosted or (f"{activities[arc.source].host} - {activities[arc.target].host}",)
 
-    def _min_trigger_gap(self, activity: Activity) -> TimingValue:
+    def min_trigger_gap(self, activity: Activity) -> TimingValue:
         """Return the smallest gap between two triggers: known for a single stream only, else 0 (the safe side)."""
         arcs = [arc for arc in self.analysis.system.arcs_into.get(activity.id, ()) if self.fires_reader(arc)]
         if len(arcs) != 1 or arcs[0].worst is None:

@@ -161,27 +161,46 @@ def longest_busy_period(demand: DemandFunction, budget: SearchBudget, lower_boun
     return _find_fixed_point(0, demand, budget.start_search(), start=lower_bound)
 
 
+class WorstActivation(NamedTuple):
+    """The activation of a busy period that takes longest: the `ordinal`-th, which comes and ends so long after the start."""
+
+    ordinal: int
+    arrival: int
+    finish: int
+
+
 def worst_response(work: ActivityWork, interference: DemandFunction, budget: SearchBudget, busy_period: int = 0) -> int:
-    """Return the worst response over all activations of the busy period.
+    """Return the worst response over all activations of the busy period."""
+    _, arrival, finish = find_worst_activation(work, interference, budget, busy_period)
+    return finish - arrival
+
+
+def find_worst_activation(
+    work: ActivityWork, interference: DemandFunction, budget: SearchBudget, busy_period: int = 0
+) -> WorstActivation:
+    """Find the activation with the worst response, over all activations of the busy period.
 
     Where the length of the busy period of all work together is known (`busy_period`), no job ends before it, unless
     another job has come by then.
     """
     arrival_times, spend = earliest_arrivals(work.streams), budget.start_search()
-    arrival, longest, work_done, finish = next(arrival_times, 0), 0, 0, 0
+    arrival, work_done, finish, count = next(arrival_times, 0), 0, 0, 0
+    worst = WorstActivation(1, 0, 0)
     while True:
         spend(_TERMS_PER_ACTIVATION)
         # The q-th job ends at the least t = q C + W(t). The next one matters only if it comes before that: else the
         # busy period of this level is over, and the next job begins a new one that cannot be worse.
         work_done += work.cost
+        count += 1
         next_arrival = next(arrival_times, None)
         # Must never be above the true end, or the search would step over the least fixed point. If this job ends before
         # the next one comes, its end is the end of the busy period; else it ends after `next_arrival`.
         earliest_finish = busy_period if next_arrival is None else min(busy_period, next_arrival + 1)
         finish = _find_fixed_point(work_done, interference, spend, start=max(finish, earliest_finish))
-        longest = max(longest, finish - arrival)
+        if finish - arrival > worst.finish - worst.arrival:
+            worst = WorstActivation(count, arrival, finish)
         if next_arrival is None or finish <= next_arrival:
-            return longest
+            return worst
         arrival = next_arrival
 
 

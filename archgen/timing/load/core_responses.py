@@ -53,7 +53,9 @@ class CoreResponses(NamedTuple):
     storing_waits: dict[str, WorstResponse]
 
 
-class _LevelBound(NamedTuple):
+class LevelBound(NamedTuple):
+    """The busy period of a level (ticks), or why there is none; and the demand that it is found from."""
+
     busy_period: int | None
     cause: UnknownCause
     demand: CascadeDemand
@@ -69,20 +71,23 @@ def solve_inner_core(
     def find_model(origin: Origin) -> EventStreams | UnknownCause:
         return model_of(origin, inner_core.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
-    return _CoreSolver(inner_core, find_model, budget).solve()
+    return CoreSolver(inner_core, find_model, budget).solve()
 
 
-class _CoreSolver:
+class CoreSolver:
+    """Finds the responses on one core from the busy periods of its levels (`bounds`)."""
+
     def __init__(
         self,
         inner_core: InnerCore,
         find_model: Callable[[Origin], EventStreams | UnknownCause],
         budget: SearchBudget,
     ) -> None:
+        """Take the event models of what enters from `find_model`."""
         self.core = inner_core
         self.find_model = find_model
         self.budget = budget
-        self.bounds: dict[Priority, _LevelBound] = {}
+        self.bounds: dict[Priority, LevelBound] = {}
 
     def solve(self) -> CoreResponses:
         """Find the busy periods level by level, then the responses and the delays of ways in the order of triggers."""
@@ -152,25 +157,25 @@ class _CoreSolver:
             return WorstResponse(busy_period, "host")
         return WorstResponse(hold, "host")
 
-    def _bound_level(self, level: Priority, cascades: LevelCascades) -> _LevelBound:
+    def _bound_level(self, level: Priority, cascades: LevelCascades) -> LevelBound:
         """Return the busy period of a level, or why there is none."""
         demand = CascadeDemand(cascades, self.find_model)
         share = demand.share()
         if share > 1 or (share == 1 and (level is None or not _settles_at_full_load(demand))):
-            return _LevelBound(None, OVERLOAD_CAUSE, demand)
+            return LevelBound(None, OVERLOAD_CAUSE, demand)
         unknown_costs = [name for name in cascades.unknown_costs if not self._is_idle(name)]
         if unknown_costs or demand.causes:
-            return _LevelBound(
+            return LevelBound(
                 None, unite_causes((*(UnknownCause((name,)) for name in unknown_costs), *demand.causes)), demand
             )
         previous = next(reversed(self.bounds.values()), None)
         if previous is not None and previous.cause == DIVERGED_CAUSE:
-            return _LevelBound(None, DIVERGED_CAUSE, demand)
+            return LevelBound(None, DIVERGED_CAUSE, demand)
         try:
             busy_period = longest_busy_period(demand.demand_function(), self.budget)
         except DivergedError:
-            return _LevelBound(None, DIVERGED_CAUSE, demand)
-        return _LevelBound(busy_period, UnknownCause(), demand)
+            return LevelBound(None, DIVERGED_CAUSE, demand)
+        return LevelBound(busy_period, UnknownCause(), demand)
 
     def _is_idle(self, name: str) -> bool:
         """Whether an activity never works, or only at the start."""
@@ -199,7 +204,7 @@ class _CoreSolver:
             return "executor" if len(self.core.threads) == 1 and len(thread.unit) > 1 else "host"
         return "priorities" if len(thread.unit) == 1 else "executor"
 
-    def _extend_busy_period(self, bound: _LevelBound, start_work: int) -> int | None:
+    def _extend_busy_period(self, bound: LevelBound, start_work: int) -> int | None:
         """Return the busy period with work that is done once, at the start, on top."""
         demand = add_demands(bound.demand.demand_function(), DemandFunction(lambda _: start_work))
         try:
@@ -207,7 +212,7 @@ class _CoreSolver:
         except DivergedError:
             return None
 
-    def _response_by_activation(self, name: str, bound: _LevelBound) -> int:
+    def _response_by_activation(self, name: str, bound: LevelBound) -> int:
         """Return the response of an activity over all its activations in the busy period of its level.
 
         Its n-th activation comes no sooner than the n-th event that leads to it, on whatever way.
@@ -237,7 +242,7 @@ class _CoreSolver:
         """Return the activities that count at the level of one."""
         return self.bounds[self.core.thread_of[name].lowest_priority].demand.level.activations
 
-    def _last_finish(self, name: str, streams: EventStreams, bound: _LevelBound) -> int:
+    def _last_finish(self, name: str, streams: EventStreams, bound: LevelBound) -> int:
         """Return the longest time from an event to the end of the activation that it makes of `name`."""
         cost = self.core.system.activities[name].wcet or 0
         own_work = ActivityWork(cost, streams)

@@ -27,7 +27,7 @@ _TIER_SENTENCES = {
     "fifo": "all that may have come to {0} before it",
     "ros2_executor": "the round of its executor on {0} that is under way, and the one in which its turn comes",
     "edf": "all that may have an earlier deadline on {0}",
-    "cores": "its own work, and a share of all other work on the {1} cores of {0}",
+    "cores": "all work of its own thread, and a share of all other work on the {1} cores of {0}",
     "whole host": "the longest time for which all work on {0} can keep one core busy (while anything waits there, one works)",
     "unknown": "no execution time is written",
 }

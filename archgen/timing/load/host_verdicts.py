@@ -39,7 +39,7 @@ class HostJudge:
         is_full = any(load.value == cores for _, cores, load in loads)
         if any(not load.complete or load.value is None for _, _, load in loads):
             return "overload" if is_full else "unknown"
-        if all(_is_done_in_time(self.system, name, self.paces[name], self.responses[name]) for name in members):
+        if all(is_done_in_time(self.system, name, self.paces[name], self.responses[name]) for name in members):
             return "schedulable"
         if is_full:
             return "overload"
@@ -87,7 +87,7 @@ def _fits_rate_monotonic(
     )
 
 
-def _is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
+def is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
     """Whether an activity is done by its deadline; before it is activated again, where none is written."""
     if pace.rate.value == 0:
         return True

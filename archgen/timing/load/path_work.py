@@ -53,16 +53,16 @@ class PathWork:
                 origin: count if window <= calm_windows[origin] else max_arrivals(self.streams[origin], window)
                 for origin, count in self.calm_arrivals.items()
             }
-            return self._path_work(path, window, arrivals) + self._blocked_time(path, window, arrivals)
+            return self._path_work(path, window, arrivals) + self.find_time_blocked(path, window, arrivals)
         # In such a window nothing comes twice, and nothing is pending: its length does not matter.
         time = self.calm_times.get(id(path))
         if time is None:
             arrivals = self.calm_arrivals
-            time = self._path_work(path, window, arrivals) + self._blocked_time(path, window, arrivals)
+            time = self._path_work(path, window, arrivals) + self.find_time_blocked(path, window, arrivals)
             self.calm_times[id(path)] = time
         return time
 
-    def _count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
+    def count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""
         if not delay or window + delay <= self.calm_windows[origin]:
             return 0
@@ -75,16 +75,16 @@ class PathWork:
             _, origin, work, _, _ = jobs[number]
             # At t0 nothing waits in the threads of the path themselves.
             delay = self.delays.get(way_before, 0) if way_before else 0
-            total += work * (arrivals[origin] + self._count_pending(origin, window, delay, arrivals))
+            total += work * (arrivals[origin] + self.count_pending(origin, window, delay, arrivals))
         for numbers, threads in path.crowds:
             crowd_work = 0
             for key, origin, work, _, _ in (jobs[number] for number in numbers):
-                pending = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                pending = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
                 crowd_work += work * (arrivals[origin] + pending)
             total -= -crowd_work // threads
         return total
 
-    def _blocked_time(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
+    def find_time_blocked(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
         """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
 
         Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
@@ -100,7 +100,7 @@ class PathWork:
             for number in lane:
                 key, origin, work, _, _ = self.cores.jobs[number]
                 lane_work += work * arrivals[origin]
-                count = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                count = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
                 if count:
                     pending_work += work * count
                     if number in path.held_jobs:
@@ -111,7 +111,7 @@ class PathWork:
             pending_works.append(pending_work)
         if not any(pending_works) and not path.crowds:
             return divide_among_cores(_split_lanes(path, lane_works), 0, core_count)
-        most_pending = held_work + self._most_waiting(path, pending_by_origin)
+        most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
         blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
         if path.crowds:
             return blocked_time
@@ -119,13 +119,13 @@ class PathWork:
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
         blocked_time = min(blocked_time, divide_among_cores(_split_lanes(path, all_works), 0, core_count))
         if max(lane_works) > blocked_time:
-            most_pending = self._most_pending(path)
+            most_pending = self.find_most_pending(path)
             blocked_time = min(
                 blocked_time, divide_among_cores(_split_lanes(path, lane_works), most_pending, core_count)
             )
         return blocked_time
 
-    def _most_pending(self, path: CorePath) -> int:
+    def find_most_pending(self, path: CorePath) -> int:
         """Return the most work that can be pending at t0 at all.
 
         The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
@@ -141,9 +141,9 @@ class PathWork:
                     held_work += pending_work
                 else:
                     pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
-        return held_work + self._most_waiting(path, pending_by_origin)
+        return held_work + self.find_most_waiting(path, pending_by_origin)
 
-    def _most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
+    def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
         waiting_works = [0] * path.lane_count
         for origin, work in work_by_origin.items():

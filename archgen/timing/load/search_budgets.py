@@ -36,11 +36,15 @@ class GroupBudgets:
         _join_senders(system, neighbours)
         budget_of: dict[str, SearchBudget] = {}
         for group in find_strong_components(neighbours, neighbours.__getitem__):
-            member_count = sum(step in system.activities for step in group)
-            term_count = _TERMS_PER_GROUP + _TERMS_PER_MEMBER * member_count
-            new_budget = SearchBudget(term_count, term_count // _SEARCHES_PER_GROUP)
+            new_budget = open_budget(sum(step in system.activities for step in group))
             budget_of |= dict.fromkeys(group, self._budgets.setdefault(group[0], new_budget))
         return budget_of
+
+
+def open_budget(member_count: int) -> SearchBudget:
+    """Return the budget of a group of so many activities."""
+    term_count = _TERMS_PER_GROUP + _TERMS_PER_MEMBER * member_count
+    return SearchBudget(term_count, term_count // _SEARCHES_PER_GROUP)
 
 
 def _join_senders(system: TimingSystem, neighbours: Mapping[str, list[str]]) -> None:

@@ -66,10 +66,12 @@ def solve_shared_cores(
         return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
     demand = CascadeDemand(cores.cascades, find_model)
-    return _SharedCoreSolver(paths, demand, known_bounds, budget).solve()
+    return SharedCoreSolver(paths, demand, known_bounds, budget).solve()
 
 
-class _SharedCoreSolver:
+class SharedCoreSolver:
+    """Finds the responses on some cores; `work` then has what may be pending of each way."""
+
     def __init__(
         self,
         paths: CorePaths,
@@ -77,6 +79,7 @@ class _SharedCoreSolver:
         known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
         budget: SearchBudget,
     ) -> None:
+        """Take what enters the cores from the demand."""
         self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
         self.known_responses, self.limits = known_bounds
         self.step_responses: dict[str, int] = {}
@@ -223,8 +226,8 @@ class _SharedCoreSolver:
         that the n-th comes no sooner than the n-th of all that fires it.
         """
         if path.last_step is None:
-            return self._find_window(path, 0, max(path.cost, 1), spend, limit)
-        arrival_times = earliest_arrivals(self._activation_streams(path.last_step))
+            return self.find_window(path, 0, max(path.cost, 1), spend, limit)
+        arrival_times = earliest_arrivals(self.find_activation_streams(path.last_step))
         arrival, longest, count, window = next(arrival_times, 0), 0, 0, max(path.cost, 1)
         while True:
             spend(1)
@@ -232,13 +235,13 @@ class _SharedCoreSolver:
             next_arrival = next(arrival_times, None)
             if next_arrival == arrival:  # the last of those that come at once ends last
                 continue
-            window = self._find_window(path, count, window, spend, None if limit is None else arrival + limit)
+            window = self.find_window(path, count, window, spend, None if limit is None else arrival + limit)
             longest = max(longest, window - arrival)
             if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
                 return longest
             arrival = next_arrival
 
-    def _activation_streams(self, last_step: LastStep) -> EventStreams:
+    def find_activation_streams(self, last_step: LastStep) -> EventStreams:
         """Return the event model of what fires the last step of a path: behind the steps that are not of the path."""
         streams: list[EventStream] = []
         for origin, multiplicity, way_before, best_before in last_step.arrivals:
@@ -249,7 +252,7 @@ class _SharedCoreSolver:
             streams += delay_streams(model, jitter)
         return tuple(streams)
 
-    def _find_window(
+    def find_window(
         self, path: CorePath, count: int, window: int, spend: Callable[[int], None], limit: int | None
     ) -> int:
         """Return the least window in which a path is sure to be done, or `limit` where it is not less.
@@ -309,8 +312,8 @@ class _SharedCoreSolver:
         path, spend = self.paths.look_up((name,)), self.budget.start_search()
         last_step = path.last_step
         if last_step is None:
-            return self._find_window(path, 0, max(path.cost, 1), spend, None)
-        streams = self._activation_streams(last_step)
+            return self.find_window(path, 0, max(path.cost, 1), spend, None)
+        streams = self.find_activation_streams(last_step)
 
         def work_within(window: int) -> int:
             return self.work.find_time_beside(path, window, spend) + last_step.cost * max_arrivals(streams, window)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heapify, heapreplace
+from typing import NamedTuple
 
 from archgen.timing.analysis import EventPace, LinkLoad, TopicLoad
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
@@ -142,11 +143,18 @@ def _largest_burst(state: PropagationState, arcs: Sequence[Arc], bandwidth: Frac
         # Not all is known: what all come with at once at the start is a bound from below.
         first_burst = Fraction(sum(size * max_arrivals(event_model, 1) for size, event_model in sized_models))
         return TimingValue(first_burst, complete=False, missing=tuple(missing), side="at least")
-    return _largest_backlog(sized_models, bandwidth * state.system.tick / NS_PER_SECOND)
+    return find_largest_backlog(sized_models, bandwidth * state.system.tick / NS_PER_SECOND).size
 
 
-def _largest_backlog(sized_models: Sequence[tuple[int, EventStreams]], speed: Fraction) -> TimingValue:
-    """Return the largest backlog of a busy period in which everything comes as early as it can.
+class Backlog(NamedTuple):
+    """The most bytes that wait, and when that is, in ticks from the start of the busy period on."""
+
+    size: TimingValue
+    time: int
+
+
+def find_largest_backlog(sized_models: Sequence[tuple[int, EventStreams]], speed: Fraction) -> Backlog:
+    """Find the largest backlog of a busy period in which everything comes as early as it can.
 
     `speed` is in bytes per tick.
     """
@@ -159,10 +167,11 @@ def _largest_backlog(sized_models: Sequence[tuple[int, EventStreams]], speed: Fr
     )
     speed_numerator, speed_denominator = speed.as_integer_ratio()
     if sent_numerator * speed_denominator >= speed_numerator * sent_denominator:
-        return UNBOUNDED_VALUE
+        return Backlog(UNBOUNDED_VALUE, 0)
     # All first batches come together, at 0; bytes are counted in parts of 1/`speed_denominator`. Arrivals are taken
     # from a heap in order of time. `arrived_bytes` counts all that has come, and speed_numerator * time is what was
     # sent by then; the busy period ends where nothing is left.
+    largest_time = 0
     arrived_bytes = largest_backlog = speed_denominator * sum(size for _, size in sized_streams)
     arrival_count = sum(stream.batch_size for stream, _ in sized_streams)
     next_arrivals = [(stream.earliest_time(1), position, 1) for position, (stream, _) in enumerate(sized_streams)]
@@ -174,8 +183,9 @@ def _largest_backlog(sized_models: Sequence[tuple[int, EventStreams]], speed: Fr
         stream, size = sized_streams[position]
         arrival_count += stream.batch_size
         if arrival_count > _MAX_ARRIVALS:
-            return TimingValue(None, assumptions=("diverged",))
+            return Backlog(TimingValue(None, assumptions=("diverged",)), 0)
         arrived_bytes += size * speed_denominator
-        largest_backlog = max(largest_backlog, arrived_bytes - speed_numerator * time)
+        if arrived_bytes - speed_numerator * time > largest_backlog:
+            largest_backlog, largest_time = arrived_bytes - speed_numerator * time, time
         heapreplace(next_arrivals, (stream.earliest_time(k + 1), position, k + 1))
-    return TimingValue(Fraction(largest_backlog, speed_denominator))
+    return Backlog(TimingValue(Fraction(largest_backlog, speed_denominator)), largest_time)

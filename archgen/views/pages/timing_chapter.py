@@ -62,6 +62,7 @@ def make_timing_blocks(
     return (
         timing_verdicts.summarize_verdicts(timing_lookup),
         *timing_verdicts.list_late_elements(lookup, timing_lookup),
+        *timing_verdicts.explain_verdict_words(timing_lookup),
         *timing_verdicts.list_trigger_troubles(timing_lookup),
         *timing_verdicts.list_unfound_bounds(lookup, timing_lookup),
         *table,

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult, ResponseTier
+from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
@@ -27,11 +28,13 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
             ),
         ),
         ("Verdict", inline_text.to_inlines(chain_charts.describe_chain_verdict(result, timing_lookup))),
+        *_list_advice(timing_lookup, result),
         (
             "Reaction time and data age, at the latest",
             inline_text.to_inlines(value_format.display_bound(result.bound, timing_lookup.analysis)),
         ),
         ("At the earliest", timing_tables.figure_cell(value_format.display_lower_bound(result.best))),
+        ("From the earliest to the latest", _spread_cell(result)),
         (
             "Reaction time without the first wait",
             timing_tables.figure_cell(value_format.display_duration(result.reduced_reaction)),
@@ -64,6 +67,22 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
         *([Table(f"table:{name}", f"{chain.title}: terms of the bound", columns, rows)] if rows else []),
     )
+
+
+def _spread_cell(result: ChainResult) -> Inlines:
+    return (
+        ()
+        if result.spread is None
+        else timing_tables.figure_cell(value_format.display_duration(TimingValue(result.spread)))
+    )
+
+
+def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[tuple[str, Inlines]]:
+    """Yield what takes most of a chain that does not surely meet its deadline, and what to do first."""
+    advice = advise_on_chain(timing_lookup.analysis, result)
+    if advice is not None:
+        yield "Why", inline_text.message_to_inlines(advice.largest_parts)
+        yield "What to do", inline_text.message_to_inlines(advice.first_step)
 
 
 def _list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:

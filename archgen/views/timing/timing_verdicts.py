@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
 from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
@@ -17,12 +19,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 
 def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
     """Summarize in a few sentences how many rates are known and how many chains meet their deadlines."""
-    activity_rates = timing_lookup.analysis.paces.values()
-    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
-    known_count = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in activity_rates)
-    sentences = [
-        f"Of {inline_text.count_noun(len(activity_rates), 'activity')}, {known_count} have a known rate or run on demand or once."
-    ]
+    sentences: list[str] = []
     if timing_lookup.chains:
         verdicts = [
             "without a deadline" if _lacks_only_deadline(result) else result.verdict for result in timing_lookup.chains
@@ -34,6 +31,12 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
         sentences.append(
             f"Of {inline_text.count_noun(len(timing_lookup.chains), 'chain')} of effect: {verdict_counts}."
         )
+    activity_rates = timing_lookup.analysis.paces.values()
+    # What runs on demand or once has no rate by nature, so it is not counted as a gap.
+    known_count = sum(pace.rate.value is not None or pace.behaviour in {"on_demand", "once"} for pace in activity_rates)
+    sentences.append(
+        f"Of {inline_text.count_noun(len(activity_rates), 'activity')}, {known_count} have a known rate or run on demand or once."
+    )
     sentences.append("All bounds are safe for the figures written; what they rest on beside them stands with each.")
     return Paragraph(inline_text.to_inlines(" ".join(sentences)))
 
@@ -48,7 +51,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
     chains = [
         (
             Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}"),
-            chain_charts.describe_chain_verdict(result, timing_lookup),
+            " ".join(_describe_late_chain(result, timing_lookup)),
         )
         # Certain misses come before what may be late.
         for verdict in ("missed", "not proven", "open")
@@ -62,8 +65,29 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
     ]
     if chains or hosts:
         yield Bullets(
-            tuple(inline_text.to_inlines(link, f". {verdict_text}") for link, verdict_text in (*chains, *hosts))
+            tuple(
+                (link, *inline_text.message_to_inlines(f". {verdict_text}")) for link, verdict_text in (*chains, *hosts)
+            )
         )
+
+
+def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
+    """Yield by how much a chain is late, what takes most and why, and one thing to do."""
+    advice = advise_on_chain(timing_lookup.analysis, result)
+    if advice is None:
+        yield chain_charts.describe_chain_verdict(result, timing_lookup)
+    else:
+        yield f"{result.verdict.capitalize()}."
+        yield from filter(None, advice)
+
+
+def explain_verdict_words(timing_lookup: TimingLookup) -> Iterator[Block]:
+    """Explain the verdicts that chains have."""
+    verdicts = {result.verdict for result in timing_lookup.chains if result.deadline}
+    phrases = [f"{word.capitalize()}: {meaning}." for word, meaning in VERDICT_MEANINGS.items() if word in verdicts]
+    if phrases:
+        bound_sentence = "A bound is what the time from a change in the world to the reaction is never above."
+        yield Paragraph(inline_text.to_inlines(" ".join((bound_sentence, *phrases))))
 
 
 def list_trigger_troubles(timing_lookup: TimingLookup) -> Iterator[Block]:

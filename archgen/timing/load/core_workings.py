@@ -1,0 +1,256 @@
+"""How a response on one core comes about: the work in its window, term by term, read off what the analysis found.
+
+Each function offers the ways in which the analysis may have found a figure; the one that gives this very figure is it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import (
+    NO_DEMAND,
+    ActivityWork,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    add_demands,
+    find_worst_activation,
+    longest_busy_period,
+    subtract_demand,
+)
+from archgen.timing.load.core_responses import CoreSolver, LevelBound
+from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.event_streams import EventStreams, streams_of_calls
+from archgen.timing.load.inner_core import urgency_of
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.run_ways import EntryWay, Priority
+from archgen.timing.load.thread_work import ThreadWork, build_thread, lower_crowded_threads
+from archgen.timing.load.work_terms import (
+    ONCE,
+    CountFormulas,
+    EventCount,
+    FigureWorking,
+    WorkTerm,
+    add_counts,
+    choose_working,
+    group_terms,
+    multiply_count,
+    shorten_working,
+)
+from archgen.timing.system.core_placement import ProcessingResource
+
+
+def list_plain_workings(state: PropagationState, resource: ProcessingResource, name: str) -> Iterator[FigureWorking]:
+    """Yield how the response of an activity may have been found on a core where each is looked at by itself."""
+    threads = lower_crowded_threads(
+        state.system,
+        [build_thread(state.system, unit, state.event_models) for unit in (*resource.units, *resource.foreign_units)],
+        state.event_models,
+    )
+    thread = next(each for each in threads if name in each.unit)
+    level = thread.lowest_priority
+    others = [
+        each
+        for each in threads
+        if each is not thread
+        and (level is None or (each.highest_priority is not None and each.highest_priority >= level))
+    ]
+    formulas, budget = CountFormulas(state.system.tick), SearchBudget()
+    if any(each.cause for each in (thread, *others)):
+        return
+    load = GrowingLoad(work for each in others for work in each.works).demand_function()
+    own_works = dict(zip(thread.unit, thread.works, strict=True))
+    if len(thread.unit) == 1 and (level is not None or not others) and own_works[name].streams:
+        count, arrival, finish = find_worst_activation(own_works[name], load, budget)
+        own_term = WorkTerm(((name, own_works[name].cost),), EventCount(count, str(count)), "its own")
+        terms = [own_term, *_count_threads(formulas, others, finish)]
+        yield FigureWorking(finish - arrival, finish, group_terms(terms), count, arrival)
+        return
+    # What works only at the start has no events, but takes its own time.
+    start_costs = [(each, work.cost) for each, work in own_works.items() if not work.streams and work.cost]
+    start_work = sum(cost for _, cost in start_costs)
+    demand = add_demands(load, GrowingLoad(thread.works).demand_function())
+    window = longest_busy_period(add_demands(demand, DemandFunction(lambda _: start_work)), budget, start_work)
+    terms = [*_count_threads(formulas, (thread, *others), window), WorkTerm(tuple(start_costs), ONCE, "at the start")]
+    yield FigureWorking(window, window, group_terms(terms))
+
+
+def list_dedicated_workings(state: PropagationState, name: str) -> Iterator[FigureWorking]:
+    """Yield how the response of an activity on a core of its own was found."""
+    streams, cost = state.event_models[name], state.system.activities[name].wcet
+    if not isinstance(streams, UnknownCause) and cost is not None:
+        count, arrival, finish = find_worst_activation(ActivityWork(cost, streams), NO_DEMAND, SearchBudget())
+        term = WorkTerm(((name, cost),), EventCount(count, str(count)), "its own")
+        yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
+
+
+def _count_threads(formulas: CountFormulas, threads: Iterable[ThreadWork], window: int) -> Iterator[WorkTerm]:
+    for thread in threads:
+        for name, work in zip(thread.unit, thread.works, strict=True):
+            if work.streams and work.cost:
+                yield WorkTerm(((name, work.cost),), formulas.count_events(work.streams, window))
+
+
+@dataclass(frozen=True, slots=True)
+class InnerCoreWorkings:
+    """How figures come about on a core on which activities fire one another; its solver has done its work."""
+
+    solver: CoreSolver
+    state: PropagationState
+    formulas: CountFormulas
+    _budget: SearchBudget = field(default_factory=SearchBudget)
+
+    def list_responses(self, name: str) -> Iterator[FigureWorking]:
+        """Yield how the response of an activity may have been found."""
+        return self.list_way_responses(name, self.state.ways_to.get(name, ()))
+
+    def list_way_responses(self, name: str, ways: Iterable[EntryWay]) -> Iterator[FigureWorking]:
+        """Yield how the response of an activity may have been found, with what is known of the ways to it."""
+        yield from self._list_step_responses(name)
+        for way in ways:
+            yield from (shorten_working(working, way.best_before) for working in self.list_delays(name, way))
+
+    def _list_step_responses(self, name: str) -> Iterator[FigureWorking]:
+        """Yield what bounds the response of an activity, whatever may be known of the steps before it."""
+        solver, core = self.solver, self.solver.core
+        thread = core.thread_of[name]
+        bound = solver.bounds[thread.lowest_priority]
+        ways = core.ways_to[name]
+        if bound.busy_period is None:
+            return
+        start_costs = tuple(
+            (each, cost)
+            for each in thread.unit
+            if each in core.inner_triggers.silent_ids and (cost := core.system.activities[each].wcet)
+        )
+        if start_costs:
+            yield self._add_start(bound, start_costs)
+        if thread.lowest_priority is not None and len(thread.unit) == 1:
+            streams = self._activation_streams(ways, bound)
+            if streams:
+                lead = min(way.best_before for way in ways)
+                yield from self._by_activation(name, streams, bound, lead, ())
+        yield self._whole_period(bound, ())
+        if len(ways) == 1:
+            yield from (shorten_working(each, ways[0].best_before) for each in self._list_run_delays(name, ways[0]))
+
+    def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
+        yield from self._list_run_delays(name, way)
+        if len(way.steps) > 1:
+            yield from self._add_last_step(name, way)
+
+    def _list_run_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield what bounds all steps of a way at once."""
+        core = self.solver.core
+        level: Priority = min((core.thread_of[step].lowest_priority for step in way.steps), key=urgency_of)
+        bound = self.solver.bounds[level]
+        if bound.busy_period is not None:
+            if level is not None and len(core.thread_of[name].unit) == 1 and way.entry in bound.demand.level.volumes:
+                streams = self._activation_streams((way,), bound)
+                if streams:
+                    yield from self._by_activation(name, streams, bound, 0, way.steps)
+            yield self._whole_period(bound, way.steps)
+
+    def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield the time to the step before, and the response of the last one."""
+        before = way.steps[-2]
+        response = self.state.responses[name].value
+        way_before = next(
+            (each for each in self.state.ways_to[before] if each.entry == way.entry and each.steps == way.steps[:-1]),
+            None,
+        )
+        if way_before is None or way_before.delay is None or response is None:
+            return
+        if way_before.delay + response != way.delay:
+            return
+        first = choose_working(self.list_delays(before, way_before), way_before.delay)
+        last = choose_working(self._list_step_responses(name), response)
+        if first and last:
+            yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
+
+    def _activation_streams(self, ways: Sequence[EntryWay], bound: LevelBound) -> EventStreams:
+        """Return the events that lead to an activity; empty where these are not all known at the level."""
+        streams: EventStreams = ()
+        for way in ways:
+            if way.entry.kind in {"gate", "once"} or not bound.demand.level.volumes.get(way.entry):
+                return ()
+            streams += streams_of_calls(bound.demand.streams_of(way.entry), Fraction(way.multiplicity))
+        return streams
+
+    def _by_activation(
+        self, name: str, streams: EventStreams, bound: LevelBound, lead: int, steps: tuple[str, ...]
+    ) -> Iterator[FigureWorking]:
+        cost = self.solver.core.system.activities[name].wcet
+        if not cost:
+            return
+        own_work = ActivityWork(cost, streams)
+        interference = subtract_demand(bound.demand.demand_function(), GrowingLoad((own_work,)).demand_function())
+        try:
+            activation = find_worst_activation(own_work, interference, self._budget, bound.busy_period or 0)
+        except DivergedError:
+            return
+        count, arrival, finish = activation
+        own_term = WorkTerm(((name, cost),), EventCount(count, str(count)), "its own")
+        terms = group_terms([own_term, *self._list_terms(bound, finish, name)])
+        yield FigureWorking(max(finish - arrival - lead, 0), finish, terms, count, arrival, lead, steps)
+
+    def _whole_period(self, bound: LevelBound, steps: tuple[str, ...]) -> FigureWorking:
+        window = bound.busy_period or 0
+        return FigureWorking(window, window, group_terms(self._list_terms(bound, window)), steps=steps)
+
+    def _add_start(self, bound: LevelBound, start_costs: tuple[tuple[str, int], ...]) -> FigureWorking:
+        start_work = sum(cost for _, cost in start_costs)
+        demand = add_demands(bound.demand.demand_function(), DemandFunction(lambda _: start_work))
+        window = longest_busy_period(demand, self._budget, bound.busy_period or 0)
+        terms = [*self._list_terms(bound, window), WorkTerm(start_costs, ONCE, "at the start")]
+        return FigureWorking(window, window, group_terms(terms))
+
+    def _list_terms(self, bound: LevelBound, window: int, but_name: str = "") -> Iterator[WorkTerm]:
+        """Yield the work of a level in a window (in ticks), but that of `but_name`."""
+        counts: dict[Origin, EventCount] = {}
+        for name, activations in bound.demand.level.activations.items():
+            cost = self.solver.core.system.activities[name].wcet
+            for origin, multiplicity in activations.items() if cost and name != but_name else ():
+                if origin not in counts:
+                    counts[origin] = self._count_origin(bound, origin, window)
+                reason = self._describe_origin(origin)
+                yield WorkTerm(((name, (cost or 0) * multiplicity),), counts[origin], reason)
+
+    def _count_origin(self, bound: LevelBound, origin: Origin, window: int) -> EventCount:
+        if origin.kind == "once":
+            return ONCE
+        if origin.kind != "gate":
+            return self.formulas.count_events(self._streams_of(bound, origin), window)
+        rule = bound.demand.level.gate_rules[int(origin.key)]
+        inputs = [
+            add_counts(
+                [
+                    multiply_count(self._count_origin(bound, each, window), number)
+                    for each, number in multiplicities.items()
+                ]
+            )
+            for multiplicities in rule.inputs
+        ]
+        return self.formulas.count_gate(rule, inputs, window)
+
+    def _streams_of(self, bound: LevelBound, origin: Origin) -> EventStreams:
+        try:
+            return bound.demand.streams_of(origin)
+        except KeyError:  # what brings no work has not been looked up
+            return ()
+
+    def _describe_origin(self, origin: Origin) -> str:
+        if origin.kind == "arc":
+            arc = self.solver.core.entering_arcs[int(origin.key)].arc
+            return f"events of {arc.topic} from {arc.source}"
+        if origin.kind == "activity":
+            return f"events of {origin.key}"
+        return (
+            "what less urgent work may have fired just before" if origin.kind == "once" else "events that get through"
+        )

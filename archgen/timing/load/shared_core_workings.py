@@ -1,0 +1,215 @@
+"""How a response on several cores comes about: A in the threads of the path, and B with all cores busy beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.timing.load.busy_cores import find_blocked_time
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.core_paths import CorePath
+from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.shared_core_responses import SharedCoreSolver
+from archgen.timing.load.work_terms import (
+    CountFormulas,
+    EventCount,
+    FigureWorking,
+    ThreadShare,
+    WorkTerm,
+    choose_working,
+    group_terms,
+    shorten_working,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SharedCoreWorkings:
+    """How figures come about on several cores; their solver has done its work."""
+
+    solver: SharedCoreSolver
+    state: PropagationState
+    formulas: CountFormulas
+
+    def list_responses(self, name: str) -> Iterator[FigureWorking]:
+        """Yield how the response of an activity may have been found."""
+        value = self.state.responses[name].value or 0
+        yield from self._follow_path((name,), value)
+        for way in self.state.ways_to.get(name, ()):
+            if way.delay is not None and way.delay - way.best_before == value:
+                yield from (shorten_working(working, way.best_before) for working in self.list_delays(name, way))
+
+    def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
+        yield from self._follow_path(way.steps, way.delay or 0)
+        if len(way.steps) > 1:
+            yield from self._add_last_step(name, way)
+        # A step has ended before the ones that it leads to: what bounds them bounds it.
+        for later_ways in self.state.ways_to.values():
+            for later_way in later_ways:
+                if (
+                    later_way.delay == way.delay
+                    and later_way.entry == way.entry
+                    and len(later_way.steps) > len(way.steps)
+                    and later_way.steps[: len(way.steps)] == way.steps
+                ):
+                    yield from self._follow_path(later_way.steps, way.delay or 0)
+
+    def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
+        before, response = way.steps[-2], self.solver.step_responses.get(name)
+        way_before = next(
+            (each for each in self.state.ways_to[before] if each.entry == way.entry and each.steps == way.steps[:-1]),
+            None,
+        )
+        if way_before is None or way_before.delay is None or response is None:
+            return
+        if way_before.delay + response != way.delay:
+            return
+        first = choose_working(self.list_delays(before, way_before), way_before.delay)
+        last = choose_working(self._follow_path((name,), response), response)
+        if first and last:
+            yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
+
+    def _follow_path(self, steps: tuple[str, ...], value: int) -> Iterator[FigureWorking]:
+        """Yield the window of a path that gives a figure: of each activation of its last step, where these are looked at."""
+        path, spend = self.solver.paths.look_up(steps), SearchBudget().start_search()
+        try:
+            if path.last_step is None:
+                window = self.solver.find_window(path, 0, max(path.cost, 1), spend, None)
+                if window == value:
+                    yield self._explain_window(path, steps, 0, 0, window)
+                return
+            arrival_times = earliest_arrivals(self.solver.find_activation_streams(path.last_step))
+            arrival, count, window = next(arrival_times, 0), 0, max(path.cost, 1)
+            while True:
+                spend(1)
+                count += 1
+                next_arrival = next(arrival_times, None)
+                if next_arrival == arrival:
+                    continue
+                window = self.solver.find_window(path, count, window, spend, None)
+                if window - arrival == value:
+                    yield self._explain_window(path, steps, count, arrival, window)
+                    return
+                if next_arrival is None or window <= next_arrival:
+                    return
+                arrival = next_arrival
+        except DivergedError:
+            return
+
+    def _explain_window(
+        self, path: CorePath, steps: tuple[str, ...], count: int, arrival: int, window: int
+    ) -> FigureWorking:
+        terms = [*self._list_own_terms(path, window)]
+        if path.last_step:
+            terms.insert(0, WorkTerm(((steps[-1], path.last_step.cost),), EventCount(count, str(count)), "its own"))
+        if path.own_cost:
+            is_silent = steps[-1] in self.solver.cores.inner_triggers.silent_ids
+            reason = "at the start" if is_silent else "its own, beside others of its kind"
+            terms.append(WorkTerm(((steps[-1], path.own_cost),), EventCount(1, "1"), reason))
+        work = self.solver.work
+        arrivals = {origin: max_arrivals(model, window) for origin, model in work.streams.items()}
+        blocked_time = work.find_time_blocked(path, window, arrivals)
+        shares, pending, is_pending_inside = self._share_cores(path, window, arrivals, blocked_time)
+        return FigureWorking(
+            max(window - arrival, 0),
+            window,
+            group_terms(terms),
+            count,
+            arrival,
+            steps=steps if len(steps) > 1 else (),
+            core_count=self.solver.cores.core_count,
+            blocked_time=blocked_time,
+            beside_terms=group_terms(self._list_beside_terms(path, window, with_pending=is_pending_inside)),
+            shares=shares,
+            pending=pending,
+        )
+
+    def _list_own_terms(self, path: CorePath, window: int) -> Iterator[WorkTerm]:
+        work, jobs = self.solver.work, self.solver.cores.jobs
+        for number, way_before in path.own_jobs:
+            delay = work.delays.get(way_before, 0) if way_before else 0
+            yield self._count_job(number, window, delay)
+        for numbers, threads in path.crowds:
+            crowd_terms = [self._count_job(number, window, work.delays.get(jobs[number].key, 0)) for number in numbers]
+            total = sum(term.total for term in crowd_terms)
+            names = ", ".join(dict.fromkeys(jobs[number].key[0] for number in numbers))
+            formula = " + ".join(
+                f"({term.events.formula}) x {self.formulas.write_duration(term.parts[0][1])}"
+                for term in crowd_terms
+                if term.total
+            )
+            if total:
+                reason = f"others in the container: ({formula}) / {threads}, as {threads} threads work side by side"
+                yield WorkTerm(((names, -(-total // threads)),), EventCount(1, "1"), reason)
+
+    def _list_beside_terms(self, path: CorePath, window: int, *, with_pending: bool) -> Iterator[WorkTerm]:
+        work, jobs = self.solver.work, self.solver.cores.jobs
+        for lane in path.other_lanes:
+            for number in lane:
+                delay = work.delays.get(jobs[number].key, 0) if with_pending else 0
+                yield self._count_job(number, window, delay)
+
+    def _count_job(self, number: int, window: int, delay: int) -> WorkTerm:
+        """Count what comes of a job in a window, and may be pending for so long before it."""
+        key, origin, work, _, _ = self.solver.cores.jobs[number]
+        count = self.formulas.count_events(self.solver.work.streams[origin], window + delay)
+        before = (
+            f", those of {self.formulas.write_duration(delay)} before, which may be pending, included" if delay else ""
+        )
+        return WorkTerm(((key[0], work),), count, f"{self._describe_origin(origin)}{before}")
+
+    def _describe_origin(self, origin: Origin) -> str:
+        if origin.kind == "arc":
+            arc = self.solver.cores.entering_arcs[int(origin.key)].arc
+            return f"events of {arc.topic} from {arc.source}"
+        return f"events of {origin.key}"
+
+    def _share_cores(
+        self, path: CorePath, window: int, arrivals: dict[Origin, int], blocked_time: int
+    ) -> tuple[tuple[ThreadShare, ...], int, bool]:
+        """Return what the threads beside a path do, the pending work that is counted with it, and whether all pending
+        work is counted in the threads instead.
+        """
+        work, cores = self.solver.work, self.solver.cores
+        units = [cores.jobs[lane[0]].unit for lane in path.other_lanes]
+        lane_works = [
+            sum(cores.jobs[number].work * arrivals[cores.jobs[number].origin] for number in lane)
+            for lane in path.other_lanes
+        ]
+        pending_works: list[int] = []
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        for lane in path.other_lanes:
+            pending_works.append(0)
+            for number in lane:
+                job = cores.jobs[number]
+                amount = job.work * work.count_pending(job.origin, window, work.delays.get(job.key, 0), arrivals)
+                pending_works[-1] += amount
+                if number in path.held_jobs:
+                    held_work += amount
+                elif amount:
+                    pending_by_origin[job.origin] = pending_by_origin.get(job.origin, 0) + amount
+        most_waiting = held_work + work.find_most_waiting(path, pending_by_origin)
+        all_works = [own + pending for own, pending in zip(lane_works, pending_works, strict=True)]
+        whole_shares = [
+            (lane_works, most_waiting, False),
+            (all_works, 0, True),
+            (lane_works, work.find_most_pending(path), True),
+        ]
+        for works, pending, is_cut in whole_shares:
+            limit, _ = _cut_time(works, pending, cores.core_count) if is_cut or not pending else (None, 0)
+            counted = [Fraction(each) if limit is None else min(Fraction(each), limit) for each in works]
+            if -(-(sum(counted) + pending) // cores.core_count) == blocked_time:
+                shares = zip(units, works, counted, strict=True)
+                thread_shares = tuple(ThreadShare(unit, whole, -(-part // 1)) for unit, whole, part in shares if whole)
+                return thread_shares, pending, works is all_works
+        return (), 0, False
+
+
+def _cut_time(works: list[int], pending: int, core_count: int) -> tuple[Fraction, int]:
+    numerator, denominator = find_blocked_time(works, pending, core_count) if works else (pending, core_count)
+    return Fraction(numerator, denominator), denominator

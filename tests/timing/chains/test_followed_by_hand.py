@@ -1,0 +1,174 @@
+"""Figures are recomputed from the printed reasons alone: whoever has a pocket calculator gets them too."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.figure_explanations import explain_word
+from archgen.timing.load.response_workings import ResponseWorkings
+from archgen.timing.run_analysis import analyse_architecture
+from tests.running import RAMCIP
+from tests.timing.hand_reader import read_equations
+from tests.timing.random_styles import random_style_text
+from tests.timing.random_systems import architecture, random_text
+from tests.timing.test_unpinned_case_study import copy_without_cores
+
+Results = tuple[Analysis, dict[str, ChainResult]]
+
+
+def analyse(project: Path) -> Results:
+    """Analyse a project, with its chains."""
+    checked = pipeline.check_project(project).architecture
+    analysis = analyse_architecture(checked)
+    return analysis, bound_all_chains(analysis, checked)
+
+
+@pytest.fixture(scope="module")
+def case_study() -> Results:
+    return analyse(RAMCIP)
+
+
+@pytest.fixture(scope="module")
+def unpinned_case_study(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return analyse(copy_without_cores(tmp_path_factory.mktemp("unpinned")))
+
+
+def print_reasons(results: Results, word: str) -> list[str]:
+    """Return the lines of `--why`."""
+    return [line.text for line in explain_word(*results, word)]
+
+
+def recompute_response(lines: list[str], name: str) -> Fraction | None:
+    """Add up the work below a response, and take off what does not count; None where no work is listed."""
+    start = next(at for at, line in enumerate(lines) if line.startswith(f"{name}: response"))
+    total = Fraction(0)
+    for line in lines[start + 1 :]:
+        if re.match(r"\S+: ", line):
+            break
+        equation = next(read_equations(line), None)
+        if equation and re.match(r"\d+ x ", line):
+            total += equation.computed
+        elif equation and ("comes" in line or "begins" in line):
+            total = equation.computed
+    return total or None
+
+
+def is_close(computed: Fraction, exact: Fraction) -> bool:
+    """Whether a figure is right, as far as it can be from figures with three decimals."""
+    return abs(computed - exact) <= max(exact / 2000, Fraction(1, 2000))
+
+
+def test_every_equation_that_is_printed_about_the_case_study_holds(case_study: Results) -> None:
+    analysis, chains = case_study
+    words = [*analysis.system.activities, *analysis.hosts, *analysis.links, *analysis.topics, *chains]
+    wrong = [
+        (line, equation)
+        for word in words
+        for line in print_reasons(case_study, word)
+        for equation in read_equations(line)
+        if not equation.holds
+    ]
+    assert wrong == []
+    assert sum(" = " in line for word in words for line in print_reasons(case_study, word)) > 500
+
+
+def test_the_responses_of_all_tiers_follow_from_the_work_that_is_listed(case_study: Results) -> None:
+    analysis, _ = case_study
+    tiers: set[str] = set()
+    count = 0
+    for name, response in analysis.responses.items():
+        computed = recompute_response(print_reasons(case_study, name), name)
+        assert (computed is None) == (response.tier in {"declared", "unknown"}), name
+        if computed is not None:
+            assert is_close(computed, response.worst.value or Fraction(0)), (name, computed)
+            tiers.add(response.tier)
+            count += 1
+    assert count > 55
+    assert tiers == {"host", "priorities", "executor", "cores"}
+
+
+def test_the_largest_gaps_follow_from_the_last_formula_that_is_printed(case_study: Results) -> None:
+    analysis, _ = case_study
+    count = 0
+    for name, pace in analysis.paces.items():
+        lines = print_reasons(case_study, name)
+        above = lines[: next(at for at, line in enumerate(lines) if ": response" in line)]
+        gaps = [equation for line in above if line.startswith("gap ") for equation in read_equations(line)]
+        if gaps and pace.gap.value is not None:
+            assert is_close(gaps[-1].computed, pace.gap.value), name
+            count += 1
+    assert count > 20
+
+
+def test_loads_of_hosts_are_the_sums_of_rate_times_execution_time(case_study: Results) -> None:
+    analysis, _ = case_study
+    for name in ("onboard_pc", "vision_pc", "arm_pc", "interaction_pc"):
+        added = [line for line in print_reasons(case_study, name) if " adds " in line]
+        total = sum((next(read_equations(line)).computed for line in added), Fraction(0))
+        assert is_close(total, analysis.hosts[name].utilisation.value or Fraction(0)), name
+        assert len(added) > 5
+
+
+def test_the_traffic_the_queueing_and_the_burst_of_a_link_follow_from_its_messages(case_study: Results) -> None:
+    analysis, _ = case_study
+    lines, load = print_reasons(case_study, "robot_lan"), analysis.links["robot_lan"]
+    traffic = sum((next(read_equations(line)).computed for line in lines if " adds " in line), Fraction(0))
+    assert is_close(traffic * 10**9, load.traffic.value or Fraction(0))
+    burst_at = next(at for at, line in enumerate(lines) if "largest burst" in line)
+    sent, waiting = (
+        [next(read_equations(line)).computed for line in part if re.match(r"\d+ x ", line)]
+        for part in (lines[:burst_at], lines[burst_at:])
+    )
+    assert is_close(sum(sent, Fraction(0)), load.queueing.value or Fraction(0))
+    assert is_close(sum(waiting, Fraction(0)), load.burst.value or Fraction(0))
+    assert min(len(sent), len(waiting)) > 5
+
+
+def test_chains_are_the_sums_of_their_terms(case_study: Results) -> None:
+    _, chains = case_study
+    for name, chain in chains.items():
+        total = next(line for line in print_reasons(case_study, name) if re.match(r"~?\d\S* m?s \+ ", line))
+        assert is_close(next(read_equations(total)).computed, chain.bound.value or Fraction(0)), name
+    assert len(chains) == 8
+
+
+def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_busy_add_up(
+    unpinned_case_study: Results,
+) -> None:
+    analysis, _ = unpinned_case_study
+    blocked = added = 0
+    for name, response in analysis.responses.items():
+        lines = print_reasons(unpinned_case_study, name)
+        assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == []
+        sums = [line for line in lines if line.endswith(", A + B") and " = " in line]
+        if sums and response.tier == "cores":
+            after = [*lines, ""][lines.index(sums[0]) + 1]
+            is_less = "comes" in after or "begins" in after
+            computed = next(read_equations(after if is_less else sums[0])).computed
+            assert is_close(computed, response.worst.value or Fraction(0)), name
+            added += 1
+        blocked += any(line.startswith("B = (") for line in lines)
+    assert min(blocked, added) > 5
+
+
+@pytest.mark.parametrize(
+    "text", [random_text(seed) for seed in range(60)] + [random_style_text(seed) for seed in range(28)]
+)
+def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> None:
+    analysis = analyse_architecture(architecture(text))
+    assert analysis.state is not None
+    workings = ResponseWorkings(analysis.state)
+    for name, response in analysis.state.responses.items():
+        working = workings.find_response(name)
+        if response.value is None or response.tier in {"declared", "unknown"}:
+            assert working is None
+        else:
+            assert working is not None, name
+            assert (working.value, working.is_consistent) == (response.value, True)
