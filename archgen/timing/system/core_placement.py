@@ -80,13 +80,27 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
 
 
 def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
-    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is."""
-    if resource.cores == 1 or resource.joined or resource.foreign_units or len(resource.units) > resource.cores:
+    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is.
+
+    A process of which members wait for threads has as many cores as threads.
+    """
+    if resource.cores == 1 or resource.joined or resource.foreign_units:
         return (resource,)
     members = [system.activities[name] for name in resource.members]
-    if any(is_reentrant(system, activity) for activity in members) or find_crowded_pools(system, members):
+    crowded_pools = find_crowded_pools(system, members)
+    if any(is_reentrant(system, activity) and activity.id not in crowded_pools for activity in members):
+        return (resource,)  # as many threads as are asked for
+    units_by_pool: dict[ThreadPool, list[ThreadUnit]] = defaultdict(list)
+    for unit in resource.units:
+        if unit[0] in crowded_pools:
+            units_by_pool[crowded_pools[unit[0]]].append(unit)
+    lone_units = [unit for unit in resource.units if unit[0] not in crowded_pools]
+    if len(lone_units) + sum(pool.threads or 0 for pool in units_by_pool) > resource.cores:
         return (resource,)
-    return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
+    return (
+        *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
+        *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
+    )
 
 
 def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
