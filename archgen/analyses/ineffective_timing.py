@@ -163,8 +163,10 @@ def _find_idle_inputs(architecture: Architecture, analysis: Analysis) -> Iterato
                 reason, cure = "it is a service or an action, of which no message is stored", "leave it out"
             else:
                 continue
-            message = f"the time below `inputs` of `{port}` has no effect: {reason}"
-            yield Diagnostic("idle-timing", message, input_timing.at, help=cure, element=activity.node)
+            is_timed = not input_timing.stored_at_once
+            message = f"{'the time' if is_timed else '`stored`'} below `inputs` of `{port}` has no effect: {reason}"
+            advice = cure if is_timed else "leave it out"
+            yield Diagnostic("idle-timing", message, input_timing.at, help=advice, element=activity.node)
 
 
 def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+import archgen
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.random_systems import architecture
@@ -105,3 +108,34 @@ def test_storing_takes_time_from_everybody_in_the_thread_and_on_the_core() -> No
     assert found.hosts["pc"].utilisation.value is not None
     assert float(found.hosts["pc"].utilisation.value) == pytest.approx(0.36)
     assert set(found.responses) == set("abc")
+
+
+STORED = """archgen: 1
+project: {id: p, title: P}
+groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/String}},
+  b: {inputs: {a: g.a.out}, timing: {period: 20 ms, INPUTS}}}}}
+nodes: {a: {implements: g.a, timing: {period: 10 ms}}, b: {implements: g.b}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("inputs", "messages", "storing"),
+    [
+        ("inputs: {a: {stored: at_once}}", [], []),
+        ("inputs: {a: {wcet: 1 ms}}", [], ["g.b.a"]),
+        (
+            "inputs: {a: {wcet: 1 ms, stored: at_once}}",
+            ["`wcet` is the time of a callback that stores the input, and `stored: at_once` says that there is none"],
+            [],
+        ),
+        ("inputs: {a: {stored: later}}", ["`stored` cannot be `later`"], ["g.b.a"]),
+    ],
+)
+def test_an_input_can_be_stored_at_once(tmp_path: Path, inputs: str, messages: list[str], storing: list[str]) -> None:
+    (tmp_path / "archgen.yaml").write_text(STORED.replace("INPUTS", inputs), encoding="utf-8")
+    project = archgen.load(tmp_path)
+    found = [finding.message for finding in project.findings if finding.severity == "error"]
+    assert found == messages
+    if not messages:
+        assert list(project.timing().system.activities["b"].storing) == storing

@@ -459,7 +459,7 @@ class _Propagation:
 
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
     """Name the tier of a thread that has one of several cores to itself."""
-    if not resource.undisturbed or response.tier in {"declared", "unknown", "whole host"}:
+    if not resource.undisturbed or response.tier not in {"host", "priorities", "executor"}:
         return response
     return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 

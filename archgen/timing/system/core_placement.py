@@ -80,13 +80,27 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
 
 
 def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
-    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is."""
-    if resource.cores == 1 or resource.joined or resource.foreign_units or len(resource.units) > resource.cores:
+    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is.
+
+    A process of which members wait for threads has as many cores as threads.
+    """
+    if resource.cores == 1 or resource.joined or resource.foreign_units:
         return (resource,)
     members = [system.activities[name] for name in resource.members]
-    if any(is_reentrant(system, activity) for activity in members) or find_crowded_pools(system, members):
+    crowded_pools = find_crowded_pools(system, members)
+    if any(is_reentrant(system, activity) and activity.id not in crowded_pools for activity in members):
+        return (resource,)  # as many threads as are asked for
+    units_by_pool: dict[ThreadPool, list[ThreadUnit]] = defaultdict(list)
+    for unit in resource.units:
+        if unit[0] in crowded_pools:
+            units_by_pool[crowded_pools[unit[0]]].append(unit)
+    lone_units = [unit for unit in resource.units if unit[0] not in crowded_pools]
+    if len(lone_units) + sum(pool.threads or 0 for pool in units_by_pool) > resource.cores:
         return (resource,)
-    return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
+    return (
+        *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
+        *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
+    )
 
 
 def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
@@ -206,9 +220,11 @@ def _pinned_and_shared(
     free_cores = find_free_cores(cores, pinned_units)
     units_by_set = dict(pinned_units)
     if unpinned_units:
-        units_by_set[free_cores] = [*units_by_set.pop(free_cores, ()), *unpinned_units]
+        # A set may be all the cores that are left: then a group that was divided is one again.
+        names = [name for unit in (*units_by_set.pop(free_cores, ()), *unpinned_units) for name in unit]
+        units_by_set[free_cores] = list(_group_lanes(system, [system.activities[name] for name in names]))
     for resource in _pinned_resources(system, host, units_by_set):
-        is_rest = bool(unpinned_units) and unpinned_units[0] in resource.units
+        is_rest = bool(unpinned_units) and resource.core_set == free_cores
         kept_notes = ("cores to which something is pinned are kept for it",) if len(free_cores) < cores else ()
         yield replace(resource, id=host, assumptions=kept_notes) if is_rest else resource
 

@@ -76,9 +76,19 @@ def test_a_thread_and_its_part_of_the_others_fill_a_core(
 def test_threads_of_one_container_share_its_threads(shares: tuple[int, ...], others: int, responses: list[str]) -> None:
     nodes = {f"c{index} +box": f"period: 10 ms, wcet: {share} ms" for index, share in enumerate(shares)}
     nodes["other @pc"] = f"period: 10 ms, wcet: {others} ms"
+    nodes["fourth @pc"] = "period: 10 ms, wcet: 0 ms"  # with one thread fewer each would have a core
     rest = "hosts: {pc: {cores: 3}}\ncontainers: {box: {threads: 2, host: pc}}"
     analysis = analyse_sketch(nodes, "", rest)
-    assert [show_ms(time.worst) for time in analysis.responses.values()] == responses
+    assert [show_ms(time.worst) for name, time in analysis.responses.items() if name != "fourth"] == responses
+
+
+def test_a_container_has_as_many_cores_as_threads_where_there_are_enough() -> None:
+    """5 + (4 + 2) / 2, 4 + (5 + 2) / 2 and 2 + (5 + 4) / 2: the third core is left to `other`."""
+    nodes = {f"c{index} +box": f"period: 20 ms, wcet: {share} ms" for index, share in enumerate((5, 4, 2))}
+    nodes["other @pc"] = "period: 20 ms, wcet: 13 ms"
+    rest = "hosts: {pc: {cores: 3}}\ncontainers: {box: {threads: 2, host: pc}}"
+    responses = analyse_sketch(nodes, "", rest).responses.values()
+    assert [show_ms(time.worst) for time in responses] == ["8", "15/2", "13/2", "13"]
 
 
 @pytest.mark.parametrize(("jobs", "settles"), [(5, True), (4, False)])
@@ -166,7 +176,9 @@ def test_what_a_full_core_is_known_by_without_a_search(
     monkeypatch.setattr(SearchBudget, "start_search", lambda _: give_up)
     place = "+box" if others else "@pc"
     nodes = {f"c{index} {place}": f"period: 100 ms, wcet: {share} ms" for index, share in enumerate(shares)}
-    nodes |= {"other @pc": f"period: 100 ms, wcet: {others} ms"} if others else {}
+    nodes |= (
+        {"other @pc": f"period: 100 ms, wcet: {others} ms", "fourth @pc": "period: 9 ms, wcet: 0 ms"} if others else {}
+    )
     rest = f"hosts: {{pc: {{cores: {cores}}}}}\ncontainers: {{box: {{threads: 2, host: pc}}}}"
     system, _ = build_system(read_sketch(nodes, "", rest))
     found = propagate_events(system, find_triggers(system)).responses

@@ -12,8 +12,7 @@ def test_cores_containers_and_pins() -> None:
     """`a` alone beside no more threads than cores waits for nobody; a container's threads divide its own work; where every core has
     a pin, what has none may run anywhere.
 
-    c: 3 + (4 + 5) / 2 + 6 / 3; d: 4 + (3 + 5) / 2 + 2; e: 5 + (2 x 3 + 2 x 4) / 2 + 2, as two of each come within 14 and the
-    response before it. f: 6 + B, where 3 B = 3 + min(4, B) + min(5, B). i: 2 + (3 + 4) / 2; j: 3 + (2 x 2 + 4) / 2; k: 4 + (2 x 2 + 3) / 2.
+    c: 3 + (4 + 5) / 2; d: 4 + (3 + 5) / 2; e: 5 + (3 + 4) / 2; f: 6, for the third core is left to it. i: 2 + (3 + 4) / 2; j: 3 + (2 x 2 + 4) / 2; k: 4 + (2 x 2 + 3) / 2.
     n: 4 + 2: one of its two cores alone would let it wait for `l` only.
     """
     analysis = analyse_sketch(
@@ -49,10 +48,10 @@ def test_cores_containers_and_pins() -> None:
     assert list_responses(analysis) == [
         "a none ?a..4 cores",
         "b none ?b..9 cores",
-        "c none ?c..19/2 cores",
-        "d none ?d..10 cores",
-        "e none ?e..14 cores",
-        "f none ?f..9 cores",
+        "c none ?c..15/2 cores",
+        "d none ?d..8 cores",
+        "e none ?e..17/2 cores",
+        "f none ?f..6 cores",
         "g none ?g..5 [assuming a dedicated core for container lone] executor",
         "h none ?h..5 [assuming a dedicated core for container lone] executor",
         "i none ?i..11/2 [assuming 2 dedicated cores for container duo] cores",
@@ -97,10 +96,10 @@ def test_cores_containers_and_pins() -> None:
         "w: every 20 ms, as written @50:56",
         "a takes: its own work: two has no more threads than cores @28:63",
         "b takes: its own work: two has no more threads than cores @29:63",
-        "c takes: all work of its own thread, and a share of all other work on the 3 cores of four @30:69",
-        "d takes: all work of its own thread, and a share of all other work on the 3 cores of four @31:69",
-        "e takes: all work of its own thread, and a share of all other work on the 3 cores of four @32:69",
-        "f takes: all work of its own thread, and a share of all other work on the 3 cores of four @33:64",
+        "c takes: all work of its own thread, and a share of all other work on the 2 cores of four @30:69",
+        "d takes: all work of its own thread, and a share of all other work on the 2 cores of four @31:69",
+        "e takes: all work of its own thread, and a share of all other work on the 2 cores of four @32:69",
+        "f takes: its own work: four has no more threads than cores @33:64",
         "g takes: all work of its executor on lone, in whatever order @34:69",
         "h takes: all work of its executor on lone, in whatever order @35:69",
         "i takes: all work of its own thread, and a share of all other work on the 2 cores of duo @36:68",
