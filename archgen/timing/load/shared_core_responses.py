@@ -299,12 +299,12 @@ class SharedCoreSolver:
             return WorstResponse(host_wait, "whole host")
         thread_ids = (name, *list_storing_ids(self.cores.system.activities[name]))
         try:
-            wait = max(self._hold_in_thread(each) for each in thread_ids)
+            wait: int | None = max(self._hold_in_thread(each) for each in thread_ids)
         except DivergedError:
-            return WorstResponse(None, "cores", DIVERGED_CAUSE)
-        if host_wait is not None and host_wait <= wait:
+            wait = None
+        if host_wait is not None and (wait is None or host_wait <= wait):
             return WorstResponse(host_wait, "whole host")
-        return WorstResponse(wait, "cores")
+        return WorstResponse(wait, "cores", DIVERGED_CAUSE if wait is None else UnknownCause())
 
     def _hold_in_thread(self, name: str) -> int:
         """Return how long the thread of an activity may have work until an activation comes that is not part of it."""
