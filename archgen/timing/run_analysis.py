@@ -99,5 +99,6 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         ),
         derived=rates.derived,
         services=find_service_loads(state, rates.paces, responses),
+        matches=rates.matches,
         notes=notes,
     )

@@ -144,6 +144,9 @@ def _takes_no_time(system: TimingSystem, arc: Arc, members: Mapping[str, None]) 
 def _is_fired_by_arcs(system: TimingSystem, triggers: TriggerGraph, name: str) -> bool:
     """Whether what fires an activity is known arc by arc: it is no timer, and nothing unknown may fire it too."""
     activity = system.activities[name]
+    if activity.mode == "match":
+        # What is matched may have come long before: the matches have an event model of their own.
+        return False
     if has_own_rate(activity) or activity.jitter or name in triggers.never_firing or name in triggers.unknown_rates:
         return False
     if activity.behaviour not in {"event", "on_demand"}:
