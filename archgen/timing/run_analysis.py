@@ -6,13 +6,14 @@ from operator import attrgetter
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
+from archgen.timing.load.event_propagation import split_resources
 from archgen.timing.load.host_loads import build_response_times, build_run_responses, find_host_loads
 from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
-from archgen.timing.system.core_placement import divide_resource, find_resources
+from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -71,9 +72,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
     # them.
     system, trigger_graph, state = settle_links(system)
     resource_list = find_resources(system)
-    responses = build_response_times(
-        state, [part for resource in resource_list for part in divide_resource(system, resource)]
-    )
+    responses = build_response_times(state, split_resources(system, resource_list))
     rates = find_rates(state, responses)
     edge_context = EdgeContext(state, rates.paces, rates.outputs, responses)
     return Analysis(

@@ -7,7 +7,7 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
@@ -17,14 +17,21 @@ from archgen.timing.load.event_models import PropagationState, activation_model,
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
+from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
-from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, EventModels, WorstResponse
+from archgen.timing.load.waiting_threads import delayed_model, find_waiting_responses
+from archgen.timing.system.core_placement import (
+    ProcessingResource,
+    divide_resource,
+    find_resources,
+    part_waiting_units,
+)
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
@@ -56,7 +63,7 @@ class _Propagation:
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
-        divided_resources = (part for resource in resource_list for part in divide_resource(state.system, resource))
+        divided_resources = split_resources(state.system, resource_list)
         for index, resource in enumerate(divided_resources):
             # Resources get keys that no activity has: both are steps of one graph.
             key = f"{index} {resource.id}"
@@ -67,6 +74,9 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.waiting_ids = frozenset(
+            name for resource in self.resources.values() if resource.waits for name in resource.members
+        )
         self.inner_cores: dict[str, InnerCore] = {}
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
@@ -77,6 +87,14 @@ class _Propagation:
         shortest_period = min((activity.period for activity in activities if activity.period), default=1)
         largest_jitter = max((activity.jitter for activity in activities), default=0)
         self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
+        self.joined_resources: dict[str, JoinedResources] = {
+            f"joined {index}": joined
+            for index, joined in enumerate(find_joined_resources(state.system, state.triggers, self.resources))
+        }
+        self.joined_bounds: dict[str, Mapping[str, int]] = {}
+        self.joined_step_of = {
+            name: step for step, joined in self.joined_resources.items() for name in joined.processor.members
+        }
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
@@ -98,7 +116,9 @@ class _Propagation:
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
-        for steps in find_strong_components([*self.state.triggers.order, *self.resources], self.successors.__getitem__):
+        for steps in find_strong_components(
+            [*self.state.triggers.order, *self.resources, *self.joined_resources], self.successors.__getitem__
+        ):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one
             # pass.
             if len(steps) == 1 and steps[0] not in self.successors[steps[0]]:
@@ -110,8 +130,12 @@ class _Propagation:
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
-        successors: dict[str, list[str]] = {step: [] for step in (*system.activities, *self.resources)}
+        successors: dict[str, list[str]] = {
+            step: [] for step in (*system.activities, *self.resources, *self.joined_resources)
+        }
         self._add_resource_steps(successors)
+        self._add_shared_uses(successors)
+        self._add_joined_steps(successors)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
@@ -125,12 +149,39 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             for name in (name for unit in resource.foreign_units for name in unit):
-                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
+                rests_on_response = resource.cores > 1 or resource.waits or name in self.waiting_ids
+                for foreign_step in self.resources_of.get(name, ()) if rests_on_response else ():
                     successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
         for step, inner_triggers in self.inner_triggers.items():
             for source in dict.fromkeys(inner_triggers.outer_sources):
+                successors[source].append(step)
+                for source_step in self.resources_of.get(source, ()):
+                    successors[source_step].append(step)
+
+    def _add_shared_uses(self, successors: dict[str, list[str]]) -> None:
+        """Add what the waits for resources rest on: the event models and responses of all that use them."""
+        activities = self.state.system.activities.values()
+        for resource_id in dict.fromkeys(key for activity in activities for key in activity.uses):
+            user_ids = [activity.id for activity in activities if resource_id in activity.uses]
+            for user in user_ids:
+                for other in user_ids:
+                    if other != user:
+                        for step in self.resources_of.get(other, (other,)):
+                            successors[user].append(step)
+                            for user_step in self.resources_of.get(user, ()):
+                                successors[user_step].append(step)
+
+    def _add_joined_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what the bounds of joined resources rest on, and the steps that they bound."""
+        for step, joined in self.joined_resources.items():
+            inner_triggers = joined.inner_triggers
+            for name in joined.processor.members:
+                if inner_triggers is None or name not in inner_triggers.inner_arcs:
+                    successors[name].append(step)
+                successors[step] += self.resources_of.get(name, (name,))
+            for source in dict.fromkeys(inner_triggers.outer_sources if inner_triggers else ()):
                 successors[source].append(step)
                 for source_step in self.resources_of.get(source, ()):
                     successors[source_step].append(step)
@@ -190,7 +241,8 @@ class _Propagation:
     def _activity_ids(self, steps: tuple[str, ...]) -> Iterator[str]:
         """Yield the activities whose figures some steps find."""
         for step in steps:
-            yield from self.resources[step].members if step in self.resources else (step,)
+            if step not in self.joined_resources:
+                yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up_steps(self, steps: tuple[str, ...]) -> None:
         """Mark everything in a loop as diverged: the last iterate is below the truth, so it is no bound."""
@@ -205,31 +257,82 @@ class _Propagation:
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
         state = self.state
+        if step in self.joined_resources:
+            return self._update_joined_resources(step)
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
-            new_responses = find_responses(
-                state.system,
-                self.resources[step],
-                state.event_models,
-                AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
-            )
+            new_responses = self._solve_resource(step)
             new_responses = {
-                name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
+                name: self._limit_response(name, _name_tier(self.resources[step], response))
+                for name, response in new_responses.items()
             }
             changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
             state.responses.update(new_responses)
             return changed
         event_model = activation_model(state, step)
-        if step in state.responses and _is_unchanged(state.event_models.get(step), event_model):
+        is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
+        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
+        if is_same_model and not is_waiting:
             return False
         state.event_models[step] = event_model
+        if is_waiting:
+            return self._update_dedicated_user(step) or not is_same_model
         # On no resource: a core of its own, so that its response rests on nothing but its own events.
         if step not in self.resources_of:
             state.responses[step] = find_dedicated_response(
                 state.system, step, state.event_models, self.budget_of[step]
             )
         return True
+
+    def _update_joined_resources(self, step: str) -> bool:
+        """Find the bounds of joined resources, and return whether they changed."""
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            if entry_arc is None:
+                return self.state.event_models[str(origin.key)]
+            return arriving_model(self.state, entry_arc.arc)
+
+        bounds = self.joined_resources[step].find_bounds(find_model, self.state.event_models, self.budget_of[step])
+        changed = bounds != self.joined_bounds.get(step)
+        self.joined_bounds[step] = bounds
+        return changed
+
+    def _limit_response(self, name: str, response: WorstResponse) -> WorstResponse:
+        """Return a response, or the bound of all resources that are joined with its core, whichever is less."""
+        bound = self.joined_bounds.get(self.joined_step_of.get(name, ""), {}).get(name)
+        if bound is None or response.tier == "declared" or (response.value is not None and response.value <= bound):
+            return response
+        return WorstResponse(bound, response.tier)
+
+    def _update_dedicated_user(self, step: str) -> bool:
+        """Find the response of what has a core of its own and waits for resources, and return whether it changed."""
+        own_core = ProcessingResource(step, None, 1, ((step,),), waits=True)
+        response = find_waiting_responses(self.state, own_core, self.waiting_ids, self.budget_of[step])[step]
+        response = self._limit_response(step, response)
+        changed = _has_changed(self.state.responses.get(step), response)
+        self.state.responses[step] = response
+        return changed
+
+    def _solve_resource(self, step: str) -> dict[str, WorstResponse]:
+        """Find the responses of a core on which nothing fires anything else, or of a thread that waits for resources."""
+        state, resource = self.state, self.resources[step]
+        if resource.waits:
+            return find_waiting_responses(state, resource, self.waiting_ids, self.budget_of[step])
+        return find_responses(
+            state.system,
+            resource,
+            self._seen_models(resource),
+            AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
+        )
+
+    def _seen_models(self, resource: ProcessingResource) -> EventModels:
+        """Return the event models of all work on a core: what waits for resources comes up to its response later."""
+        waiting_ids = [name for unit in resource.foreign_units for name in unit if name in self.waiting_ids]
+        if not waiting_ids:
+            return self.state.event_models
+        delayed_models = {name: delayed_model(self.state, name, self.waiting_ids) for name in waiting_ids}
+        return {**self.state.event_models, **delayed_models}
 
     def _update_inner_core(self, step: str) -> bool:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""
@@ -238,7 +341,9 @@ class _Propagation:
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
-                return state.event_models[str(origin.key)]
+                # On several cores the responses of what is foreign are looked at as they are.
+                waiting_ids = self.waiting_ids if step in self.inner_cores else ()
+                return delayed_model(state, str(origin.key), waiting_ids)
             key = id(entry_arc.arc)
             if key not in entering_models:
                 entering_models[key] = arriving_model(state, entry_arc.arc)
@@ -249,7 +354,10 @@ class _Propagation:
             if step in self.inner_cores
             else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
         )
-        new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
+        new_responses = {
+            name: self._limit_response(name, _name_tier(self.resources[step], response))
+            for name, response in new_responses.items()
+        }
         changed = any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
@@ -264,7 +372,7 @@ class _Propagation:
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""
-        resource, event_models = self.resources[step], self.state.event_models
+        resource, event_models = self.resources[step], self._seen_models(self.resources[step])
         current_models = {
             name: event_models[name] for unit in (*resource.units, *resource.foreign_units) for name in unit
         }
@@ -278,9 +386,16 @@ class _Propagation:
         )
 
 
+def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
+    """Yield the parts of resources whose responses are found at once."""
+    for resource in resource_list:
+        for part in divide_resource(system, resource):
+            yield from part_waiting_units(system, part)
+
+
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
     """Name the tier of a thread that has one of several cores to itself."""
-    if not resource.undisturbed or response.tier in {"declared", "unknown"}:
+    if not resource.undisturbed or resource.waits or response.tier in {"declared", "unknown"}:
         return response
     return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 

@@ -37,6 +37,15 @@ class ProcessingResource:
     missing: tuple[str, ...] = ()
     undisturbed: bool = False
     """One thread, of no more threads than there are cores: it always has one to itself."""
+    neighbour_units: tuple[ThreadUnit, ...] = ()
+    """Those of `foreign_units` that have no other cores than these: their responses are found in another part."""
+    waits: bool = False
+    """One thread, or the members of one container, that keep the thread while they wait for a resource such as a GPU."""
+
+    @property
+    def stranger_units(self) -> tuple[ThreadUnit, ...]:
+        """Return the units that may run here and elsewhere."""
+        return tuple(unit for unit in self.foreign_units if unit not in self.neighbour_units)
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -74,6 +83,57 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
     if is_crowded:
         return (resource,)
     return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
+
+
+def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
+    waiting_units = tuple(_find_waiting_units(system, resource)) if system.resources or _uses_any(system) else ()
+    if not waiting_units or resource.missing:
+        yield resource
+        return
+    waiting_ids = {name for unit in waiting_units for name in unit}
+    other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
+    if other_units:
+        yield replace(
+            resource,
+            units=other_units,
+            foreign_units=(*resource.foreign_units, *waiting_units),
+            neighbour_units=waiting_units,
+        )
+    for unit in waiting_units:
+        neighbours = (*other_units, *(other_unit for other_unit in waiting_units if other_unit != unit))
+        yield replace(
+            resource,
+            units=(unit,),
+            foreign_units=(*resource.foreign_units, *neighbours),
+            neighbour_units=neighbours,
+            waits=True,
+        )
+
+
+def _uses_any(system: TimingSystem) -> bool:
+    return any(activity.uses for activity in system.activities.values())
+
+
+def _find_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ThreadUnit]:
+    """Yield the units that wait for resources; the members of a container with too few threads wait for one another."""
+    all_ids = [name for unit in (*resource.units, *resource.foreign_units) for name in unit]
+    containers = [system.activities[name].container for name in all_ids]
+    waiting_containers = {
+        container
+        for name, container in zip(all_ids, containers, strict=True)
+        if container is not None
+        and system.activities[name].uses
+        and 1 < (system.threads.get(container) or 1) < containers.count(container)
+    }
+    crowds: dict[str, list[str]] = {}
+    for unit in resource.units:
+        container = system.activities[unit[0]].container
+        if container in waiting_containers and container is not None:
+            crowds.setdefault(container, []).extend(unit)
+        elif any(system.activities[name].uses for name in unit):
+            yield unit
+    yield from (tuple(names) for names in crowds.values())
 
 
 def find_unplaced_containers(system: TimingSystem) -> dict[str, list[Activity]]:
