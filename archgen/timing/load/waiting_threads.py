@@ -185,10 +185,8 @@ def _search(
     interference: DemandFunction,
     budget: SearchBudget,
 ) -> int:
-    """Return the longest response: by activation where a thread has one activity alone, else the whole busy time."""
-    first = system.activities[own_ids[0]]
-    is_in_order = len(own_ids) == 1 and not (first.executor and first.callback_group is None)
-    if is_in_order and works[0].streams:
+    """Return the longest response: by activation where a thread has one callback alone, else the whole busy time."""
+    if len(own_ids) == 1 and works[0].streams and _is_one_callback(system, own_ids[0]):
         return worst_response(works[0], interference, budget)
     own_demand = GrowingLoad(works).demand_function()
     once_cost = sum(work.cost for work in works if not work.streams)
@@ -197,6 +195,16 @@ def _search(
         own_demand.term_count + interference.term_count,
     )
     return longest_busy_period(total, budget)
+
+
+def _is_one_callback(system: TimingSystem, name: str) -> bool:
+    """Whether the activations of an activity end in the order in which they come: the callbacks of two inputs may not."""
+    activity = system.activities[name]
+    if activity.executor and activity.callback_group is None:
+        return False
+    firing_inputs = activity.triggers if activity.behaviour == "event" and activity.mode == "any" else (name,)
+    requests = [arc for arc in system.arcs_into.get(name, ()) if arc.role == "request"]
+    return len(firing_inputs) + len(requests) == 1
 
 
 def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:

@@ -75,19 +75,16 @@ def match_reason(rates: RateTable, activity: Activity, figures: MatchFigures) ->
 
 def _find_stamp_gap(rates: RateTable, activity: Activity, key: str, arcs: tuple[Arc, ...]) -> TimingValue:
     """Return the largest gap between the times of an input's messages: the activations of its source."""
-    if not arcs or key in rates.state.system.external_inputs.get(activity.id, ()):
-        return unknown_value(key)
-    if (activity.id, key) in rates.state.triggers.open_inputs:
-        return unknown_value(activity.id)
+    is_outside = not arcs or key in rates.state.system.external_inputs.get(activity.id, ())
+    if is_outside or (activity.id, key) in rates.state.triggers.open_inputs:
+        return unknown_value(key if is_outside else activity.id)
     if len(arcs) > 1:
         text = f"{NO_MATCH_NOTE}: {key} of {activity.id} has several sources"
         return TimingValue(None, assumptions=("diverged", text))
     arc, source = arcs[0], rates.state.system.activities[arcs[0].source]
     pace = rates.paces.get(source.id)
-    if pace is None:
-        return unknown_value(source.id)
-    if arc.output not in source.conditional:
-        return name_missing_element(pace.gap, source.id)
+    if pace is None or arc.output not in source.conditional:
+        return name_missing_element(pace.gap, source.id) if pace else unknown_value(source.id)
     # What is promised is how far apart two messages are sent: each was activated between R and B before.
     response = rates.state.responses[source.id].value
     sent_gap = name_missing_element(rates.outputs[source.id, arc.output].gap, source.id)
