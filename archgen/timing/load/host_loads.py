@@ -16,7 +16,7 @@ from archgen.timing.figures.value_arithmetic import add_values, is_boundless, re
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.timing_system import Activity, TimingSystem, best_response
 
 _BILLION = 10**9
 _LOG_2 = Fraction(693_147_180, _BILLION)
@@ -51,7 +51,7 @@ def _build_response_time(
 ) -> ResponseTime:
     """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
-    best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
+    best = unknown_value(name) if activity.bcet is None else TimingValue(best_response(activity) * tick)
     sentence = _TIER_SENTENCES[worst_response.tier]
     if resource is not None and resource.undisturbed and worst_response.tier == "cores":
         sentence = _OWN_CORE_SENTENCE
