@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStream, EventStreams, collapse_streams, delay_streams
 from archgen.timing.load.match_windows import MatchedInput, find_match_windows
 from archgen.timing.system.timing_system import Activity, Arc, best_response
@@ -22,6 +23,10 @@ def has_same_source(state: PropagationState, inputs: Mapping[str, tuple[Arc, ...
     if len(arcs) != len(inputs) or len({arc.source for arc in arcs}) != 1:
         return False
     source = state.system.activities[arcs[0].source]
+    model = state.event_models[source.id]
+    if isinstance(model, UnknownCause) or len(model) != 1 or not model[0].min_spacing:
+        # Two jobs that begin at the same moment give the same time to different messages.
+        return False
     return not any(arc.output in source.conditional for arc in arcs)
 
 
