@@ -57,11 +57,12 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
     yield from ((VERDICT_WORDS[word], text) for word, text in _CHAIN_VERDICTS.items() if word in verdicts)
     # Signs are no part of any id: where one stands in the text, it is a sign.
     yield from ((sign, text) for sign, text in _SIGNS.items() if sign in summary)
-    host_verdicts = {load.verdict for load in (*analysis.hosts.values(), *analysis.resources.values())}
+    host_verdicts: set[str] = {load.verdict for load in analysis.hosts.values()}
+    resource_verdicts: set[str] = {load.verdict for load in analysis.resources.values()}
+    host_verdicts |= resource_verdicts
     reasons = {*map(name_unknown_reason, _list_shown_values(analysis, chains)), *host_verdicts}
     yield from ((word, text) for word, text in _FIGURES.items() if word in reasons)
     yield from ((word, text) for word, text in _HOST_VERDICTS.items() if word in host_verdicts)
-    resource_verdicts = {load.verdict for load in analysis.resources.values()}
     yield from ((word, text) for word, text in _RESOURCE_VERDICTS.items() if word in resource_verdicts)
     behaviours = {pace.behaviour for pace in analysis.paces.values()}
     yield from ((word, text) for word, text in _BEHAVIOURS.items() if word in behaviours)
