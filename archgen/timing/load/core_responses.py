@@ -153,7 +153,8 @@ class _CoreSolver:
             return WorstResponse(None, tier, bound.cause)
         start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
         if start_work:
-            return WorstResponse(self._extend_busy_period(bound, start_work), tier)
+            extended_period = self._extend_busy_period(bound, start_work)
+            return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
         if level is None or len(thread.unit) > 1:
             return WorstResponse(bound.busy_period, tier)
         return WorstResponse(self._response_by_activation(name, bound), tier)
