@@ -3,25 +3,20 @@
 At one moment jobs end first, then samples arrive, then activities are released; when all of that has happened, threads
 are dispatched to cores. The inner loop is written for speed: it works on lists indexed by small integers and creates no
 objects but tuples.
-
-`simulate_system` makes many runs of one system, with seeds from 0 on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 
-from archgen.simulation.chain_tracking import track_chain
 from archgen.simulation.core_dispatch import dispatch_threads
 from archgen.simulation.job_activation import fire_activity, passes_gate
 from archgen.simulation.job_completion import end_thread, finish_declared_job
-from archgen.simulation.plan_builder import PublishPauses, build_plan
-from archgen.simulation.run_totals import RunTotals
+from archgen.simulation.resource_use import leave_resource
 from archgen.simulation.sample_arrival import deliver_sample, enqueue_sample
 from archgen.simulation.simulation_plan import ONCE, PERIODIC, SimulationPlan
-from archgen.simulation.simulation_result import SimulationResult
 from archgen.simulation.simulation_run import (
     ACTIVITY_RELEASE,
     ALL_WIRES,
@@ -32,7 +27,6 @@ from archgen.simulation.simulation_run import (
     SAMPLE_ARRIVAL,
     SimulationRun,
 )
-from archgen.timing.system.timing_system import TimingSystem
 
 MAX_WAITING_EVENTS = 2_000_000
 """The most events that may wait on the heap: far more than any system that settles has."""
@@ -74,7 +68,7 @@ def process_events(run: SimulationRun, horizon: int) -> None:
         if key >> 2 > now:
             # All events of this moment are processed: dispatch before time goes on. A job that takes no time ends at
             # this very moment, so the heap is looked at again.
-            if run.woken_threads or run.changed_processors:
+            if run.woken_executors or run.changed_processors or run.changed_resources:
                 dispatch_threads(run, now)
                 dispatch_rounds += 1
                 if dispatch_rounds > MAX_IDLE_ROUNDS:
@@ -93,14 +87,21 @@ def process_events(run: SimulationRun, horizon: int) -> None:
             deliver_sample(run, now, subject, detail)
         elif order == ACTIVITY_RELEASE:
             _release_activity(run, now, subject, detail)
-        # A negative subject is the end of a job with a declared response, which belongs to an activity and not to a
-        # thread.
         elif subject >= 0:
             end_thread(run, now, subject, detail)
         else:
-            finish_declared_job(run, now, -1 - subject)
+            _end_without_thread(run, now, -1 - subject)
     # Job starts and direct deliveries skip the heap, and count as events too.
     run.event_count = event_count + sum(run.activities.started) + run.wires.sent_count
+
+
+def _end_without_thread(run: SimulationRun, now: int, subject: int) -> None:
+    """End a job with a declared response, which belongs to an activity and not to a thread, or the use of a resource."""
+    activity_count = len(run.plan.activities)
+    if subject < activity_count:
+        finish_declared_job(run, now, subject)
+    else:
+        leave_resource(run, subject - activity_count)
 
 
 def _prepare_start(run: SimulationRun) -> None:
@@ -110,6 +111,8 @@ def _prepare_start(run: SimulationRun) -> None:
             for output in planned.outputs:
                 for wire in output.wires:
                     run.wires.newest_job[wire] = run.wires.arrived_job[wire] = 0
+                    if run.activities.matchers[run.wires.target[wire]] is not None and run.wires.slot[wire] >= 0:
+                        deliver_sample(run, 0, wire, 0)
         elif planned.kind == PERIODIC:
             run.heap.append((run.activities.phase[activity] << 2 | ACTIVITY_RELEASE, activity, CLOCK_TICK))
     heapify(run.heap)
@@ -137,36 +140,3 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
                 return
     if not activities.is_gated[activity] or passes_gate(run, now, activity):
         fire_activity(run, now, activity, NO_WIRE, 0)
-
-
-_SECOND = 10**9
-
-
-def simulate_system(
-    system: TimingSystem,
-    seconds: int = 60,
-    seeds: int = 20,
-    chains: Mapping[str, Sequence[str]] | None = None,
-    pauses: PublishPauses | None = None,
-) -> SimulationResult:
-    """Simulate a system for `seconds` with each of `seeds` seeds.
-
-    `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
-    conditional output with a promised largest gap is published at each chance.
-    """
-    plan = build_plan(system, pauses)
-    # Only activities and wires on a chain are recorded: a trace grows with each job.
-    tracks = {
-        key: track
-        for key, activity_ids in (chains or {}).items()
-        if (track := track_chain(plan, activity_ids)) is not None
-    }
-    watched = {activity for activity_ids in tracks.values() for activity in activity_ids.activities}
-    logged = {
-        wire for activity_ids in tracks.values() for parallel_wires in activity_ids.wires for wire in parallel_wires
-    }
-    horizon = int(seconds * _SECOND / plan.unit)
-    totals = RunTotals(plan, tracks)
-    for seed in range(seeds):
-        totals.add_run(run_plan(plan, seed, horizon, watched, logged), horizon)
-    return totals.to_result(seconds, seeds, horizon, chains or {})

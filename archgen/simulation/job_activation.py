@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from heapq import heappush
 from typing import Any
 
@@ -13,6 +13,7 @@ from archgen.simulation.simulation_run import (
     HELD_FIRING,
     JOB_END,
     LOAD_ONLY,
+    NO_WIRE,
     SimulationRun,
 )
 
@@ -42,7 +43,7 @@ def hold_firing(run: SimulationRun, now: int, activity: int, wire: int, sample: 
 
 
 def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Activate an activity: queue a job for its thread.
+    """Activate an activity: queue a job for its executor.
 
     With a declared response the job begins at once and ends on time; only its load is queued.
     """
@@ -51,19 +52,30 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
     if previous >= 0 and now - previous > activities.activation_gap[activity]:
         activities.activation_gap[activity] = now - previous
     activities.last_activation[activity] = now
+    if wire >= 0:
+        callback = run.wires.callback[wire]
+    else:
+        callback = activities.clock_callback[activity] if wire == NO_WIRE else activities.joint_callback[activity]
     if activities.declared_response[activity] is not None:
         _start_declared_job(run, now, activity, wire, sample)
         wire = LOAD_ONLY
-    activities.pending[activity].append((now, wire, sample))
-    thread = activities.thread[activity]
-    if run.threads.is_idle[thread]:
-        run.woken_threads.append(thread)
+    queue_callback(run, callback, (now, wire, sample, run.sequence))
+
+
+def queue_callback(run: SimulationRun, callback: int, job: Job) -> None:
+    """Queue what a callback has to do, and wake its executor if it has a thread free."""
+    run.sequence += 1
+    run.callbacks.pending[callback].append(job)
+    executor = run.callbacks.executor[callback]
+    run.executors.waiting_count[executor] += 1
+    if run.executors.free_count[executor]:
+        run.woken_executors.append(executor)
 
 
 def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
     """Start a job with a declared response: it ends within the declared time whatever the load."""
     activities = run.activities
-    job = (now, wire, sample)
+    job = (now, wire, sample, run.sequence)
     if wire >= 0 and not run.wires.is_request[wire]:
         run.wires.waiting_count[run.wires.queue[wire]] -= 1
     read_inputs(run, now, activity, job)
@@ -81,27 +93,71 @@ def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, 
 def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
-    _, wire, sample = job
-    fired_by: Iterable[tuple[int, int]] = ((wire, sample),) if wire >= 0 else ()
-    if wire == ALL_WIRES:
-        fired_by = zip(run.plan.activities[activity].captured_wires, sample, strict=True)
-    # What `every` or `throttle` dropped since then came after the samples of this job, and stays for the next one.
-    later_samples: list[tuple[int, int]] = []
-    for input_wire, job_number in fired_by:
-        if wires.newest_job[input_wire] > job_number:
-            later_samples.append((input_wire, wires.newest_job[input_wire]))
-        wires.newest_job[input_wire] = job_number
+    dropped_samples: Sequence[tuple[int, int]] = ()
+    if job[1] >= 0:
+        dropped_samples = _take_sample(run, job[1], job[2])
+    elif job[1] == ALL_WIRES:
+        dropped_samples = _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
     if activities.waiting_requests[activity]:
-        activities.accepted_requests[activity] += activities.waiting_requests[activity]
-        activities.waiting_requests[activity] = []
+        requests, activities.waiting_requests[activity] = activities.waiting_requests[activity], []
+        activities.accepted_requests[activity].append((activities.started[activity], requests))
+    newest_job, largest_age = wires.newest_job, wires.largest_age
+    for wire, source_ends in run.aged_wires[activity]:
+        read_job = newest_job[wire]
+        if read_job >= 0 and now - source_ends[read_job] > largest_age[wire]:
+            largest_age[wire] = now - source_ends[read_job]
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])
-        for input_wire in wires.logged_wires[activity]:
-            wires.source_log[input_wire].append(wires.newest_job[input_wire])
+        for wire in wires.logged_wires[activity]:
+            wires.source_log[wire].append(newest_job[wire])
     activities.started[activity] += 1
-    for input_wire, job_number in later_samples:
-        wires.newest_job[input_wire] = job_number
+    for wire, sample in dropped_samples:
+        newest_job[wire] = sample
+
+
+def _take_sample(run: SimulationRun, wire: int, sample: int) -> Sequence[tuple[int, int]]:
+    """Let a job that starts read the sample that fired it. Return the wire and what `every` or `throttle` has dropped there
+    since then: that came later, and stays for the next job.
+    """
+    newest_job = run.wires.newest_job
+    newest, newest_job[wire] = newest_job[wire], sample
+    return ((wire, newest),) if newest > sample and run.wires.keeps_order[wire] else ()
+
+
+def _take_joint_samples(
+    run: SimulationRun, now: int, activity: int, samples: Sequence[int]
+) -> Sequence[tuple[int, int]]:
+    """Let a job that starts read the samples that fired it together (-1 for a wire that brought none of them). Return what
+    was dropped since then, as `_take_sample` does.
+    """
+    if run.activities.matchers[activity] is not None:
+        _record_fusion(run, now, activity, samples)
+    return [
+        dropped_sample
+        for wire, sample in zip(run.plan.activities[activity].captured_wires, samples, strict=True)
+        if sample >= 0
+        for dropped_sample in _take_sample(run, wire, sample)
+    ]
+
+
+def keep_dropped(run: SimulationRun, wire: int, sample: int) -> None:
+    """Store a sample that `every` or `throttle` has dropped, for the next job."""
+    run.wires.newest_job[wire] = sample
+
+
+def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:
+    """Return the stamp of a sample: when the job that sent it was activated; 0 for what is published once."""
+    activations = run.activities.job_activations[run.wires.source[wire]]
+    return activations[sample] if activations else 0
+
+
+def _record_fusion(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:
+    """Record how old and how far apart the samples are that a job with matched inputs has taken."""
+    activities, wires = run.activities, run.plan.activities[activity].captured_wires
+    stamps = [stamp_of(run, wire, sample) for wire, sample in zip(wires, samples, strict=True) if sample >= 0]
+    activities.fused_age[activity] = max(activities.fused_age[activity], now - min(stamps))
+    activities.fused_spread[activity] = max(activities.fused_spread[activity], max(stamps) - min(stamps))
